@@ -100,17 +100,26 @@ def make(extras: str, root: Path = ROOT) -> Path:
     # after it was cut off, nothing is.
     stamp = root / ".venv" / "installed"
     source = f"{hashlib.sha256((root / 'pyproject.toml').read_bytes()).hexdigest()} {root}"
-    was, *done_extras = stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
-    if was != source:
+    installed_source, *done_extras = (
+        stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
+    )
+    if installed_source != source:
         done_extras = []
     if extras not in done_extras:
         stamp.unlink(missing_ok=True)
         say(sentence("installing"))
-        pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        pip_command = [
+            str(python),
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+        ]
         # Python compiles what it imports, a third of what there is.
-        pip += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
+        pip_command += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
         completed = subprocess.run(
-            pip,
+            pip_command,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             encoding="utf-8",

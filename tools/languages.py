@@ -53,14 +53,14 @@ def sources() -> dict[str, Catalogue]:
     which is the one without a special case.
     """
     paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
-    found = {path.stem: catalogue_source.load(path) for path in paths}
-    lasts = {entry.key: entry for entry in found.get("messages", Catalogue()).entries.values()}
+    catalogues = {path.stem: catalogue_source.load(path) for path in paths}
+    lasts = {entry.key: entry for entry in catalogues.get("messages", Catalogue()).entries.values()}
     programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
     for key, entry in lasts.items():
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
-    return dict(sorted({**found, NAMES_CATALOGUE: names()}.items()))
+    return dict(sorted({**catalogues, NAMES_CATALOGUE: names()}.items()))
 
 
 def names() -> Catalogue:
@@ -91,18 +91,18 @@ def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
     catalogue = Catalogue()
     for at, entry in source.entries.items():
-        said = {name: _longer(form) for name, form in entry.forms.items()}
-        said = entry.forms if entry.is_same and not entry.like else said
-        catalogue.entries[at] = Entry(*at, entry.plural, said, entry.hash, is_same=entry.is_same)
+        forms = {name: _lengthened(form) for name, form in entry.forms.items()}
+        forms = entry.forms if entry.is_same and not entry.like else forms
+        catalogue.entries[at] = Entry(*at, entry.plural, forms, entry.hash, is_same=entry.is_same)
     return catalogue
 
 
-def _longer(text: str) -> str:
+def _lengthened(text: str) -> str:
     """Return a text with accents outside of its gaps, and with more words in its last line."""
     parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
     parts[::2] = [part.translate(ACCENTS) for part in parts[::2]]
-    more = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
-    return f"{''.join(parts)} {more}".rstrip()
+    padding = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
+    return f"{''.join(parts)} {padding}".rstrip()
 
 
 def make_pseudo(english: dict[str, Catalogue]) -> None:
@@ -119,9 +119,9 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
     translation.write()
 
 
-def check_robot(own: Catalogue) -> Iterator[Problem]:
+def check_robot(catalogue_: Catalogue) -> Iterator[Problem]:
     """What a robot cannot say in its few bytes."""
-    for entry in own.entries.values():
+    for entry in catalogue_.entries.values():
         for item in (entry.translation or entry.forms).values():
             if not item.isascii() or len(item) > ROBOT_SIGNS:
                 yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {item}"
@@ -129,10 +129,10 @@ def check_robot(own: Catalogue) -> Iterator[Problem]:
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
-    known = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
+    known_words = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
     for row in _rows(language):
         meaning, bar, words = row.partition("|")
-        if not bar or not known.issuperset(meaning.split()[:1]) or plain(words) != words:
+        if not bar or not known_words.issuperset(meaning.split()[:1]) or plain(words) != words:
             yield row
 
 
@@ -144,11 +144,11 @@ def _rows(language: str) -> list[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("languages", nargs="*", default=list(languages()))
-    does = parser.add_mutually_exclusive_group()
-    does.add_argument("--check", action="store_true")
-    does.add_argument("--seen", nargs="+", metavar=("LANGUAGE", "KEY"))
-    does.add_argument("--po", metavar="LANGUAGE|FILE")
-    does.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
+    action = parser.add_mutually_exclusive_group()
+    action.add_argument("--check", action="store_true")
+    action.add_argument("--seen", nargs="+", metavar=("LANGUAGE", "KEY"))
+    action.add_argument("--po", metavar="LANGUAGE|FILE")
+    action.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
     options = parser.parse_args()
     english = sources()
     if robot := english.get("robot"):
@@ -156,15 +156,15 @@ def main() -> int:
     if options.pseudo:
         make_pseudo(english)
         return 0
-    wrong = sum(
+    problem_count = sum(
         tell(files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
         for name, catalogue in english.items()
     )
-    wrong += tell(
+    problem_count += tell(
         FOLDER / SOURCE_LANGUAGE / ABOUT_FILE,
         read_language(FOLDER / SOURCE_LANGUAGE / ABOUT_FILE).problems,
     )
-    if wrong:
+    if problem_count:
         return 1
     if options.po:
         from tools import translators
@@ -179,37 +179,37 @@ def main() -> int:
             print(f"{language}: no such language. Try:  python -m tools.languages {language}")
             return 1
         if language != SOURCE_LANGUAGE:
-            wrong += update_language(
+            problem_count += update_language(
                 language, english, options.check, options.seen and options.seen[1:]
             )
         for row in check_lexicon(language):
             print(f"languages/{language}/lexicon.txt: no row of a lexicon: {row}")
-            wrong += 1
-    return 1 if wrong else 0
+            problem_count += 1
+    return 1 if problem_count else 0
 
 
 def update_language(
-    language: str, english: dict[str, Catalogue], is_check: bool, seen: list[str] | None
+    language: str, english: dict[str, Catalogue], is_check: bool, seen_patterns: list[str] | None
 ) -> int:
     """Bring a language in step, and say what is wrong with it; return how much that is.
 
-    `seen` has patterns of the keys whose stale translations somebody has looked at; without it no
-    text is noted as seen.
+    `seen_patterns` are those of the keys whose stale translations somebody has looked at; without
+    them no text is noted as seen.
     """
     folder = FOLDER / language
     if not folder.is_dir() and not is_check:
         folder.mkdir()
         (folder / ABOUT_FILE).write_text(_heading(language), encoding="utf-8")
-    own = Translation(language, english)
-    wrong = 0
+    translation = Translation(language, english)
+    problem_count = 0
     if not is_check:
-        for item in own.follow():
+        for item in translation.follow():
             print(f"languages/{language}/{item}: its English text is gone, and so it goes")
-        for unused in own.see(seen) if seen is not None else []:
+        for unused in translation.see(seen_patterns) if seen_patterns is not None else []:
             print(f"{language}: there is no translation with the key {unused}")
-            wrong += 1
-        own.write()
-    return wrong + report(own)
+            problem_count += 1
+        translation.write()
+    return problem_count + report(translation)
 
 
 def _heading(language: str) -> str:
@@ -231,43 +231,48 @@ def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
             yield line, f"{entry.key} is missing: {entry.english}"
 
 
-def report(own: Translation) -> int:
+def report(translation: Translation) -> int:
     """Say what is wrong with a language, and how much of it is there; return what must not be."""
-    wrong = sum(tell(path, problems) for path, problems in own.problems())
-    for path in sorted(own.folder.glob("*.toml")):
-        if path.name != ABOUT_FILE and path.stem not in own.english:
-            wrong += tell(path, [(1, f"there is no {SOURCE_LANGUAGE}/{path.name}")])
+    problem_count = sum(tell(path, problems) for path, problems in translation.problems())
+    for path in sorted(translation.folder.glob("*.toml")):
+        if path.name != ABOUT_FILE and path.stem not in translation.english:
+            problem_count += tell(path, [(1, f"there is no {SOURCE_LANGUAGE}/{path.name}")])
     entries: list[Entry] = []
     missing_count = stale_count = 0
-    for name in own.english:
-        catalogue = own.merge(name)
-        path = own.path(name)
-        wrong += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
-        there = [entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same]
-        entries += there
-        stale_entries = [entry for entry in there if entry.is_stale]
+    for name in translation.english:
+        catalogue = translation.merge(name)
+        path = translation.path(name)
+        problem_count += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
+        expected_entries = [
+            entry for entry in catalogue.entries.values() if entry.seen_hash or not entry.is_same
+        ]
+        entries += expected_entries
+        stale_entries = [entry for entry in expected_entries if entry.is_stale]
         change_text = "its English text has changed, and so it is said in English"
         stale_count += tell(
             path,
             [
-                (stale_count.line, f"{stale_count.key}: {change_text}: {stale_count.english}")
-                for stale_count in stale_entries
+                (entry.line, f"{entry.key}: {change_text}: {entry.english}")
+                for entry in stale_entries
             ],
         )
-        if own.language.is_complete:
-            missing_count += tell(path, [*missing_rows(there)])
-    new = [entry for entry in entries if entry.seen == UNKNOWN_HASH]
-    if new:
-        print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
-              f"python -m tools.languages --seen {own.code}")  # fmt: skip
+        if translation.language.is_complete:
+            missing_count += tell(path, [*missing_rows(expected_entries)])
+    new_entries = [entry for entry in entries if entry.seen_hash == UNKNOWN_HASH]
+    if new_entries:
+        print(f"{translation.code}: {len(new_entries)} texts are new. "
+              "Note of which English texts they are:  "
+              f"python -m tools.languages --seen {translation.code}")  # fmt: skip
     if stale_count:
-        print(f"{own.code}: {stale_count} texts are stale. "
+        print(f"{translation.code}: {stale_count} texts are stale. "
               "Note of which English texts they are now:  "
-              f"python -m tools.languages --seen {own.code} KEY ...")  # fmt: skip
-    asked = [entry for entry in entries if not entry.is_same]
-    done = sum(entry.is_translated for entry in asked)
-    print(f"{own.code}: {done} of {len(asked)} texts are translated")
-    return wrong + (missing_count + stale_count + len(new) if own.language.is_complete else 0)
+              f"python -m tools.languages --seen {translation.code} KEY ...")  # fmt: skip
+    translatable = [entry for entry in entries if not entry.is_same]
+    translated_count = sum(entry.is_translated for entry in translatable)
+    print(f"{translation.code}: {translated_count} of {len(translatable)} texts are translated")
+    return problem_count + (
+        missing_count + stale_count + len(new_entries) if translation.language.is_complete else 0
+    )
 
 
 if __name__ == "__main__":

@@ -22,11 +22,11 @@ MEANT = ".meant.ts"
 
 
 class Figures(NamedTuple):
-    """`known` are the programs of which it is known what they mean."""
+    """`known_count` counts the programs of which it is known what they mean."""
 
-    programs: int = 0
-    right: int = 0
-    known: int = 0
+    program_count: int = 0
+    right_count: int = 0
+    known_count: int = 0
     harmful: tuple[str, ...] = ()
 
 
@@ -47,13 +47,16 @@ def figures(folder: Path) -> Figures:
         if path.name.endswith(MEANT):
             continue
         result = image(repair_program(path.read_text(encoding="utf-8"), check).text)
-        meant = path.with_name(path.name.removesuffix(".ts") + MEANT)
-        is_known = meant.exists()
-        is_other = is_known and result not in (b"", image(meant.read_text(encoding="utf-8")))
+        meant_path = path.with_name(path.name.removesuffix(".ts") + MEANT)
+        has_meant_program = meant_path.exists()
+        is_harmful = has_meant_program and result not in (
+            b"",
+            image(meant_path.read_text(encoding="utf-8")),
+        )
         name = path.relative_to(folder).as_posix()
-        figures = Figures(figures.programs + 1, figures.right + bool(result),
-            figures.known + is_known,
-                        (*figures.harmful, name) if is_other else figures.harmful)  # fmt: skip
+        figures = Figures(figures.program_count + 1, figures.right_count + bool(result),
+                          figures.known_count + has_meant_program,
+                          (*figures.harmful, name) if is_harmful else figures.harmful)  # fmt: skip
     return figures
 
 
@@ -62,11 +65,12 @@ def main(arguments: Iterable[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args(None if arguments is None else [*arguments]).folder
     result = figures(folder)
-    if not result.programs:
+    if not result.program_count:
         sys.exit(f"{folder} has no programs (*.ts).")
-    print(f"right after --fix: {result.right} of {result.programs}")
+    print(f"right after --fix: {result.right_count} of {result.program_count}")
     print(
-        f"harmful: {len(result.harmful)} of {result.known} whose meaning is known", *result.harmful
+        f"harmful: {len(result.harmful)} of {result.known_count} whose meaning is known",
+        *result.harmful,
     )
     return bool(result.harmful)
 

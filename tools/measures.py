@@ -25,23 +25,25 @@ Import = ast.Import | ast.ImportFrom
 
 def main() -> int:
     tracked = _tracked_files()
-    package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
+    package_paths = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
-    trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
+    trees = {_name(path): ast.parse(path.read_bytes()) for path in package_paths}
     graph = _graph(trees)
-    late = sum(is_indented for tree in trees.values() for _, is_indented in _imports(tree))
-    for what, count in (
+    indented_count = sum(
+        is_indented for tree in trees.values() for _, is_indented in _imports(tree)
+    )
+    for label, count in (
         ("tracked lines", _lines(tracked)),
         ("tracked files", len(tracked)),
-        ("Python of the package, lines", _lines(package)),
+        ("Python of the package, lines", _lines(package_paths)),
         ("tests, lines", _lines(tests)),
         ("modules of the package", len({_module(name) for name in graph} - {""})),
         ("arrows between them", sum(map(len, arrows(graph).values()))),
         ("circles of files", len(circles(graph))),
-        ("imports that are indented", late),
+        ("imports that are indented", indented_count),
         ("words of documents, by hand", _words(tracked)),
     ):
-        print(f"{what:38}{count:9,}")
+        print(f"{label:38}{count:9,}")
     return 0
 
 
@@ -80,12 +82,12 @@ def _tracked_files() -> list[Path]:
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
     paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
     languages = PACKAGE / "languages"
-    others = {path.name for path in languages.iterdir() if path.is_dir()} - {"en", "es"}
+    other_languages = {path.name for path in languages.iterdir() if path.is_dir()} - {"en", "es"}
     return [
         path for path in paths
         if path.is_file()
-        and not others & {suffix[1:] for suffix in path.suffixes}
-        and not any(languages / other in path.parents for other in others)
+        and not other_languages & {suffix[1:] for suffix in path.suffixes}
+        and not any(languages / other in path.parents for other in other_languages)
     ]  # fmt: skip
 
 
@@ -132,15 +134,15 @@ def _imports(tree: ast.AST, is_indented: bool = False) -> Iterator[tuple[Import,
 def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[str]:
     """Yield the files of the package, other than `name`, that an import names."""
     if isinstance(each, ast.Import):
-        named = [(alias.name, "") for alias in each.names]
+        names = [(alias.name, "") for alias in each.names]
     else:
         assert not each.level, f"{name}: a relative import"
-        named = [(each.module or "", alias.name) for alias in each.names]
-    for base, member in named:
+        names = [(each.module or "", alias.name) for alias in each.names]
+    for base, member in names:
         top, _, inner = base.partition(".")
         if top == PACKAGE.name:
-            whole = f"{inner}.{member}".strip(".")
-            target = whole if whole in files else inner
+            full_name = f"{inner}.{member}".strip(".")
+            target = full_name if full_name in files else inner
             if target != name:
                 yield target
 
@@ -148,18 +150,18 @@ def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[
 def circles(graph: Graph) -> set[frozenset[str]]:
     """Return the groups of files that import each other."""
     reached = {name: _reachable(graph, name) for name in graph}
-    groups = (frozenset(other for other in found if name in reached[other])
-              for name, found in reached.items())  # fmt: skip
+    groups = (frozenset(other for other in imports if name in reached[other])
+              for name, imports in reached.items())  # fmt: skip
     return {group for group in groups if len(group) > 1}
 
 
 def _reachable(graph: Graph, start: str) -> set[str]:
     result: set[str] = set()
-    left = [start]
-    while left:
-        new = graph[left.pop()] - result
+    names_left = [start]
+    while names_left:
+        new = graph[names_left.pop()] - result
         result |= new
-        left += new
+        names_left += new
     return result
 
 

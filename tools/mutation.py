@@ -35,7 +35,7 @@ from tests.support import order
 from tiniscript.base.files import cache_folder
 from tools import ROOT
 
-LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
+TEST_LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAIT_LIMIT_S = 1800  # for what waits and does not work
 AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
@@ -117,10 +117,10 @@ SHARED = {
 PYTHON = {**SHARED, "*": "//", "//": "*", "/": "*"}
 WORDS = {"and": "or", "or": "and", "True": "False", "False": "True", "break": "pass",
          "continue": "pass"}  # fmt: skip
-OPPOSITES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
-             ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
-             ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
-OPPOSITE = dict(OPPOSITES) | {b: a for a, b in OPPOSITES}
+OPPOSITE_BRANCHES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
+                     ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
+                     ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
+OPPOSITE = dict(OPPOSITE_BRANCHES) | {b: a for a, b in OPPOSITE_BRANCHES}
 
 OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<|>>|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
 NOT = re.compile(r"!(?=[\w(])")
@@ -248,12 +248,12 @@ def mutants(module: Module) -> list[Mutant]:
         if "enerated" in text.partition("\n")[0]:
             continue
         for start, end, instead in EDITS[path.suffix](text):
-            changed = text[:start] + instead + text[end:]
+            changed_text = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
-            was, becomes = (item.splitlines()[line].strip() for item in (text, changed))
+            old_line, new_line = (item.splitlines()[line].strip() for item in (text, changed_text))
             name = path.relative_to(ROOT).as_posix()
-            if was != becomes and (name, was, becomes) not in needless:
-                mutants.append(Mutant(name, line + 1, was, becomes, changed))
+            if old_line != new_line and (name, old_line, new_line) not in needless:
+                mutants.append(Mutant(name, line + 1, old_line, new_line, changed_text))
     return mutants
 
 
@@ -264,8 +264,8 @@ def draw(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -
         row = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
         random.Random(f"{seed} {module.name}").shuffle(row)
         rows.append(row)
-    in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
-    return in_turn[:count]
+    mutants_in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
+    return mutants_in_turn[:count]
 
 
 def module_of(file: str) -> Module:
@@ -286,10 +286,10 @@ def tests_of(file: str) -> list[str]:
         is_long = name in order.LONG or name.startswith(order.PAGES)
         return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
 
-    found: dict[Path, None] = {}
+    tests: dict[Path, None] = {}
     for test in module_of(file).tests:
-        found |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
-    return [path.relative_to(ROOT).as_posix() for path in sorted(found, key=far)]
+        tests |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
+    return [path.relative_to(ROOT).as_posix() for path in sorted(tests, key=far)]
 
 
 # -- trying them -----------------------------------------------------------------------------------
@@ -318,13 +318,13 @@ class Copy:
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
         path = self.folder / mutant.file
-        right, status = path.read_bytes(), path.stat()
+        original_bytes, status = path.read_bytes(), path.stat()
         path.write_text(mutant.text, encoding="utf-8")
         os.utime(path, (status.st_atime, status.st_mtime + 2))  # Python looks at whole seconds
         try:
             return self.first_failure(tests, is_page=path.suffix == ".js")
         finally:
-            path.write_bytes(right)
+            path.write_bytes(original_bytes)
             os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
@@ -344,7 +344,7 @@ class Copy:
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",  # importing them takes longer than most tests
         }
         process = subprocess.Popen(
-            ["sh", "-c", f'ulimit -t {LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
+            ["sh", "-c", f'ulimit -t {TEST_LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
             cwd=self.folder, env=environment, start_new_session=True, text=True, errors="replace",
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
@@ -369,27 +369,29 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--file", default="*", help="only files like this one")
     parser.add_argument("--list", action="store_true", help="only list them")
     options = parser.parse_args(arguments)
-    chosen = draw(MODULES, options.count, options.seed, options.file)
+    chosen_mutants = draw(MODULES, options.count, options.seed, options.file)
     if options.list:
-        print("\n".join(mutant.name for mutant in chosen))
+        print("\n".join(mutant.name for mutant in chosen_mutants))
         return 0
-    kept = cache_folder() / f"mutation-{_code()}.json"
-    results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
-    kept.parent.mkdir(parents=True, exist_ok=True)
+    results_path = cache_folder() / f"mutation-{_code()}.json"
+    results: dict[str, str] = (
+        json.loads(results_path.read_text("utf-8")) if results_path.is_file() else {}
+    )
+    results_path.parent.mkdir(parents=True, exist_ok=True)
 
-    def work(rest: Iterator[Mutant]) -> None:
+    def work(mutants_left: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
             copy = Copy(Path(folder))
-            for mutant in rest:
+            for mutant in mutants_left:
                 if mutant.name not in results:
                     results[mutant.name] = copy.try_mutant(mutant)
-                    kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
+                    results_path.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
                 print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        list(pool.map(work, [iter(chosen)] * AT_ONCE))
-    survivors = [mutant.name for mutant in chosen if not results[mutant.name]]
-    print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
+        list(pool.map(work, [iter(chosen_mutants)] * AT_ONCE))
+    survivors = [mutant.name for mutant in chosen_mutants if not results[mutant.name]]
+    print(f"\n{len(chosen_mutants)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
 
 

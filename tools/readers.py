@@ -19,7 +19,7 @@ from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
-from tiniscript.recovery.told import READERS, ROUNDS, Wrong
+from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
 
 OF_WHOLE_LINES = (
     "_sure_findings",
@@ -30,39 +30,41 @@ OF_WHOLE_LINES = (
 def trace(text: str) -> Iterator[str]:
     """Give lines on who reads a text, round by round, and on what is told of it."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
-    rest = text
-    for _ in range(ROUNDS):
-        result = analyze(rest, kit).diagnostics
+    text_left = text
+    for _ in range(MOST_ROUNDS):
+        result = analyze(text_left, kit).diagnostics
         if not any(each.is_mistake for each in result):
             break
-        wrong = Wrong(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
-        findings = ((reader, reader(wrong)) for reader in READERS)
-        reader, finding = next((each for each in findings if each[1].told), (None, None))
+        wrong_text = WrongText(
+            Source(text_left), result, lambda each: analyze(each, kit).diagnostics, kit
+        )
+        findings = ((reader, reader(wrong_text)) for reader in READERS)
+        reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
         if reader is None or finding is None:
-            yield f"{_line(rest)}: no reader, so usage.py says what it knows of the mistake"
+            yield f"{_line(text_left)}: no reader, so usage.py says what it knows of the mistake"
             break
-        yield f"{_line(rest)}: {reader.__name__.strip('_')}"
-        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong.recovery is not None
-        candidate = wrong.recovery.whole if is_whole and wrong.recovery else None
+        yield f"{_line(text_left)}: {reader.__name__.strip('_')}"
+        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong_text.recovery is not None
+        candidate = wrong_text.recovery.whole if is_whole and wrong_text.recovery else None
         for change in candidate.changes if candidate else ():
             for step in change.steps:
                 yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
-        rest = apply_edits(rest, finding.edits)
+        text_left = apply_edits(text_left, finding.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
 def row_of(step: Step, kit: Kit) -> str:
     """Return the example of the row that makes a rewrite, or which module makes it without one."""
-    head = len(setup_of(step.before))
-    line = rewrites.Encoded(step.before[head:], Names([step.before], kit))
+    setup_length = len(setup_of(step.before))
+    line = rewrites.Encoded(step.before[setup_length:], Names([step.before], kit))
     for row in rewrites.of_tokens():
         for match in line.matches(row.pattern) if row.code is step.code else ():
             result = line.rewritten(row, match)
-            if result is not None and texts(result) == texts(step.after)[head:]:
+            if result is not None and texts(result) == texts(step.after)[setup_length:]:
                 return f"the row of {_line(' => '.join(row.example))}"
     text = "".join((item.space or "") + (item.source or item.text) for item in step.before)
     for sign in rewrites.of_signs():
-        if texts(lexemes(sign.pattern.sub(sign.becomes, text, count=1))) == texts(step.after):
+        if texts(lexemes(sign.pattern.sub(sign.replacement, text, count=1))) == texts(step.after):
             return f"the row of {_line(' => '.join(sign.example))}"
     is_word = len(step.before) == len(step.after)
     return "a word's meaning (meanings.py)" if is_word else "no row (slots.py, or a sign: lines.py)"
@@ -78,8 +80,10 @@ def _step_text(step: Step) -> str:
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:
     values = {name: value for name, value in diagnostic.values.items() if value}
-    how = "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
-    return f"{diagnostic.code.number} {values} {how}".rstrip()
+    repair_kind = (
+        "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
+    )
+    return f"{diagnostic.code.number} {values} {repair_kind}".rstrip()
 
 
 def main(arguments: Iterable[str] | None = None) -> None:

@@ -53,40 +53,45 @@ class Translation:
 
     def follow(self) -> Iterator[str]:
         """Put translations where their English texts are now; yield the keys of those that go."""
-        for name, own in self.own.items():
-            is_left = name == NAMES_CATALOGUE or bool(own.problems or self.seen_problems)
-            for row in own.rows[:] if not is_left else []:
+        for name, translation_file in self.own.items():
+            is_left = name == NAMES_CATALOGUE or bool(
+                translation_file.problems or self.seen_problems
+            )
+            for row in translation_file.rows[:] if not is_left else []:
                 if row.key not in self.groups[name]:
-                    yield from self._follow_key(name, own, row)
+                    yield from self._follow_key(name, translation_file, row)
                 if row.key in self.groups[name]:
-                    self._follow_places(name, own, row)
+                    self._follow_places(name, translation_file, row)
 
-    def _follow_key(self, name: str, own: TranslationFile, row: Row) -> Iterator[str]:
+    def _follow_key(self, name: str, translation_file: TranslationFile, row: Row) -> Iterator[str]:
         hashes = self.seen.get(f"{name} {row.key}", [])
-        known = {*hashes} - {UNKNOWN_HASH}
-        new = [key for key, group in self.groups[name].items()
-               if key not in own.texts and known <= {entry.hash for entry in group}]  # fmt: skip
-        if not known:
+        known_hashes = {*hashes} - {UNKNOWN_HASH}
+        new_keys = [
+            key
+            for key, group in self.groups[name].items()
+            if key not in translation_file.texts and known_hashes <= {entry.hash for entry in group}
+        ]
+        if not known_hashes:
             return  # somebody has mistyped a key: it is wrong
         del self.seen[f"{name} {row.key}"]
         self._is_seen_new = True
-        texts = own.texts.pop(row.key)
-        if not new:
-            own.rows.remove(row)
+        texts = translation_file.texts.pop(row.key)
+        if not new_keys:
+            translation_file.rows.remove(row)
             yield f"{name}.toml: {row.key}"
             return
-        row.key = new[0]
+        row.key = new_keys[0]
         row.text = format_rows(row.key, texts, len(texts) > 1)
-        own.texts[row.key], own.lines[row.key] = texts, row.line
+        translation_file.texts[row.key], translation_file.lines[row.key] = texts, row.line
         self.seen[f"{name} {row.key}"] = hashes
 
-    def _follow_places(self, name: str, own: TranslationFile, row: Row) -> None:
-        group, texts = self.pair_texts(name, row.key), own.texts[row.key]
+    def _follow_places(self, name: str, translation_file: TranslationFile, row: Row) -> None:
+        group, texts = self.pair_texts(name, row.key), translation_file.texts[row.key]
         if group and (len(group) > 1 or len(texts) > 1):
             if (now := _without_end([entry.translation for entry in group])) != texts:
-                own.texts[row.key] = now
+                translation_file.texts[row.key] = now
                 row.text = format_rows(row.key, now, len(group) > 1)
-                self._note(name, row.key, [entry.seen for entry in group])
+                self._note(name, row.key, [entry.seen_hash for entry in group])
 
     def pair_texts(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
@@ -108,32 +113,40 @@ class Translation:
         """Note of which English texts new translations are, and stale ones of these keys; return
         the patterns that no key has. A file with a mistake in it is left alone."""
         unused = {*patterns}
-        for name, own in self.own.items():
-            if name == NAMES_CATALOGUE or own.problems:
+        for name, translation_file in self.own.items():
+            if name == NAMES_CATALOGUE or translation_file.problems:
                 continue
-            for key in own.texts:
+            for key in translation_file.texts:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.pair_texts(name, key):
-                    new = (UNKNOWN_HASH, *[entry.seen for entry in group if fitting and entry.seen])
-                    self._note(name, key, [entry.hash if entry.seen in new else entry.seen
+                    new = (
+                        UNKNOWN_HASH,
+                        *[entry.seen_hash for entry in group if fitting and entry.seen_hash],
+                    )
+                    self._note(name, key, [entry.hash if entry.seen_hash in new else entry.seen_hash
                                            for entry in group])  # fmt: skip
-            there = {f"{name} {key}" for key in own.texts}
-            for item in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
+            current_rows = {f"{name} {key}" for key in translation_file.texts}
+            for item in [
+                at for at in self.seen if at.startswith(f"{name} ") and at not in current_rows
+            ]:
                 self._note(name, item.removeprefix(f"{name} "), [])
         return [pattern for pattern in patterns if pattern in unused]
 
     def put(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
-        own, texts = self.own[name], _without_end([entry.translation for entry in group])
-        row = next((row for row in own.rows if row.key == key), None)
-        if own.texts.get(key) != texts and texts:
+        translation_file, texts = (
+            self.own[name],
+            _without_end([entry.translation for entry in group]),
+        )
+        row = next((row for row in translation_file.rows if row.key == key), None)
+        if translation_file.texts.get(key) != texts and texts:
             if row is None:
-                own.rows.append(row := Row(key, None, 0, ""))
+                translation_file.rows.append(row := Row(key, None, 0, ""))
             row.text = format_rows(key, texts, len(group) > 1)
-            own.texts[key], own.lines[key] = texts, row.line
+            translation_file.texts[key], translation_file.lines[key] = texts, row.line
         if name != NAMES_CATALOGUE:
-            self._note(name, key, [entry.seen for entry in group])
+            self._note(name, key, [entry.seen_hash for entry in group])
 
     def put_all(self, name: str, texts: Catalogue) -> None:
         """Take what these entries say of each text that somebody translates."""
@@ -144,17 +157,17 @@ class Translation:
     def write(self) -> None:
         """Write the files that are others now."""
         self.folder.mkdir(exist_ok=True)
-        for name, own in self.own.items():
+        for name, translation_file in self.own.items():
             places = {key: place for place, key in enumerate(self.groups[name])}
-            rows = sorted(own.rows, key=lambda row: places.get(row.key, len(places)))
-            text = "".join(row.above + row.text for row in rows) + own.below
-            if not own.problems and (rows or self.path(name).is_file()):
+            rows = sorted(translation_file.rows, key=lambda row: places.get(row.key, len(places)))
+            text = "".join(row.text_above + row.text for row in rows) + translation_file.text_below
+            if not translation_file.problems and (rows or self.path(name).is_file()):
                 _write(self.path(name), text)
         if self._is_seen_new and not self.seen_problems:
             order = [f"{name} {key}" for name, keys in self.groups.items() for key in keys]
             rest = sorted(self.seen.keys() - {*order})
-            there = (at for at in [*order, *rest] if at in self.seen)
-            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in there]
+            seen_rows = (at for at in [*order, *rest] if at in self.seen)
+            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in seen_rows]
             _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:

@@ -28,32 +28,34 @@ SIMPLE = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"],
 BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 
 
-def exchange(what: str, english: dict[str, Catalogue]) -> int:
+def exchange(language_or_file: str, english: dict[str, Catalogue]) -> int:
     """Write a language into a file, or read one; return 1 where something is wrong."""
-    path = Path(what if what.endswith(END) else what + END)
+    path = Path(language_or_file if language_or_file.endswith(END) else language_or_file + END)
     if path.stem not in languages()[1:]:
         print(f"{path.stem}: no such language. Try:  python -m tools.languages {path.stem}")
         return 1
-    own = Translation(path.stem, english)
-    wrong = sum(tell(file, problems) for file, problems in own.problems())
-    if wrong or what.endswith(END):
-        return 1 if wrong else take(path, own)
-    print(f"{path}: {give(path, own)} texts. Read it with:  python -m tools.languages --po {path}")
+    translation = Translation(path.stem, english)
+    problem_count = sum(tell(file, problems) for file, problems in translation.problems())
+    if problem_count or language_or_file.endswith(END):
+        return 1 if problem_count else take(path, translation)
+    count = give(path, translation)
+    print(f"{path}: {count} texts. Read it with:  python -m tools.languages --po {path}")
     return 0
 
 
-def give(path: Path, own: Translation) -> int:
+def give(path: Path, translation: Translation) -> int:
     """Write the texts of a language; return their number."""
-    language = own.language
+    language = translation.language
     catalog = Catalog(
-        locale=own.code, project="TiniScript", version=__version__, fuzzy=False, charset="utf-8",
+        locale=translation.code, project="TiniScript", version=__version__, fuzzy=False,
+        charset="utf-8",
         header_comment=f"# {language.english_name} texts of TiniScript, in {END} for translators",
         language_team=language.english_name,
     )  # fmt: skip
     plurals = f"nplurals={len(language.forms)}; plural=({language.rule});"
     catalog.mime_headers = [("Plural-Forms", plurals)]
-    for name in own.english:
-        for entry in own.merge(name).entries.values():
+    for name in translation.english:
+        for entry in translation.merge(name).entries.values():
             if not entry.is_same:
                 _add(catalog, name, entry, language.forms)
     with path.open("wb") as file:
@@ -63,13 +65,13 @@ def give(path: Path, own: Translation) -> int:
 
 def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
     english: str | tuple[str, str] = entry.english
-    own: str | tuple[str, ...] = entry.translation.get("", "")
+    translated: str | tuple[str, ...] = entry.translation.get("", "")
     if entry.plural:
         english = (entry.english, entry.plural)
-        own = tuple(entry.translation.get(form, "") for form in forms)
+        translated = tuple(entry.translation.get(form, "") for form in forms)
     flags = {BRACES} if "{" in entry.english else set()
     message = catalog.add(
-        english, own, context=_context(name, entry.key), auto_comments=entry.notes,
+        english, translated, context=_context(name, entry.key), auto_comments=entry.notes,
         flags=flags | ({"fuzzy"} if entry.is_stale else set()),
     )  # fmt: skip
     message.flags.discard("python-format")  # `5 % of` looks like one
@@ -79,7 +81,7 @@ def _context(name: str, key: str) -> str:
     return name if name == NAMES_CATALOGUE else f"{name}/{key}"
 
 
-def take(path: Path, own: Translation) -> int:
+def take(path: Path, translation: Translation) -> int:
     """Read texts of a language; say what is wrong with one, and return 1 then."""
     try:
         with path.open("rb") as file:
@@ -90,17 +92,17 @@ def take(path: Path, own: Translation) -> int:
     except (OSError, ValueError, LookupError) as error:  # UnicodeDecodeError is a ValueError
         print(f"{path}: this cannot be read: {error}")
         return 1
-    taken = wrong = 0
+    taken_count = problem_count = 0
     for message in catalog:
-        forms = _forms(message, own.language)
+        forms = _forms(message, translation.language)
         if message.id and not message.fuzzy and all(forms.values()):
-            if why := _take_text(message, forms, own):
+            if why := _take_text(message, forms, translation):
                 print(f"{path}:{message.lineno}: {why}")
-                wrong += 1
-            taken += not why
-    own.write()
-    print(f"{path}: {taken} texts are taken")
-    return 1 if wrong else 0
+                problem_count += 1
+            taken_count += not why
+    translation.write()
+    print(f"{path}: {taken_count} texts are taken")
+    return 1 if problem_count else 0
 
 
 def _forms(message: Message, language: Language) -> Forms:
@@ -109,24 +111,24 @@ def _forms(message: Message, language: Language) -> Forms:
     return dict(zip(language.forms, message.string or ("",), strict=False))
 
 
-def _take_text(message: Message, forms: Forms, own: Translation) -> str:
+def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
     """Take one text; return why that is not possible, or nothing."""
     english, *plural = [message.id] if isinstance(message.id, str) else message.id
     name, _, key = (message.context or "").partition("/")
     key = key if name != NAMES_CATALOGUE else english
-    if key not in own.groups.get(name, {}):
+    if key not in translation.groups.get(name, {}):
         return f"there is no English text with the context {message.context or 'of nothing'}"
-    group = own.pair_texts(name, key)
+    group = translation.pair_texts(name, key)
     expected = (english, "".join(plural))
     entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
-    said, seen = entry.translation, entry.seen
-    entry.translation, entry.seen = forms, entry.hash
-    if why := misfits(entry, own.language):
-        entry.translation, entry.seen = said, seen
+    old_translation, old_seen = entry.translation, entry.seen_hash
+    entry.translation, entry.seen_hash = forms, entry.hash
+    if why := misfits(entry, translation.language):
+        entry.translation, entry.seen_hash = old_translation, old_seen
         return f"{message.context}: {why[0]}"
-    own.put(name, key, group)
+    translation.put(name, key, group)
     return ""
 
 
@@ -138,9 +140,9 @@ def language_facts(code: str) -> tuple[str, str, list[str], str]:
         return code, code, *SIMPLE[0]
     name, english_name = (locale.get_display_name(item) or code for item in (code, "en"))
     count, rule = get_plural(code)
-    known = (*SIMPLE, (_cldr_categories(count, rule, locale.plural_form), rule))
+    known_rules = (*SIMPLE, (_cldr_categories(count, rule, locale.plural_form), rule))
     expected = [locale.plural_form(number) for number in range(NUMBERS_TRIED)]
-    fitting = (item for item in known if item[0] and _forms_by(*item) == expected)
+    fitting = (item for item in known_rules if item[0] and _forms_by(*item) == expected)
     return name, english_name, *next(fitting, SIMPLE[0])
 
 
@@ -153,5 +155,5 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
 def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
     """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
     form = c2py(rule)
-    found = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
-    return [found[k] for k in range(count)] if found.keys() == {*range(count)} else []
+    category_of = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
+    return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

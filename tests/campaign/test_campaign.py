@@ -132,7 +132,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     (tmp_path / "tried").write_text("3")
     assert said(first) == said(second) == "25, old"
     results.write({"done": Result(25, 1, 7, 22, "", first)})
-    assert results.old() == ["done"]
+    assert results.outdated_goals() == ["done"]
     third = committed("tried", "3")
     assert (said(second), said(third)) == ("25, old", "25")
     monkeypatch.setattr(results, "ROOT", tmp_path / "none")  # no repository: as the page says

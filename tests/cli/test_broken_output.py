@@ -286,7 +286,7 @@ def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
     """What comes after it in `(tsc upload prog; echo done) | less` may wait for the reader."""
-    monkeypatch.setattr(streams, "UNREAD_S", 0.0)
+    monkeypatch.setattr(streams, "READER_LIMIT_S", 0.0)
     end, pipe = os.pipe()
     shared = os.dup(pipe)
     if reader == "is slow":

@@ -267,7 +267,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
     monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
-    monkeypatch.setattr("tiniscript.cli.images.ready", lambda *_, **__: "a program")
+    monkeypatch.setattr("tiniscript.cli.images.ready_program", lambda *_, **__: "a program")
     monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code)
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
@@ -362,7 +362,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     told.request = partial(Connection.request, cast(Connection, told))
     told.ask_or = partial(Connection.ask_or, cast(Connection, told))
     with pytest.raises(CommandError) as exception_info:
-        robot_broker.use(cast(Connection, told), None, Namespace())
+        robot_broker.use_broker(cast(Connection, told), None, Namespace())
     assert "older than this tsc" in exception_info.value.sentence("en")
 
 

@@ -20,7 +20,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli import streams
 from tiniscript.cli.robot import fleet as fleet_of
-from tiniscript.cli.robot.fleet import LOOK_S, Fleet
+from tiniscript.cli.robot.fleet import LOOK_INTERVAL_S, Fleet
 from tiniscript.cli.robot.member import Member, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
@@ -139,7 +139,7 @@ class Watched:
         news = SimpleNamespace(wait=self.passes, clear=lambda: None)
         monkeypatch.setattr(self.fleet, "_news", news)
 
-    def passes(self, seconds: float = LOOK_S) -> None:
+    def passes(self, seconds: float = LOOK_INTERVAL_S) -> None:
         assert self.now_s < 300, "it never ends"
         self.now_s += seconds
         if self.presses_s and self.now_s > self.presses_s[0]:
@@ -157,7 +157,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
         chance = random.Random(seed)
         times = [5.0]
         for _ in range(presses):
-            times.append(times[-1] + chance.uniform(LOOK_S, opening.CONFIRM_S - LOOK_S))
+            times.append(
+                times[-1] + chance.uniform(LOOK_INTERVAL_S, opening.CONFIRM_S - LOOK_INTERVAL_S)
+            )
         room = Watched(monkeypatch, times[:presses])
         limit_s = opening.CONFIRM_S + 1
         if how == "stop":  # nobody can read the output: that is as a first Ctrl-C
@@ -169,7 +171,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
             table = SimpleNamespace(draw=room.passes, end=lambda _: None, say=lambda _: None)
             with not_passed_on():
                 room.fleet.watch(cast(FleetTable, table) if how == "a table" else None)
-        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * LOOK_S], "each is told"
+        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * LOOK_INTERVAL_S], (
+            "each is told"
+        )
         assert len(room.stopped) == len(room.fleet.members)
         end_s = times[1] if presses > 1 else times[0] + limit_s
-        assert end_s <= room.now_s <= end_s + 3 * LOOK_S
+        assert end_s <= room.now_s <= end_s + 3 * LOOK_INTERVAL_S

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from tiniscript.cli.commands import wiring
 from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put_letter
-from tiniscript.cli.terminal.plot import ROWS, Plot, scale
+from tiniscript.cli.terminal.plot import MOST_ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.screen import BEGIN_UPDATE, END_UPDATE, Frame
 
@@ -158,7 +158,7 @@ def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     plot.take(200, 98_900, False)
     after = plot.lines(80, 20, 300)
     assert [text.plain[:8] for text in before[1:]] == [text.plain[:8] for text in after[1:]]
-    assert len(after) <= ROWS + 1
+    assert len(after) <= MOST_ROWS + 1
     assert sum(bool(text.plain[:5].strip()) for text in after[1:]) >= 3, "marks"
 
 

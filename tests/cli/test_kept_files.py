@@ -285,7 +285,7 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     def passes(seconds: float) -> None:
         nonlocal now_s
         now_s += seconds
-        assert now_s < 2 * files.LOCK_S, "it waits for ever"
+        assert now_s < 2 * files.LOCK_WAIT_S, "it waits for ever"
 
     monkeypatch.setattr(files, "monotonic", lambda: now_s)
     monkeypatch.setattr(files, "sleep", passes)

@@ -150,7 +150,7 @@ def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     key_file.add([ONE])
-    monkeypatch.setattr(files, "LOCK_S", 0.1)
+    monkeypatch.setattr(files, "LOCK_WAIT_S", 0.1)
     with files.lock_file(key_file.path):
         assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):

@@ -225,7 +225,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
-    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
+    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_LIMIT_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"

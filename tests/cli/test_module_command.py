@@ -100,7 +100,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
         done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert done.code == 3
     silent = sentences_of(sure("module_silent"), "en")
-    assert f"WRONG  module: {silent.what}\n" in done.out and silent.then in done.out
+    assert f"WRONG  module: {silent.finding}\n" in done.out and silent.advice in done.out
     assert done.err == ""
 
 

@@ -16,7 +16,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import choosers_of, chosen, options_of
+from tiniscript.cli.texts.options import choosers_of, command_of, options_of
 from tiniscript.cli.texts.verbs import (
     COMMANDS,
     FORMER_COMMANDS,
@@ -92,7 +92,7 @@ def wrong_in(command: str) -> str | None:
         return None  # `tsc --help`, `tsc COMMAND`
     if words[0] not in VERBS and not is_help(words[0]):
         return words[0]
-    name, _ = chosen(words[0] if words[0] in VERBS else "help", words[1:])
+    name, _ = command_of(words[0] if words[0] in VERBS else "help", words[1:])
     heads = {STEPS[step].head for step in steps_of(words[0])} - {words[0]}
     if heads and name == words[0] and re.fullmatch("[a-z]+", "".join(words[1:2])):
         return words[1]  # `tsc set` has its steps by a word
@@ -165,7 +165,7 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
             assert done.err.count("\n") == 1 and name in done.err
             now = done.err.rstrip("\n").rpartition("  tsc ")[2]
             verb, *words = shlex.split(now)
-            assert chosen(verb, words)[0] == FORMER_COMMANDS[name], now
+            assert command_of(verb, words)[0] == FORMER_COMMANDS[name], now
             assert "nonsense" not in now and wrong_in(now) is None
 
 
@@ -226,9 +226,9 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
 def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
     for command in COMMANDS:
         verb, *words = command_words(command).split()
-        assert chosen(verb, words)[0] == command
+        assert command_of(verb, words)[0] == command
         for flag in STEPS[command].choosers if command in STEPS else ():
             head = STEPS[command].head.split()[1:]
-            assert chosen(verb, [*head, f"{flag}=x"])[0] == command
-            assert chosen(verb, [*head, "--", flag])[0] != command
+            assert command_of(verb, [*head, f"{flag}=x"])[0] == command
+            assert command_of(verb, [*head, "--", flag])[0] != command
         assert Options(command, "en").verb == command_words(command)

@@ -21,7 +21,7 @@ from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.spreadsheet import escape_formula
-from tiniscript.cli.texts import LONGEST, Sentence, text
+from tiniscript.cli.texts import MOST_VALUE_CHARACTERS, Sentence, text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
@@ -155,7 +155,7 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
 def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
     said = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
     assert said == "x?y|x\ny"
-    assert Sentence("{a}").format(a="x" * 10_000) == "x" * LONGEST + "…"
+    assert Sentence("{a}").format(a="x" * 10_000) == "x" * MOST_VALUE_CHARACTERS + "…"
     assert Sentence("{a:>3}").format(a=1) == "  1"
     assert isinstance(text("no_verb", "en"), Sentence)
     assert CommandError(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
@@ -238,7 +238,7 @@ def printed(text: str, is_json: bool) -> tuple[str, str]:
     rows = io.StringIO()
     writer = csv.writer(rows, lineterminator="\n")
     add = lambda *cells: writer.writerow(cells)  # noqa: E731
-    printer = EventPrinter("en", is_json, rows=add, out=said.append, err=said.append)
+    printer = EventPrinter("en", is_json, rows=add, print_line=said.append, print_error=said.append)
     printer.tell(5, TextEvent(text.encode("utf-8", "surrogateescape")))
     return "\n".join(said), rows.getvalue()
 

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from tiniscript.cli.robot.remote_keys import FIRST_S, REPEAT_S, HeldKeys
+from tiniscript.cli.robot.remote_keys import FIRST_HOLD_S, REPEAT_HOLD_S, HeldKeys
 from tiniscript.link.remote import NOTHING_PRESSED, pressed_of
 
 UP, LEFT = "\x1b[A", "\x1b[D"
@@ -20,14 +20,14 @@ KEYS = (
 def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str) -> None:
     keys, held = HeldKeys(), pressed_of([name])
     assert not keys.take(typed, 10.0)
-    assert keys.pressed_at(10.0) == keys.pressed_at(10.0 + FIRST_S - 0.01) == held
-    assert keys.pressed_at(10.0 + FIRST_S) == NOTHING_PRESSED
+    assert keys.pressed_at(10.0) == keys.pressed_at(10.0 + FIRST_HOLD_S - 0.01) == held
+    assert keys.pressed_at(10.0 + FIRST_HOLD_S) == NOTHING_PRESSED
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
         assert keys.pressed_at(20.66 + k / 25 - 0.01) == (held if k else NOTHING_PRESSED)
         keys.take(typed, 20.66 + k / 25)
     last = 20.66 + 19 / 25
-    assert keys.pressed_at(last + REPEAT_S - 0.01) == held
-    assert keys.pressed_at(last + REPEAT_S) == NOTHING_PRESSED
+    assert keys.pressed_at(last + REPEAT_HOLD_S - 0.01) == held
+    assert keys.pressed_at(last + REPEAT_HOLD_S) == NOTHING_PRESSED
 
 
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:

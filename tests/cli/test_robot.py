@@ -199,7 +199,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
 ) -> None:
     from serial import SerialException
 
-    monkeypatch.setattr("tiniscript.library.opening.BUSY_S", 0)
+    monkeypatch.setattr("tiniscript.library.opening.BUSY_LIMIT_S", 0)
     for failure, word in (
         (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
         (SerialException(16, "Device or resource busy"), "another program"),

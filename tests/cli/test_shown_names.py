@@ -107,7 +107,7 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
     table: list[tuple[object, ...]] = []
     found = compiled(text)
     printer = EventPrinter(
-        "en", places=mapped(found), program=checksum(found.image), out=said.append,
+        "en", places=mapped(found), program=checksum(found.image), print_line=said.append,
         rows=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):

@@ -146,8 +146,8 @@ def of_the_table(cause: str, part: str, **values: str) -> str:
     finding = Finding(cause, True, values, part)
     found = causes.sentences_of(finding, "en")
     return (
-        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps its old trim. "
-        f"Try:  {found.then}"
+        f"tsc: {causes.label(finding, 'en')}: {found.finding}. The robot keeps its old trim. "
+        f"Try:  {found.advice}"
     )
 
 

@@ -34,7 +34,7 @@ from tiniscript.studio.hosting import Hosting
 def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a person look on, for whom everything takes long."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
 
 
 @pytest.fixture
@@ -53,9 +53,9 @@ def test_who_waits_for_a_robot_is_told(
     looks_on(monkeypatch)
     done = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
     assert done.err.startswith(f"Esperando al robot en {silent} …\n")
-    monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
-    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
 
@@ -77,7 +77,7 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
 
     monkeypatch.setattr(avrdude, "write", write)
     made = Ready("tinibot", "uno", "1", Path("x"))
-    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").how == avrdude.DONE
+    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").outcome == avrdude.DONE
 
 
 SILENT_VERBS = [
@@ -92,14 +92,14 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
     monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 500)
     real = connect.Connection.meet
 
     def meet(self: connect.Connection) -> DeviceInfo:
         device_info = real(self)
         monkeypatch.setattr("tiniscript.link.session.reply_of", lambda *_: None)
-        monkeypatch.setattr(progress, "MOMENT_S", 0.0)
+        monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
         return device_info
 
     monkeypatch.setattr(connect.Connection, "meet", meet)
@@ -148,7 +148,7 @@ def test_a_bar_is_not_full_before_all_is_done(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "BLINK_S", 0.0)
+    monkeypatch.setattr(progress, "BLINK_INTERVAL_S", 0.0)
     bar = progress.Progress("en", 200)
     for done in range(201):
         bar.draw(done)
@@ -190,7 +190,7 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
     assert len(waits) >= 2
     assert done.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
-    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     now_s += 100
     done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
     assert done.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
@@ -201,7 +201,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
 ) -> None:
     """Even where the moment is over at the same time."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
+    monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
     silence = progress.Silence("waits")
     silence.cancel()
     silence._print_wait()

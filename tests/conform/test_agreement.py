@@ -37,14 +37,14 @@ def pace_of(run: Run) -> Pace:
 
 
 def run_by_host(run: Run) -> str:
-    request = run_request(run.image, run.kit, run.senses, begin_ms=run.when[0])
+    request = run_request(run.image, run.kit, run.inputs, begin_ms=run.when[0])
     return ran(host().ask(b"P", pace_of(run).packed(run.kit) + request).decode()).trace
 
 
 def run_by_avr(chip: str, run: Run) -> str:
     pace = pace_of(run)
     return avr.ran_on(
-        chip, run.image, run.kit, run.senses, pace=pace, begin_ms=run.when[0]
+        chip, run.image, run.kit, run.inputs, pace=pace, begin_ms=run.when[0]
     ).trace  # fmt: skip
 
 
@@ -52,7 +52,7 @@ def run_by_wasm(run: Run) -> str:
     from tiniscript.vm.wasm import WasmImage
 
     machine = WasmImage(run.image, run.kit).machine
-    return trace_at(pace_of(run), machine, run.image, run.kit, run.senses)
+    return trace_at(pace_of(run), machine, run.image, run.kit, run.inputs)
 
 
 CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it has one
@@ -124,7 +124,7 @@ def judged(run: Run) -> str:
         period_ms, from_ms, to_ms = run.slow.get(sensor, (1, 0, 0))
         return from_ms <= now_ms % period_ms < to_ms
 
-    readings, max_ms, max_steps, seed = run.senses
+    readings, max_ms, max_steps, seed = run.inputs
     (every_ms,) = run.when[1]
     return interpreter.run(
         run.text, oracle_kit(run.kit), readings, max_ms, max_steps, seed, is_slow, every_ms

@@ -297,7 +297,7 @@ def test_a_slow_reader_takes_nothing_of_the_next_process(
     for _ in range(3):
         with pytest.raises(Problem) as problem:
             process.ask("run\n", 0)
-        assert problem.value.what == "more"
+        assert problem.value.kind == "more"
 
 
 def test_a_machine_that_has_ended_is_not_waited_for(

@@ -50,7 +50,7 @@ def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted:
     made = repair_program(
         program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
     )
-    assert made.text == wanted and not made.left
+    assert made.text == wanted and not made.diagnostics_left
 
 
 @each_row(
@@ -125,7 +125,7 @@ def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
     made = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
-    assert (made.text, made.left) == (wanted, [])
+    assert (made.text, made.diagnostics_left) == (wanted, [])
 
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:

@@ -8,7 +8,7 @@ from string import Formatter
 from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
-from tiniscript.cli.robot.self_test import PARTS, SIDES
+from tiniscript.cli.robot.self_test import SELF_REPORTED_PARTS, SIDES
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import CAUSES, OK, Finding
 from tiniscript.link import foreign
@@ -58,8 +58,8 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
     assert [*sentences(cause, "found")]
     for language in ("en", "es", "pt"):
         found = sentences_of(Finding(cause, True, values), language)
-        assert found.what and not found.seen
-        assert bool(found.then) == (CAUSES[cause].verdict != OK)
+        assert found.finding and not found.evidence
+        assert bool(found.advice) == (CAUSES[cause].verdict != OK)
 
 
 @each_row("cause", foreign.NAMES)
@@ -68,9 +68,9 @@ def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(c
         for heard in ("Distance: 34", ""):
             sentences = sentences_of(Finding(cause, True, {"said": heard}), language)
             assert all(sentences) and "{" not in "".join(sentences)
-            assert heard in sentences.seen or cause == foreign.ECHO_SKETCH
+            assert heard in sentences.evidence or cause == foreign.ECHO_SKETCH
         link = foreign.explain(foreign.Foreign(cause, "a\x1bb", True), language)
-        assert "a?b" in link.said and link.advice == sentences.then
+        assert "a?b" in link.said and link.advice == sentences.advice
 
 
 def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
@@ -110,7 +110,7 @@ def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_our
     assert {each for each in about_it if not CAUSES[each].part} == {
         "other_robot", "unproven", "of_another_owner", "stopped",
     }  # fmt: skip
-    assert {CAUSES[each].part for each in about_it} == {"", *PARTS}
+    assert {CAUSES[each].part for each in about_it} == {"", *SELF_REPORTED_PARTS}
 
 
 def test_one_restart_is_said_as_one() -> None:
@@ -120,4 +120,4 @@ def test_one_restart_is_said_as_one() -> None:
             values = {"count": count, "reset": "BROWN_OUT"}
             finding = Finding(cause, True, values)
             for language, word in zip(("en", "es"), words, strict=True):
-                assert sentences_of(finding, language).seen.startswith(word)
+                assert sentences_of(finding, language).evidence.startswith(word)

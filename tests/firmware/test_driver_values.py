@@ -62,7 +62,7 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     found = set()
     for is_much in (False, True):
         board = started(MANY, SHOWN[driver.used_by.split()[1]].format(name))
-        FELT[driver.pins[-1].need](board, wiring, is_much)
+        FELT[driver.pins[-1].ability](board, wiring, is_much)
         found.add(board.ran(START + 100).motors(START + 95))
     assert len(found) == 2, "its reading is the same whatever it feels"
 

@@ -73,8 +73,8 @@ def test_the_sketch_leaves_stack_free(
 ) -> None:
     stack = measure(sketches(environment), robots.load(robot), environment.partition("_")[0])
     with capsys.disabled():
-        print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
+        print(f"\n  {stack.untouched_bytes} bytes untouched, {stack.least_free} at least", end=" ")
     assert stack.program > 100 and stack.interrupt > 20
-    assert stack.least_free <= stack.untouched + 4
-    assert stack.untouched >= LEAST_FREE
+    assert stack.least_free <= stack.untouched_bytes + 4
+    assert stack.untouched_bytes >= LEAST_FREE
     assert stack.least_free >= LEAST_FREE

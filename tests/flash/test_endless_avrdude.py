@@ -42,28 +42,28 @@ def ended(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | Non
 
 @pytest.mark.parametrize("said", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
 def test_one_that_writes_for_ever(tmp_path: Path, said: str) -> None:
-    assert ended(tmp_path, WRITES.format(said=said))[0].how == avrdude.ENDLESS
+    assert ended(tmp_path, WRITES.format(said=said))[0].outcome == avrdude.ENDLESS
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
     body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
     how, found = ended(tmp_path, body)
-    assert how.how == avrdude.ENDLESS
+    assert how.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in found
 
 
 def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is never silent, and its time is over all the same."""
-    monkeypatch.setattr(avrdude, "WHOLE_S", 1.0)
+    monkeypatch.setattr(avrdude, "RUN_LIMIT_S", 1.0)
     body = 'import time\nwhile True: print(".", flush=True); time.sleep(0.02)\n'
-    assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
+    assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
 def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(avrdude, "LEAVE_S", 0.1)
+    monkeypatch.setattr(avrdude, "EXIT_LIMIT_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
-    assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
+    assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
 def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
@@ -78,7 +78,7 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
 
     monkeypatch.setattr(os, "read", slow)
     body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"
-    assert ended(tmp_path, body)[0].how == avrdude.NOBODY
+    assert ended(tmp_path, body)[0].outcome == avrdude.NOBODY
     next_ones = [end for _ in range(4) for end in socketpair()]
     for end in next_ones:
         end.setblocking(False)

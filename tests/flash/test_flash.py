@@ -310,7 +310,7 @@ def test_the_avrdude_of_another_program_is_found(
 ])  # fmt: skip
 def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
     for code in (1, 255, -9, -15):  # also where it was ended from outside
-        assert avrdude.outcome(code, said).how == how
+        assert avrdude.outcome(code, said).outcome == how
 
 
 def test_every_end_has_its_sentence() -> None:
@@ -333,7 +333,7 @@ def test_how_far_it_is(said: str, seen: object) -> None:
 
 def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
     ended = avrdude.write([str(tmp_path / "none")], UNO, "x", tmp_path, lambda seen: None)
-    assert ended.how == avrdude.FAILED and "No such file" in ended.said
+    assert ended.outcome == avrdude.FAILED and "No such file" in ended.output
 
 
 # -- the files

@@ -44,7 +44,7 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
     found = languages.entries(name, language)
     assert found.problems == []
     assert [at for at, entry in found.entries.items() if entry.translation and entry.is_stale] == []
-    assert [at for at, entry in found.entries.items() if entry.seen == UNKNOWN_HASH] == [], (
+    assert [at for at, entry in found.entries.items() if entry.seen_hash == UNKNOWN_HASH] == [], (
         f"python -m tools.languages --seen {language}"
     )
     if read_language(FOLDER / language / ABOUT_FILE).is_complete:

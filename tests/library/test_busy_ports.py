@@ -20,12 +20,12 @@ from tiniscript.base.version import __version__
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError
-from tiniscript.library.opening import BUSY_S, RETRY_S
+from tiniscript.library.opening import BUSY_LIMIT_S, RETRY_INTERVAL_S
 from tiniscript.link.errors import PortError
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
 
-SEARCH_S = 0.5 * BUSY_S, BUSY_S + 1, 10 * BUSY_S
+SEARCH_S = 0.5 * BUSY_LIMIT_S, BUSY_LIMIT_S + 1, 10 * BUSY_LIMIT_S
 
 
 class Place:
@@ -69,10 +69,12 @@ def test_a_port_that_is_free_soon_is_opened(
 ) -> None:
     """Its owner may be leaving: however long the search for it took."""
     rng = random.Random(seed)
-    place = Place(monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_S - RETRY_S))
+    place = Place(
+        monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_LIMIT_S - RETRY_INTERVAL_S)
+    )
     found: object = opening.connection_to(port, "upload", 9600, 1)
     assert found is place
-    assert place.now_s <= place.free_s + RETRY_S
+    assert place.now_s <= place.free_s + RETRY_INTERVAL_S
 
 
 @pytest.mark.parametrize("search_s", SEARCH_S)
@@ -80,12 +82,12 @@ def test_a_port_that_is_free_soon_is_opened(
 def test_a_port_that_stays_busy_is_said_to_be(
     monkeypatch: pytest.MonkeyPatch, port: str, search_s: float
 ) -> None:
-    place = Place(monkeypatch, search_s, 100 * BUSY_S)
+    place = Place(monkeypatch, search_s, 100 * BUSY_LIMIT_S)
     began_s = place.now_s + (search_s if port == PORTS[0] else 0)
     with pytest.raises(RobotError) as busy:
         opening.connection_to(port, "upload", 9600, 1)
     assert busy.value.reason == "port_busy"
-    assert BUSY_S < place.now_s - began_s < BUSY_S + 2 * RETRY_S
+    assert BUSY_LIMIT_S < place.now_s - began_s < BUSY_LIMIT_S + 2 * RETRY_INTERVAL_S
     place.reason, place.tries = "port_gone", 0
     with pytest.raises(RobotError) as gone:
         opening.connection_to(port, "upload", 9600, 1)

@@ -58,7 +58,7 @@ KNOWN: tuple[Known, ...] = (
           "port=address, is_alias=True", "port=address, is_alias=False",
           "tests/sharing/test_run_owners.py::test_a_port_with_two_names_is_listed_once"),
     Known("a turn of a task's loop", "compiler/tiniscript/semantics/duration.py",
-          "if body.least == 0 and body.most is not None:", "if False:",
+          "if body.least_ms == 0 and body.most_ms is not None:", "if False:",
           "tests/semantics/test_duration.py::test_a_program_that_ends"),
     Known("a pipe that is written to", "compiler/tiniscript/base/files.py",
           "if stat_result is not None and not stat.S_ISREG(stat_result.st_mode):", "if False:",

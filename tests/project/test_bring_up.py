@@ -20,7 +20,7 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli.commands.doctor import BLANK_FIELD, FORM_STEPS
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import chosen
+from tiniscript.cli.texts.options import command_of
 from tools.site.documents import sources
 
 LISTS = {value: ROOT / name for value, name in sources(ROOT, "docs/en/bring-up.md").items()}
@@ -108,5 +108,5 @@ def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
 @each_list
 def test_every_command_of_the_list_is_one(language: str, path: Path) -> None:
     for verb, *arguments in commands(path.read_text("utf-8")):
-        command, words = chosen(verb, arguments)
+        command, words = command_of(verb, arguments)
         assert Options(command, language).read(words) is not None

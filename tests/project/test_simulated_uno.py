@@ -45,13 +45,13 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
     with Uno(built("masked", Program=500, Interrupt=300, Later=200), watches_masked=True) as uno:
         uno.run_ms(20)
         spans = uno.longest_masked()
-    program = [span.cycles for span in spans if span.vector == 0]
+    program = [span.cycle_count for span in spans if span.vector == 0]
     entries = [span for span in spans if span.is_entry]
-    later = [span.cycles for span in spans if span.vector and not span.is_entry]
+    later = [span.cycle_count for span in spans if span.vector and not span.is_entry]
     assert len(program) == len(entries) == len(later) == 1
     assert program[0] == pytest.approx(500, abs=4)
     assert entries[0].vector == 16  # the overflow of timer 0
-    assert 300 + 4 < entries[0].cycles < 300 + 60  # with what g++ saves
+    assert 300 + 4 < entries[0].cycle_count < 300 + 60  # with what g++ saves
     assert 200 < later[0] < 200 + 60
 
 

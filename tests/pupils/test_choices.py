@@ -37,7 +37,8 @@ def test_a_program_is_checked_so_often_and_no_more() -> None:
         return [missing] * (2 * MOST_CHECKS - len(texts))
 
     assert (
-        repair_program("F(2 80)", endless).repairs == MOST_CHECKS - 1 and len(texts) == MOST_CHECKS
+        repair_program("F(2 80)", endless).repair_count == MOST_CHECKS - 1
+        and len(texts) == MOST_CHECKS
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.pupils.corpus import check, entries
 from tests.pupils.test_growth import work
-from tiniscript.recovery.told import LONGEST
+from tiniscript.recovery.told import MOST_CHARACTERS
 
 WORDS = re.compile(r"\w+|[^\w\s]")
 # Calls for each character: of a row so long that it is read word by word, and of one that is read
@@ -52,5 +52,5 @@ def test_all_cut_programs_end() -> None:
 )
 def test_a_long_row_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
-    most = MOST_CALLS if len(program) > LONGEST else MOST_CALLS_WHOLE
+    most = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
     assert work(program) < most * len(program)

@@ -67,8 +67,8 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
         edits = edits_of(diagnostic)
         assert edits is None or apply_edits(text, edits) != text
     done = repair_program(text, check)
-    assert mistakes(done.left) <= mistakes(diagnostics)
-    assert done.left == check(done.text)
+    assert mistakes(done.diagnostics_left) <= mistakes(diagnostics)
+    assert done.diagnostics_left == check(done.text)
     assert repair_program(done.text, check).text == done.text
     for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)

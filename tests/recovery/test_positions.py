@@ -18,7 +18,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import Code
 from tiniscript.library.compiling import analyze
 from tiniscript.recovery import rewrites, rows
-from tiniscript.recovery.meanings import ENDED, lexemes, texts
+from tiniscript.recovery.meanings import WORD_OF_END, lexemes, texts
 from tiniscript.recovery.search import Candidate, Recovery
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
@@ -60,7 +60,7 @@ def words_of(text: str) -> tuple[str, ...]:
 
 
 def ends(text: str) -> int:
-    return sum(each in ENDED for each in texts(lexemes(text)))
+    return sum(each in WORD_OF_END for each in texts(lexemes(text)))
 
 
 @each_row("wrong", [pytest.param(example, id=example) for example in examples()])

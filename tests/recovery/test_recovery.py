@@ -107,10 +107,10 @@ OTHERS_SAY = (codes.ARGUMENT_COUNT, codes.WRONG_END)  # the checker, or the bloc
 OF_BLOCKS = {"whole", "line", "lines", "times", "ends"}
 
 
-@each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMED])
+@each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMES_OF_CODE])
 def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     """Of a slip each value is made that a text names, and none that no text does."""
-    named = {*slips.NAMED[code]}
+    named = {*slips.NAMES_OF_CODE[code]}
     asked = []
     for part in ("message", "try"):
         text = languages.find_text("messages", f"{code.number}/{part}", "en")

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from tools.release.parts import PARTS, Clone, chosen
+from tools.release.parts import PARTS, Clone, chosen_parts
 
 
 def test_parts_bring_those_that_they_need_in_their_order() -> None:
-    assert chosen([]) == list(PARTS)
-    assert chosen(["stick"]) == ["conformance", "wheel", "stick"]
-    assert chosen(["page", "library"]) == ["studio", "page", "library"]
+    assert chosen_parts([]) == list(PARTS)
+    assert chosen_parts(["stick"]) == ["conformance", "wheel", "stick"]
+    assert chosen_parts(["page", "library"]) == ["studio", "page", "library"]
 
 
 def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(

@@ -216,7 +216,7 @@ def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
     assert uses == {"motors", "discs", *kinds}
     assert all(drivers_for(used_by) for used_by in uses)
     for driver in DRIVERS.values():
-        assert all(pin.need in NEEDS for pin in driver.pins)
+        assert all(pin.ability in NEEDS for pin in driver.pins)
         assert all(setting.low <= setting.default <= setting.high for setting in driver.settings)
 
 

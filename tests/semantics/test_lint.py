@@ -236,7 +236,7 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def watched(row: lints.Row) -> lints.Row:
         def find(*given: Any) -> None:
-            found = given[-1].found
+            found = given[-1].diagnostics
             before = len(found)
             row.find(*given)
             reported[row] |= {each.code for each in found[before:]}

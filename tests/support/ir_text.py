@@ -31,8 +31,8 @@ def program_text(program: Program) -> str:
         lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
     for task in program.tasks:
         look = "TASK"
-        if task.look is not None:
-            look = f"WHEN {task.look.reads} {expression_text(task.look.condition)}"
+        if task.until is not None:
+            look = f"WHEN {task.until.reads} {expression_text(task.until.condition)}"
         lines += [look, *_body_lines(task.body, "  ")]
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 

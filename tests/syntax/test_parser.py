@@ -17,7 +17,7 @@ from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source, Span
-from tiniscript.diagnostics.codes import ENOUGH
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 from tiniscript.syntax import ast
 from tiniscript.syntax.outline import _Line
 from tiniscript.syntax.parser import _RULES, Parser, parse
@@ -267,7 +267,7 @@ def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
 
 def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
     parsed = parse(Source("*;" * 5000))
-    assert len(parsed.diagnostics) == ENOUGH + 1
+    assert len(parsed.diagnostics) == MOST_DIAGNOSTICS + 1
 
 
 # -- any text -------------------------------------------------------------------------------------

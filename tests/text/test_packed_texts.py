@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tools.generate.packed_texts import DEEPEST, END_CODE, FIRST_LETTER, Pair, pack, unpack
+from tools.generate.packed_texts import (
+    END_CODE,
+    FIRST_LETTER,
+    MOST_NESTED_PAIRS,
+    Pair,
+    pack,
+    unpack,
+)
 from tools.generate.remark_tables import rows
 
 
@@ -47,6 +54,6 @@ def test_pairs_in_pairs_are_not_too_deep(language: str) -> None:
     def pair_of(code: int) -> Pair:
         return data.pairs[code - 1]
 
-    assert max(map(depth, range(1, 1 + len(data.pairs)))) <= DEEPEST
+    assert max(map(depth, range(1, 1 + len(data.pairs)))) <= MOST_NESTED_PAIRS
     assert END_CODE not in {code for pair in data.pairs for code in pair}
     assert len(data.pairs) < FIRST_LETTER

@@ -144,7 +144,7 @@ def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
                     f"{where} has pins that are not drawn"
                 )
                 assert shape.icon in ICONS
-                assert all(has_text(note) for note in (*shape.notes, shape.need) if note)
+                assert all(has_text(note) for note in (*shape.notes, shape.need_key) if note)
 
 
 def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:

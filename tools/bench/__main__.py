@@ -24,27 +24,27 @@ def commands() -> list[list[str]]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    shown = commands()
-    known = list(dict.fromkeys(name for name, *_ in shown))
+    rows = commands()
+    names_known = list(dict.fromkeys(name for name, *_ in rows))
     parser = argparse.ArgumentParser(
         prog="python -m tools.bench", description="Print the figures of docs/en/figures.md."
     )
-    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {known}")
-    names: list[str] = parser.parse_args(arguments).names or known
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        parser.error(f"no such benchmark: {', '.join(unknown)}")
-    failed = []
-    for name, *rest in shown:
+    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {names_known}")
+    names: list[str] = parser.parse_args(arguments).names or names_known
+    unknown_names = [name for name in names if name not in names_known]
+    if unknown_names:
+        parser.error(f"no such benchmark: {', '.join(unknown_names)}")
+    failed_names = []
+    for name, *rest in rows:
         if name not in names:
             continue
         print("\n# python -m", " ".join([f"tools.bench.{name}", *rest]), end="\n\n", flush=True)
         command = [sys.executable, "-m", f"tools.bench.{name}", *rest]
         if subprocess.run(command, check=False).returncode:
-            failed.append(" ".join([name, *rest]))
-    if failed:
-        print(f"\nnot within its limits, or not done: {', '.join(failed)}", file=sys.stderr)
-    return 1 if failed else 0
+            failed_names.append(" ".join([name, *rest]))
+    if failed_names:
+        print(f"\nnot within its limits, or not done: {', '.join(failed_names)}", file=sys.stderr)
+    return 1 if failed_names else 0
 
 
 if __name__ == "__main__":

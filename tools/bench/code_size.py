@@ -25,27 +25,27 @@ STATEMENTS = 259  # that they had when BYTES_IN_ISA_1_0 was measured
 
 
 class Measured(NamedTuple):
-    programs: int
-    statements: int
+    program_count: int
+    statement_count: int
     code_bytes: int
     opcodes: Counter[str]
 
     @property
     def per_statement(self) -> float:
-        return self.code_bytes / self.statements
+        return self.code_bytes / self.statement_count
 
 
 def corpus() -> Iterator[Compiled]:
     """Yield the compiled programs of the documents and examples."""
-    found: dict[str, str] = {}  # the robot, or nothing, of each text
+    robot_of_text: dict[str, str] = {}  # the robot, or nothing, of each text
     for path in (*documents(), *sorted(LESSONS.glob("*/*.md"))):
         if CASES not in path.parents:
             for case in read(path):
                 if "tiniscript" in case.parts:
-                    found.setdefault(case.parts["tiniscript"], _robot_of(case.parts))
+                    robot_of_text.setdefault(case.parts["tiniscript"], _robot_of(case.parts))
     for path in sorted((ROOT / "examples").glob("*.ts")):
-        found.setdefault(path.read_text(encoding="utf-8"), "")
-    for text, robot in found.items():
+        robot_of_text.setdefault(path.read_text(encoding="utf-8"), "")
+    for text, robot in robot_of_text.items():
         for name in [robot] if robot else [robots.DEFAULT, *robots.names()]:
             compiled = compile_text(text, robots.load(name).kit)
             if compiled.is_right:

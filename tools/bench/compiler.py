@@ -30,19 +30,21 @@ def main() -> None:
 
 
 def sizes() -> None:
-    matches = []
+    size_rows = []
     for name, text in zip(ROWS, PROGRAMS, strict=True):
         ours = compile_text(text, KIT)
-        matches.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
-    page.show("compiler", matches)
+        size_rows.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
+    page.show("compiler", size_rows)
 
 
-def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: int) -> list[float]:
+def median_pair(
+    own_work: Callable[[], object], other_work: Callable[[], object], run_count: int
+) -> list[float]:
     """Return the median times of both, in seconds, and of their ratio; taken in turn."""
     pairs = []
-    for _ in range(runs):
+    for _ in range(run_count):
         times = []
-        for item in (ours, theirs):
+        for item in (own_work, other_work):
             start = time.perf_counter()
             item()
             times.append(time.perf_counter() - start)

@@ -32,13 +32,17 @@ def wired(name: str, robot: Robot) -> Wiring:
     """Return the motors of a driver, on the first pins that fit and that nothing else has."""
     chip, driver = CHIPS[robot.board.chip], DRIVERS["motors", name]
     settings = {setting.key: setting.default for setting in driver.settings}
-    taken = {*chip.link_pins, 11, 13, robot.board.start_button}
+    used_pins = {*chip.link_pins, 11, 13, robot.board.start_button}
     pins = {}
-    for key, need, _, fixed, _ in driver.pins:
+    for key, ability, _, fixed, _ in driver.pins:
         if fixed is None:
-            can = (pin for pin in sorted(chip.digital) if chip.can(pin, need) and pin not in taken)
+            can = (
+                pin
+                for pin in sorted(chip.digital)
+                if chip.can(pin, ability) and pin not in used_pins
+            )
             pins[key] = next(can)
-            taken.add(pins[key])
+            used_pins.add(pins[key])
         elif driver.chosen_by(key, settings):
             pins[key] = fixed
     return Wiring(name, pins, settings)
@@ -51,9 +55,9 @@ def flash_with(name: str, project: Path, environment: str = ENVIRONMENT) -> int:
     sensors = (*lights, distance._replace(pins=BESIDE_A_SHIELD))
     motors = wired(name, tinibot)
     board = tinibot.board._replace(motors=motors, sensors=sensors, bluetooth_state=None)
-    changed = tinibot._replace(board=board)
-    own = project / "src" / "boards" / "kits" / "own.h"
-    own.write_text(firmware.header([changed], "a benchmark."), encoding="utf-8")
+    changed_robot = tinibot._replace(board=board)
+    header_path = project / "src" / "boards" / "kits" / "own.h"
+    header_path.write_text(firmware.header([changed_robot], "a benchmark."), encoding="utf-8")
     return measure(environment, project).flash
 
 
@@ -62,7 +66,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         project = Path(name) / "vm_arduino"
         shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio", "own.h"))
-        usual = 0
+        first_flash = 0
         for driver in DRIVERS_IN_ORDER:
             try:
                 flash, note = flash_with(driver, project), ""
@@ -73,9 +77,9 @@ def main() -> int:
                 smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
                 flash = flash_with(driver, project, smaller)
                 note = "without tasks"
-            usual = usual or flash
-            more = f"{flash - usual:+,}" if not note else ""
-            rows.append([f"`{driver}`", f"{flash:,}", more, note])
+            first_flash = first_flash or flash
+            difference_text = f"{flash - first_flash:+,}" if not note else ""
+            rows.append([f"`{driver}`", f"{flash:,}", difference_text, note])
     page.show("driver_size", rows)
     return 0
 

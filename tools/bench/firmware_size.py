@@ -34,7 +34,7 @@ class Sketch(NamedTuple):
     robot: str
     board: str
     flash: int
-    holds: int  # bytes of flash that the board's bootloader leaves
+    capacity: int  # bytes of flash that the board's bootloader leaves
     ram: int
     firmware: Path
 
@@ -82,11 +82,11 @@ def measure(name: str, project: Path = PROJECT) -> Sketch:
         check=False,
     )
     rows = re.findall(r"(Flash|RAM): .*used (\d+) bytes from (\d+)", completed.stdout)
-    used = {name: (int(bytes), int(holds)) for name, bytes, holds in rows}
-    if completed.returncode != 0 or len(used) != 2:
+    sizes = {name: (int(bytes), int(capacity)) for name, bytes, capacity in rows}
+    if completed.returncode != 0 or len(sizes) != 2:
         raise RuntimeError(completed.stdout[-4000:])
     elf = project / ".pio" / "build" / name / "firmware.elf"
-    return Sketch(*parts_of(name), *used["Flash"], used["RAM"][0], elf)
+    return Sketch(*parts_of(name), *sizes["Flash"], sizes["RAM"][0], elf)
 
 
 def main() -> int:
@@ -96,17 +96,17 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 2
     is_enough = True
-    found = []
+    size_rows = []
     for sketch in sketches:
-        is_enough &= sketch.flash <= sketch.holds
+        is_enough &= sketch.flash <= sketch.capacity
         free = "-"
         if not uno.missing():
             stack = firmware_stack.measure(sketch.firmware, robots.load(sketch.robot), sketch.board)
             is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
             free = f"{stack.least_free:,}"
-        sizes = [f"{size:,}" for size in (sketch.flash, sketch.holds, sketch.ram)]
-        found.append([row_of(sketch.robot, sketch.board), *sizes, free])
-    page.show("firmware_size", found)
+        sizes = [f"{size:,}" for size in (sketch.flash, sketch.capacity, sketch.ram)]
+        size_rows.append([row_of(sketch.robot, sketch.board), *sizes, free])
+    page.show("firmware_size", size_rows)
     if uno.missing():
         print(uno.missing())
     return int(not is_enough)

@@ -29,7 +29,7 @@ HEAP_START_SYMBOL = "_end"  # the symbol after all variables
 RAM_START = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS_AT_ONCE = 8  # at once
-STEPS = 40
+MOST_STEPS = 40
 # What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
 TYPED = (
     "HELP\n",
@@ -147,7 +147,7 @@ def step_deep(wired: Wired) -> None:
     session = wired.session
     require_ok(wired, session.break_at([0]))
     require_ok(wired, session.start())
-    for _ in range(STEPS):
+    for _ in range(MOST_STEPS):
         wired.run(60)
         require_ok(wired, session.read_variables())
         require_ok(wired, session.read_tasks())
@@ -161,11 +161,11 @@ def type_deep(uno: Uno, kit: Kit) -> None:
     Raises RuntimeError where one is not done.
     """
     uno.run_ms(4000)
-    before = len(uno.sent_bytes)
+    byte_count_before = len(uno.sent_bytes)
     for text in TYPED:
         uno.send(text.encode())
         uno.run_ms(2 * len(text) + 400)
-    sentence = bytes(byte.value for byte in uno.sent_bytes[before:]).decode("latin-1")
+    sentence = bytes(byte.value for byte in uno.sent_bytes[byte_count_before:]).decode("latin-1")
     for answer in ANSWERS:
         if answer not in sentence:
             raise RuntimeError(f"the robot has not said {answer} but {sentence}")
@@ -197,27 +197,27 @@ def require_ok(wired: Wired, request: PendingRequest[Any]) -> None:
 
 def longest_program(kit: Kit, room: int) -> Image:
     """Return a program that fills a robot, goes as deep as one can, and uses all that there is."""
-    more = 0
-    while len((larger := image_of(deep_program_text(kit, more + 1), kit)).code) <= room:
-        more += 1
+    show_count = 0
+    while len((larger := image_of(deep_program_text(kit, show_count + 1), kit)).code) <= room:
+        show_count += 1
         image = larger
     return image
 
 
 def all_devices(kit: Kit) -> list[str]:
     """Return statements that read each sensor and set each actuator."""
-    reads = [
+    read_statements = [
         f"Y = {sensor.name}" if sensor.kind == NUMBER else f"IF({sensor.name}); Y = 1; ENDIF"
         for sensor in kit.sensors
     ]
-    sets = [
+    set_statements = [
         f"{actuator.name}({'X' if actuator.kind == NUMBER else 'TRUE'})"
         for actuator in kit.actuators
     ]
-    return [*reads, *sets]
+    return [*read_statements, *set_statements]
 
 
-def deep_program_text(kit: Kit, more: int) -> str:
+def deep_program_text(kit: Kit, show_count: int) -> str:
     lines = ["X = 0; Y = 0", "DEF D1", *all_devices(kit)]
     lines += ["BEEP(0.02, 440 + X)", "SHOW(X * 1.5 / 7)", "END_DEF"]
     for number in range(2, CALLS_AT_ONCE + 1):
@@ -227,5 +227,5 @@ def deep_program_text(kit: Kit, more: int) -> str:
         sum_of_all = f"0.{number + 1} {'+-*'[number % 3]} ({sum_of_all})"
     lines += ["LOOP(FOREVER)", "X = X % 100 + 1", "M(50, 0 - 50)", f"D{CALLS_AT_ONCE}"]
     lines += [f"Z = {sum_of_all}", "F(0.05, 80) UNTIL(X > 50 AND NOT (Y < 3 OR Z > 1))"]
-    lines += [f"SHOW(X + {number})" for number in range(more)]
+    lines += [f"SHOW(X + {number})" for number in range(show_count)]
     return "SI|" + "; ".join([*lines, "END_LOOP"])

@@ -26,10 +26,10 @@ AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
 EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
 PAD_AHEAD = Pressed(0, 0, 80)
 PWM_PINS = MOTORS[:2]
-TRIES = 300
+TRY_COUNT = 300
 HELD_MS = (100, 400)  # and let go
-SAID_MS = 100
-ANEW_MS = 400  # after a loss, until words arrive
+SAY_INTERVAL_MS = 100
+RECONNECT_MS = 400  # after a loss, until words arrive
 LOST_MS = HOLD_MS + 50  # it stays attached
 # At most, at the slowest, where the program looks at once, by baud. What is let go may come just
 # after what is held was said anew, and waits for the answer or for GAP_MS.
@@ -40,7 +40,7 @@ ROWS = (
     "stick held, to the motor pins",
     "stick released, to the motor pins",
     "stick held, to the motor pins, with `examples/remote.ts`, which looks 20 times a second",
-    f"lost line, to motors off, in {TRIES} of {TRIES}",
+    f"lost line, to motors off, in {TRY_COUNT} of {TRY_COUNT}",
 )
 FORMS = (".1f", ".1f", ".1f", ".0f")
 
@@ -62,26 +62,28 @@ class Hand:
     def __exit__(self, *raised: object) -> None:
         self._board.close()
 
-    def change(self, held: Pressed) -> float:
+    def change(self, pressed: Pressed) -> float:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
-        begun, told = self._begin()
-        self._hold(held)
-        return self._ms_from(begun, told, held != NOTHING_PRESSED)
+        begin_cycle, event_count = self._begin()
+        self._hold(pressed)
+        return self._ms_from(begin_cycle, event_count, pressed != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
-        self._hold(PAD_AHEAD, ANEW_MS)
-        begun, told = self._begin()
+        self._hold(PAD_AHEAD, RECONNECT_MS)
+        begin_cycle, event_count = self._begin()
         for _ in range(LOST_MS):  # what both say does not arrive
             self._wired.session.poll(self._wired.now_ms)
             self._board.run_ms(1)
-        heard = [event.cycle for event in self._board.events[told:] if event.what == "received"]
-        return self._ms_from(max([begun, *heard]), told, False)
+        received_cycles = [
+            event.cycle for event in self._board.events[event_count:] if event.what == "received"
+        ]
+        return self._ms_from(max([begin_cycle, *received_cycles]), event_count, False)
 
-    def _hold(self, held: Pressed, more_ms: int = 0) -> None:
+    def _hold(self, pressed: Pressed, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._chance.randint(*HELD_MS)):
-            if ms % SAID_MS == 0:  # who says nothing for a while holds nothing
-                self._wired.session.press(*held)
+            if ms % SAY_INTERVAL_MS == 0:  # who says nothing for a while holds nothing
+                self._wired.session.press(*pressed)
             self._wired.run(1)
 
     def _begin(self) -> tuple[int, int]:
@@ -89,51 +91,53 @@ class Hand:
         self._board.run_to(self._board.cycle + self._chance.randrange(CYCLES_PER_MS))
         return self._board.cycle, len(self._board.events)
 
-    def _ms_from(self, begun: int, told: int, are_on: bool) -> float:
+    def _ms_from(self, begin_cycle: int, event_count: int, are_on: bool) -> float:
         """Raises RuntimeError where the motors are not as they must be in the end."""
-        matches = [
+        motor_events = [
             event
-            for event in self._board.events[told:]
+            for event in self._board.events[event_count:]
             if event.what == "pin" and event["pin"] in MOTORS
         ]
-        last = {event["pin"]: event["is"] for event in matches}
+        last = {event["pin"]: event["is"] for event in motor_events}
         if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
             raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
-        return (matches[-1].cycle - begun) / CYCLES_PER_MS
+        return (motor_events[-1].cycle - begin_cycle) / CYCLES_PER_MS
 
 
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
-        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRIES)]
-        losses = [hand.lose() for _ in range(TRIES)]
+        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRY_COUNT)]
+        losses = [hand.lose() for _ in range(TRY_COUNT)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
-        seldom = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRIES)]
-    return [*map(list, zip(*changes, strict=True)), seldom, losses]
+        pause_ms = [
+            (hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRY_COUNT)
+        ]
+    return [*map(list, zip(*changes, strict=True)), pause_ms, losses]
 
 
 def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, list[list[float]]], _: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
-    by_row = zip(*found.values(), strict=True)
+    by_row = zip(*figures_by_baud.values(), strict=True)
     page.show("keys", [
         (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in figures))
         for row, form, figures in zip(ROWS, FORMS, by_row, strict=True)
     ])  # fmt: skip
-    return all(is_kept(baud, *rows) for baud, rows in found.items())
+    return all(is_kept(baud, *rows) for baud, rows in figures_by_baud.items())
 
 
 def is_kept(
-    baud: int, held: list[float], let_go: list[float], _: list[float], lost: list[float]
+    baud: int, held_ms: list[float], let_go_ms: list[float], _: list[float], lost_ms: list[float]
 ) -> bool:
     """Return whether the slowest are as they must be."""
     return (
-        max(held) <= HELD_MOST_MS[baud]
-        and max(let_go) <= LET_GO_MOST_MS[baud]
-        and max(lost) <= LOST_MOST_MS
+        max(held_ms) <= HELD_MOST_MS[baud]
+        and max(let_go_ms) <= LET_GO_MOST_MS[baud]
+        and max(lost_ms) <= LOST_MOST_MS
     )
 
 

@@ -22,17 +22,17 @@ from tiniscript.link.session import Session
 BAUD = 115_200
 ROUND_TRIP_MS = 40
 MUST = 3.0  # times the wire's time
-MOST_MS = 60_000
+LONGEST_UPLOAD_MS = 60_000
 MOVE = BY_NAME["MOVE8_F"].code
 
 
-class Took(NamedTuple):
+class UploadTimes(NamedTuple):
     """Of an upload: its code, ms until its receipt is there, the wire's ms, frames and bytes."""
 
     code_bytes: int
     took_ms: int
     wire_ms: float
-    frames: int
+    frame_count: int
     sent_bytes: int
 
     @property
@@ -70,9 +70,9 @@ def program(code_bytes: int) -> Image:
 
 def upload(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
-) -> Took:  # fmt: skip
+) -> UploadTimes:  # fmt: skip
     """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
-    there, back = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
+    to_robot, from_robot = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
     session = Session(7, baud, kit)
     image = program(code_bytes)
     hello = session.hello()
@@ -86,16 +86,16 @@ def upload(
         if request is not None:
             frames += len([part for part in data.split(b"\0") if part])
             sent_bytes += len(data)
-        there.send(data, now_ms)
+        to_robot.send(data, now_ms)
         now_ms += 1
-        back.send(robot.step(there.receive(now_ms)), now_ms)
-        session.receive(back.receive(now_ms), now_ms)
-        if now_ms > MOST_MS:
+        from_robot.send(robot.step(to_robot.receive(now_ms)), now_ms)
+        session.receive(from_robot.receive(now_ms), now_ms)
+        if now_ms > LONGEST_UPLOAD_MS:
             raise RuntimeError("the upload has no end")
     if request.outcome.status != OK:
         raise RuntimeError(f"the robot has not taken it: {request.outcome}")
     wire_ms = code_bytes * 10_000 / baud
-    return Took(code_bytes, now_ms - began_ms, wire_ms, frames, sent_bytes)
+    return UploadTimes(code_bytes, now_ms - began_ms, wire_ms, frames, sent_bytes)
 
 
 def main() -> int:
@@ -112,7 +112,7 @@ def main() -> int:
         robot.wait(300)
         took = upload(robot, profile.kit.fingerprint, code_bytes)
         robot.close()
-        print(f"| {took.code_bytes} | {took.frames} | {took.sent_bytes} | {took.took_ms} ms "
+        print(f"| {took.code_bytes} | {took.frame_count} | {took.sent_bytes} | {took.took_ms} ms "
               f"| {took.times:.2f} |")  # fmt: skip
         is_enough = code_bytes < profile.board.program_bytes or took.times <= MUST
     print(f"\nThe last one must take {MUST:.0f} times the wire's time at most.")

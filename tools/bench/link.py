@@ -48,7 +48,7 @@ OTHER_BOARDS = {  # by environment
     "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before",
 }  # fmt: skip
 UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")  # they are held to the limit as well
-UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
+UPLOAD_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
 T = TypeVar("T")
 
@@ -70,21 +70,21 @@ def build(baud: int, folder: Path) -> Path:
     project = copy_project(folder / f"vm_arduino_{baud}")
     kits = project / "src" / "boards" / "kits"
     header = (kits / "tinibot.h").read_text(encoding="utf-8")
-    own, count = re.subn(r"kBaud = \d+;", f"kBaud = {baud};", header)
+    own_header, count = re.subn(r"kBaud = \d+;", f"kBaud = {baud};", header)
     if not count:
         raise RuntimeError("tinibot.h says nothing of a baud")
-    (kits / "own.h").write_text(own, encoding="utf-8")
+    (kits / "own.h").write_text(own_header, encoding="utf-8")
     firmware_size.measure("uno", project)
     return project / ".pio" / "build" / "uno" / "firmware.elf"
 
 
-def first_move(board: Uno, since: int) -> int:
+def first_move(board: Uno, since_cycle: int) -> int:
     """Return the cycle at which the last of the pins that a motor needs is on."""
     changes = [
         change.cycle
         for pin in MOTORS
         for change in board.pins.history(pin)
-        if change.cycle > since and change.state in ("high", "pwm")
+        if change.cycle > since_cycle and change.state in ("high", "pwm")
     ]
     return max(changes)
 
@@ -93,8 +93,8 @@ def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
         wired = connect(board, robots.load(ROBOT), baud)
         require_ok(wired, wired.session.hello())
-        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOADS))
-        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))
+        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOAD_COUNT))
+        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOAD_COUNT))
     stop = stops.slowest(firmware, robots.load(ROBOT), "uno", baud)
     return Figures(start_ms, live_us, stop)
 
@@ -111,15 +111,15 @@ def measure_start(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple
     board.run_to(board.cycle + wait_ms * PHASE_CYCLES)
     began = board.cycle
     require_ok(wired, session.live(image.code) if is_live else session.upload(image))
-    moved = first_move(board, began)
-    heard = [byte for byte in board.received_bytes if byte.cycle <= moved]
-    ends = [k for k, byte in enumerate(heard[:-1]) if byte.value == 0]
-    frame = heard[ends[-1] + 1 :]
+    move_cycle = first_move(board, began)
+    bytes_before_move = [byte for byte in board.received_bytes if byte.cycle <= move_cycle]
+    ends = [k for k, byte in enumerate(bytes_before_move[:-1]) if byte.value == 0]
+    frame = bytes_before_move[ends[-1] + 1 :]
     session.stop(wired.now_ms)
     wired.run(wait_ms)
     return (
-        (moved - frame[0].began) / CYCLES_PER_MS,
-        (moved - frame[-1].cycle) / CYCLES_PER_MS * 1000,
+        (move_cycle - frame[0].began) / CYCLES_PER_MS,
+        (move_cycle - frame[-1].cycle) / CYCLES_PER_MS * 1000,
     )
 
 
@@ -136,8 +136,8 @@ def on_each_baud(
         return 2
     with tempfile.TemporaryDirectory() as name:
         try:
-            found = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
-            return int(not are_kept(found, Path(name)))
+            figures_by_baud = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
+            return int(not are_kept(figures_by_baud, Path(name)))
         except RuntimeError as failed:
             print(failed, file=sys.stderr)
             return 2
@@ -147,9 +147,9 @@ def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, Figures], folder: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
     """Print the figures, and those of the other sketches; return whether all are kept."""
-    figures = [*found.values()]
+    figures = [*figures_by_baud.values()]
     page.show("link", [
         (ROWS[0], *(f"{figure.start_ms:.1f} ms" for figure in figures)),
         (ROWS[1], *(f"{figure.live_us:.0f} µs" for figure in figures)),
@@ -157,15 +157,17 @@ def print_figures(found: dict[int, Figures], folder: Path) -> bool:
         (ROWS[3], *(f"{figure.stop.median_us:.1f} µs" for figure in figures)),
         (ROWS[4], *(f"{figure.stop.together_us:.1f} µs" for figure in figures)),
     ])  # fmt: skip
-    others = measure_other_stops(folder)
+    stop_of_sketch = measure_other_stops(folder)
     page.show("link", [
-        (row, f"{others[name].us:.1f} µs", f"{others[name].together_us:.1f} µs")
+        (row, f"{stop_of_sketch[name].us:.1f} µs", f"{stop_of_sketch[name].together_us:.1f} µs")
         for name, row in OTHER_BOARDS.items()
-    ], which=1)  # fmt: skip
-    late = [name for name, stop in others.items() if stop.us > STOP_US]
-    if late:
-        print(f"stops later than after {STOP_US} µs: {', '.join(late)}", file=sys.stderr)
-    return not late and all(is_kept(baud, figure) for baud, figure in found.items())
+    ], position=1)  # fmt: skip
+    late_sketches = [name for name, stop in stop_of_sketch.items() if stop.us > STOP_US]
+    if late_sketches:
+        print(f"stops later than after {STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr)
+    return not late_sketches and all(
+        is_kept(baud, figure) for baud, figure in figures_by_baud.items()
+    )
 
 
 def measure_other_stops(folder: Path) -> dict[str, stops.Slowest]:

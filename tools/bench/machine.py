@@ -51,14 +51,14 @@ def main() -> int:
 
 
 def cycles() -> None:
-    alone = sketch = ["-" for _ in workloads.WORKS]
+    machine_cells = sketch_cells = ["-" for _ in workloads.WORKS]
     if not avr_bench.missing():
-        alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
+        machine_cells = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not uno.missing():
         firmware = firmware_size.measure("uno").firmware
-        matches = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
-        sketch = [f"{item:,.0f}" for item in matches]
-    rows = zip(ROWS, (alone, sketch), strict=True)
+        cycle_counts = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
+        sketch_cells = [f"{item:,.0f}" for item in cycle_counts]
+    rows = zip(ROWS, (machine_cells, sketch_cells), strict=True)
     page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):
         print(f"\n{why}")

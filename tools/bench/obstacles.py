@@ -23,11 +23,11 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tools import ROOT
 from tools.bench import page
 
-SECONDS = 1800  # of the robot's time
-SEEDS = 20
+RUN_SECONDS = 1800  # of the robot's time
+SEED_COUNT = 20
 STUCK_S = 5
 STUCK_CM = 3.0
-LOOK_MS = 500
+LOOK_INTERVAL_MS = 500
 PROGRAMS = ("away.ts", "obstacle.ts", "explore.ts")
 ROWS = (
     "`away.ts`, four lines with a `WHEN`",
@@ -38,33 +38,33 @@ ROBOT = "tinibot32"
 
 
 class Drive(NamedTuple):
-    contacts: int
+    contact_count: int
     driven_m: float
     stood_s: float  # the longest time in one place
 
 
 def main() -> None:
-    matches = []
+    figure_rows = []
     for row, name in zip(ROWS, PROGRAMS, strict=True):
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
-            drives = list(pool.map(partial(drive, text), range(SEEDS)))
-        contacts = [item.contacts for item in drives]
+            drives = list(pool.map(partial(drive, text), range(SEED_COUNT)))
+        contacts = [item.contact_count for item in drives]
         metres = median(item.driven_m for item in drives)
         stood_s = max(item.stood_s for item in drives)
         stuck = sum(item.stood_s >= STUCK_S for item in drives)
         longest = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
-        matches.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
+        figure_rows.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
             longest,
-                      f"{stuck} of {SEEDS}"))  # fmt: skip
-    page.show("obstacles", matches)
+                            f"{stuck} of {SEED_COUNT}"))  # fmt: skip
+    page.show("obstacles", figure_rows)
 
 
 def drive(text: str, seed: int) -> Drive:
     """Return how a program drives that begins at a place of this seed."""
     chance = Random(seed)
     profile = robots.load(ROBOT)
-    board = profile.board._replace(max_run_seconds=SECONDS + 60)  # ten minutes would end it
+    board = profile.board._replace(max_run_seconds=RUN_SECONDS + 60)  # ten minutes would end it
     profile = profile._replace(board=board)
     world = worlds.load("obstacles")
     start = world.start
@@ -76,7 +76,7 @@ def drive(text: str, seed: int) -> Drive:
     robot = VirtualRobot(profile, world._replace(start=start), settings)
     Talk(robot).upload(text, is_detached=True)
     ends_ms = robot.now_ms
-    over_ms = ends_ms + SECONDS * 1000
+    over_ms = ends_ms + RUN_SECONDS * 1000
     place = robot.pose
     stood_ms = 0
     while ends_ms < over_ms:
@@ -85,7 +85,7 @@ def drive(text: str, seed: int) -> Drive:
             stood_ms = max(stood_ms, ends_ms - since_ms)
             if ends_ms >= over_ms:
                 break
-            ends_ms += LOOK_MS
+            ends_ms += LOOK_INTERVAL_MS
             robot.step(ends_ms)
             robot.take_events()
         place = robot.pose

@@ -43,26 +43,26 @@ def format_row(row: Sequence[str]) -> str:
 
 def tables(name: str) -> list[Table]:
     """Return the tables in the section of a benchmark, `link`."""
-    matches: list[list[str]] = []
+    table_lines: list[list[str]] = []
     is_inside = is_table = False
     for line in PAGE.read_text(encoding="utf-8").splitlines():
         if match := _BEGINS.match(line):
             is_inside = match[1] == f"tools.bench.{name}"
         if line.startswith("|") and is_inside:
             if not is_table:
-                matches.append([])
-            matches[-1].append(line)
+                table_lines.append([])
+            table_lines[-1].append(line)
         is_table = line.startswith("|")
-    return [Table(head, rule, tuple(rows)) for head, rule, *rows in matches]
+    return [Table(head, rule, tuple(rows)) for head, rule, *rows in table_lines]
 
 
-def show(name: str, found: Sequence[Sequence[str]], which: int = 0, keys: int = 1) -> None:
-    """Print a table of the page with these rows, each known by its first cells, `keys` of them.
+def show(name: str, rows: Sequence[Sequence[str]], position: int = 0, key_cells: int = 1) -> None:
+    """Print a table of the page with these rows, each known by its first `key_cells` cells.
 
     Raises LookupError for a row that the page lacks, ValueError for one with more cells or fewer.
     """
-    table = tables(name)[which]
-    placed = sorted((table.row_of(row[:keys]), format_row(row)) for row in found)
+    table = tables(name)[position]
+    placed = sorted((table.row_of(row[:key_cells]), format_row(row)) for row in rows)
     for place, row in placed:
         if len(cells(row)) != len(cells(table.rows[place])):
             raise ValueError(f"{PAGE.name} has other columns than {row}")

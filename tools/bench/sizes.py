@@ -180,7 +180,7 @@ class Part(NamedTuple):
 
     program: str
     always: str
-    use: str
+    statement: str
     folders: tuple[str, ...]  # of the sources that are linked, besides the machine
     flags: tuple[str, ...]  # for the AVR
 
@@ -226,33 +226,33 @@ def size(name: str, chip: str = AVR) -> Size:
     On the AVR the stack comes on top.
     """
     part = PARTS[name]
-    with_it, without = (_build(part, part.always + use, chip) for use in (part.use, ""))
-    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+    with_it, size_without = (_build(part, part.always + use, chip) for use in (part.statement, ""))
+    return Size(with_it.flash - size_without.flash, with_it.ram - size_without.ram)
 
 
 @lru_cache
-def _build(part: Part, use: str, chip: str) -> Size:
-    program = part.program.replace("USE", use)
+def _build(part: Part, statement: str, chip: str) -> Size:
+    program = part.program.replace("USE", statement)
     if chip != AVR:
         return Size(*chips.size(EMULATED[chip], program, *part.folders))
     folders = sorted(("vm", *part.folders))
     code = [path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))]
     with tempfile.TemporaryDirectory() as folder:
-        source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
+        source, binary = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
         _finished_code(
-            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
+            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(binary)
         )
-        sentence = _finished_code("avr-size", str(made))
+        sentence = _finished_code("avr-size", str(binary))
     text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
 def _finished_code(*command: str) -> str:
-    ran = subprocess.run(command, capture_output=True, text=True)
-    if ran.returncode != 0:
-        raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
-    return ran.stdout
+    completed = subprocess.run(command, capture_output=True, text=True)
+    if completed.returncode != 0:
+        raise RuntimeError(f"{command[0]} fails:\n{completed.stderr[:4000]}")
+    return completed.stdout
 
 
 def main() -> int:

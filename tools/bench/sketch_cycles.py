@@ -59,15 +59,15 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     motor = f"D{ROBOT.board.motors.pins['left_pwm']}"
     image = image_of(text, ROBOT.kit)
     session.events()
-    since = len(board.events)
+    event_count = len(board.events)
     require_ok(wired, session.upload(image, saves=False, is_detached=True))
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
     wired.run(SHOW_MS)
-    shown: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
-    began, ended = (
-        next(event.cycle for event in board.events[since:]
+    values_shown: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
+    begin_cycle, end_cycle = (
+        next(event.cycle for event in board.events[event_count:]
              if event.what == "pin" and event["pin"] == motor and event["is"] == state)
         for state in ("pwm", "low")
     )  # fmt: skip
-    return ended - began, shown
+    return end_cycle - begin_cycle, values_shown

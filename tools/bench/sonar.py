@@ -19,14 +19,14 @@ from tiniscript import compile_text, robots
 from tiniscript.robots import firmware
 from tools.bench import page
 
-SEEDS = 40
-SAMPLES = 100
+SEED_COUNT = 40
+SAMPLE_COUNT = 100
 SPEED_CM_MS = 0.05
 LOOKS = "SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP"
 STOPS = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
 NEAR = f"pwm {90 * 653 >> 8}"
-PING_MS = 30.07  # from ping to ping of a program that asks all the time
-PHASES = 12
+PING_INTERVAL_MS = 30.07  # from ping to ping of a program that asks all the time
+PHASE_COUNT = 12
 NEAR_CM = 15.0
 TRUSTS = "#define tiniscript_trusts_samples\n"
 ROWS = (
@@ -37,9 +37,9 @@ ROWS = (
 )
 
 
-class Looked(NamedTuple):
-    readings: int
-    wrong: int
+class WrongReadings(NamedTuple):
+    reading_count: int
+    wrong_count: int
 
 
 def board_of(text: str, is_trusting: bool) -> Board:
@@ -57,20 +57,20 @@ def board_of(text: str, is_trusting: bool) -> Board:
     return board
 
 
-def looked(seed: int, is_trusting: bool) -> Looked:
-    true, heard = approaching(seed, SAMPLES)
+def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
+    true_distances, distances_heard = approaching(seed, SAMPLE_COUNT)
     board = board_of(LOOKS, is_trusting)
     trigger, echo = wire(board.robot)
     board.watch(trigger)
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard])
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_heard])
     times = pings(board.ran(START + 2900), trigger)
     readings = driven_ms(board, 1)
-    wrong = 0
+    wrong_count = 0
     for ms in readings:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
-        wrong += abs(cm - true[number]) > max(4, 0.2 * true[number] + 3)
-    return Looked(len(readings), wrong)
+        wrong_count += abs(cm - true_distances[number]) > max(4, 0.2 * true_distances[number] + 3)
+    return WrongReadings(len(readings), wrong_count)
 
 
 def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
@@ -81,8 +81,8 @@ def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool
     board = board_of(STOPS, is_trusting)
     trigger, echo = wire(board.robot)
     board.watch(trigger)
-    begins = phase * PING_MS
-    cms = [distances(number * PING_MS + begins) for number in range(60)]
+    begins = phase * PING_INTERVAL_MS
+    cms = [distances(number * PING_INTERVAL_MS + begins) for number in range(60)]
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in cms])
     first = pings(board.ran(START + 1500), trigger)[0]
     near = next(ms for ms in range(1500) if distances(ms + begins) < NEAR_CM)
@@ -99,16 +99,23 @@ def is_there(ms: float) -> float:
 
 
 def main() -> None:
-    found: list[list[str]] = [[row] for row in ROWS]
+    figure_rows: list[list[str]] = [[row] for row in ROWS]
     for is_trusting in (True, False):
-        runs = [looked(seed, is_trusting) for seed in range(SEEDS)]
-        wrong, readings = sum(run.wrong for run in runs), sum(run.readings for run in runs)
-        found[0].append(f"{wrong:,} of {readings:,}")
-        found[1].append(f"{sum(run.wrong > 0 for run in runs)} of {SEEDS}")
+        runs = [look_at_wall(seed, is_trusting) for seed in range(SEED_COUNT)]
+        wrong_count, readings = (
+            sum(run.wrong_count for run in runs),
+            sum(run.reading_count for run in runs),
+        )
+        figure_rows[0].append(f"{wrong_count:,} of {readings:,}")
+        figure_rows[1].append(f"{sum(run.wrong_count > 0 for run in runs)} of {SEED_COUNT}")
         for row, way in ((2, comes), (3, is_there)):
-            late = [late_ms(way, phase / PHASES, is_trusting) for phase in range(PHASES)]
-            found[row].append(f"{median(late):.0f} ms, {max(late):.0f} ms")
-    page.show("sonar", found)
+            late_ms_of_phases = [
+                late_ms(way, phase / PHASE_COUNT, is_trusting) for phase in range(PHASE_COUNT)
+            ]
+            figure_rows[row].append(
+                f"{median(late_ms_of_phases):.0f} ms, {max(late_ms_of_phases):.0f} ms"
+            )
+    page.show("sonar", figure_rows)
 
 
 if __name__ == "__main__":

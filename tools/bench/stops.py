@@ -54,7 +54,7 @@ class Place(NamedTuple):
 class Slowest(NamedTuple):
     """Of how many stops, and microseconds; `together` is what they would take at most."""
 
-    stops: int
+    stop_count: int
     us: float
     median_us: float
     together_us: float
@@ -124,12 +124,12 @@ class Busy:
             self._level = not self._level
             for name in self._discs:
                 chip.drive(name, self._level, at=last + place.edge)
-        since = len(chip.events)
+        event_count = len(chip.events)
         chip.send(text + STOP, begin)
         chip.run_to(last + round(BITS_PER_BYTE * BITS_PER_BYTE * bit))
-        new = chip.events[since:]
+        new = chip.events[event_count:]
         zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
-        off = [
+        off_cycles = [
             event.cycle
             for event in new
             if event.what == "pin"
@@ -138,24 +138,24 @@ class Busy:
             and event["pin"] in self._motors
         ]
         self._wired.run(2 * QUIET_MS)
-        self.cycles.append(max(off) - zeros[STOP_ZEROS - 1])
+        self.cycles.append(max(off_cycles) - zeros[STOP_ZEROS - 1])
         return self.cycles[-1]
 
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVE_INTERRUPT[self.chip.board]
         spans = [item for item in self.chip.longest_masked() if item.vector != received]
-        entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
+        entries = {span.vector: span.cycle_count for span in spans if _is_before(span, received)}
         before = max(
-            span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
+            span.cycle_count + sum(entries[vector] for vector in entries if vector != span.vector)
             for span in spans
         )
         return min(self.cycles) + INSTRUCTION + before
 
 
-def _is_before(place: Masked, received: int) -> bool:
+def _is_before(place: Masked, received_cycle: int) -> bool:
     """Return whether it is an interrupt that is served before the one of a byte."""
-    return place.is_entry and 0 < place.vector < received
+    return place.is_entry and 0 < place.vector < received_cycle
 
 
 def busy(kit: Kit) -> str:
@@ -167,8 +167,8 @@ def busy(kit: Kit) -> str:
 def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
     """Return the slowest of some hundred stops."""
     with Busy(firmware, robot, board, baud) as stopped:
-        found = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
-        center = max(found, key=lambda at: found[at])
+        stop_ms_at = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
+        center = max(stop_ms_at, key=lambda at: stop_ms_at[at])
         for at in range(center - AROUND, center + AROUND, FINE):
             stopped.stop(Place(at))
         if stopped.has_echo:
@@ -207,5 +207,5 @@ def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
     return places + (with_edges([places[0].at]) if stopped.has_discs else [])
 
 
-def _microseconds(cycles: int) -> float:
-    return cycles / CYCLES_PER_MS * 1000
+def _microseconds(cycle_count: int) -> float:
+    return cycle_count / CYCLES_PER_MS * 1000

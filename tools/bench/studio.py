@@ -29,20 +29,20 @@ from tools.builds.studio import PAGE, find_tools, size_rows
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-VISITS = 3
+VISIT_COUNT = 3
 CPU_THROTTLING = 4  # times as slow a processor
-STARTS = 5
-FRAMES_MS = 4000  # of which pictures are looked at
+START_COUNT = 5
+WATCH_MS = 4000  # of which pictures are looked at
 PUPILS, WRITERS = 30, 3
-WRITES_MS = 300  # between two changes of a writer
-PRESSES = 60
+WRITE_INTERVAL_MS = 300  # between two changes of a writer
+PRESS_COUNT = 60
 STOP_LEAVES_MS = 50
-LATE_MS = 33.5  # two of 60 in a second are 33.3, and the clock of a page tells tenths
-SETTLES_MS = 1500  # after a start
+LATE_FRAME_MS = 33.5  # two of 60 in a second are 33.3, and the clock of a page tells tenths
+SETTLE_MS = 1500  # after a start
 TASK = "ThreadControllerImpl::RunTask"  # of a thread, in Chromium's traces
-RATINGS = 5
-TYPED = 60  # letters
-LINES = 100
+RATING_COUNT = 5
+TYPED_LETTERS = 60  # letters
+PROGRAM_LINES = 100
 LIGHTHOUSE = "lighthouse@13.5.0"
 ROWS = {
     "usable": "until you can type in the page, best of three visits",
@@ -50,11 +50,11 @@ ROWS = {
     "moving": "on a processor four times as slow: from a click on a picture to the moving robot, "
     "empty cache, median of five",
     "again": "the same at the next visit",
-    "pictures": f"frames of a run at 20 times the speed that took over {LATE_MS} ms, on that "
+    "pictures": f"frames of a run at 20 times the speed that took over {LATE_FRAME_MS} ms, on that "
     "processor, starting 1.5 s into the run",
     "work": "the same, judged by the work of the page's main thread for each frame, times four: "
-    f"over {LATE_MS} ms",
-    "letter": f"processor time to compile {LINES} lines after a letter is typed",
+    f"over {LATE_FRAME_MS} ms",
+    "letter": f"processor time to compile {PROGRAM_LINES} lines after a letter is typed",
     "button": "processor time to try out what a button does, after a pause",
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",
     "files": "all files, gzipped",
@@ -119,28 +119,28 @@ TYPE = """async ([text, count, isPausing]) => {
 def main() -> None:
     if why := studio.missing():
         sys.exit(why)
-    matches: list[tuple[str, ...]] = []
+    figure_rows: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,
         studio.served() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
         for rows in (_measure, _time_to_move, _drawing_cost):
-            matches += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
+            figure_rows += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
     with studio.served(_packed_files()) as server:
         rated = _lighthouse_scores(server.address).values()
-        matches.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
-    packed = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
-    matches.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
-    page_of_figures.show("studio", matches)
+        figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
+    packed_bytes = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
+    figure_rows.append((ROWS["files"], f"{packed_bytes / 1e6:.2f} MB", "6 MB"))
+    page_of_figures.show("studio", figure_rows)
     if slowest_ms > STOP_LEAVES_MS:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
 
 
 def _measure(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     visits = []
-    for _ in range(VISITS):
+    for _ in range(VISIT_COUNT):
         with _visit(browser, address) as page:
             visits.append((page.evaluate("usable_ms"), _processor_s(page)))
     usable_ms, used_s = map(min, zip(*visits, strict=True))
@@ -156,10 +156,10 @@ def _measure(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
 def _typed_ms(page: Page, is_pausing: bool) -> float:
     """Return the processor time for a letter: of many less that of few, without the start."""
     before_s = _processor_s(page)
-    page.evaluate(TYPE, [_program(), TYPED, is_pausing])
+    page.evaluate(TYPE, [_program(), TYPED_LETTERS, is_pausing])
     short_s = _processor_s(page) - before_s
-    page.evaluate(TYPE, [_program(), 3 * TYPED, is_pausing])
-    return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED)
+    page.evaluate(TYPE, [_program(), 3 * TYPED_LETTERS, is_pausing])
+    return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED_LETTERS)
 
 
 def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
@@ -167,7 +167,7 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
     cold: list[float] = []
     warm: list[float] = []
     frames: list[float] = []
-    for _ in range(STARTS):
+    for _ in range(START_COUNT):
         context = browser.new_context(viewport={"width": 1366, "height": 768})
         page = context.new_page()
         page.set_default_timeout(120_000)
@@ -182,21 +182,21 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
             waits.append(page.evaluate("moving_ms - clicked_ms") / 1000)
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         page.select_option("#speed", "20")
-        page.wait_for_timeout(SETTLES_MS)
+        page.wait_for_timeout(SETTLE_MS)
         page.evaluate("window.frames.length = 0")
-        page.wait_for_timeout(FRAMES_MS)
+        page.wait_for_timeout(WATCH_MS)
         frames += page.evaluate("window.frames")
         context.close()
     yield "moving", f"{median(cold):.2f} s", "2.5 s"
     yield "again", f"{median(warm):.2f} s", "2.5 s"
-    late = sum(frame > LATE_MS for frame in frames)
-    yield "pictures", f"{late} of {len(frames):,}", "none"
+    late_count = sum(frame > LATE_FRAME_MS for frame in frames)
+    yield "pictures", f"{late_count} of {len(frames):,}", "none"
 
 
 def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """The same by the work of the page's main thread for each picture: load changes it less."""
     works: list[float] = []
-    for _ in range(STARTS):
+    for _ in range(START_COUNT):
         context = browser.new_context(viewport={"width": 1366, "height": 768})
         page = context.new_page()
         page.set_default_timeout(120_000)
@@ -204,14 +204,14 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         page.click("[data-begin=obstacle]")
         page.locator("html[data-phase=running]").wait_for(state="attached")
         page.select_option("#speed", "20")
-        page.wait_for_timeout(SETTLES_MS)
+        page.wait_for_timeout(SETTLE_MS)
         browser.start_tracing(page=page, categories=["devtools.timeline", "toplevel"])
-        page.wait_for_timeout(FRAMES_MS)
+        page.wait_for_timeout(WATCH_MS)
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
-    slow = [CPU_THROTTLING * work for work in works]
-    late = sum(item > LATE_MS for item in slow)
-    yield "work", f"{late} of {len(slow):,}, median {median(slow):.1f} ms", "none"
+    slow_works = [CPU_THROTTLING * work for work in works]
+    late_count = sum(item > LATE_FRAME_MS for item in slow_works)
+    yield "work", f"{late_count} of {len(slow_works):,}, median {median(slow_works):.1f} ms", "none"
 
 
 def _stopped_ms(browser: Browser) -> float:
@@ -230,8 +230,8 @@ def _stopped_ms(browser: Browser) -> float:
 
         def writes(pupils: list[str], last: int) -> None:
             for token in pupils:
-                told = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
-                room.answer(token, "192.0.2.7", told)
+                message = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
+                room.answer(token, "192.0.2.7", message)
 
         writes(tokens, 0)
         context = browser.new_context(viewport={"width": 1366, "height": 768})
@@ -240,9 +240,9 @@ def _stopped_ms(browser: Browser) -> float:
         page.goto(server.entrance())
         page.locator("#wall img[src^=blob]").nth(PUPILS - 1).wait_for()
         page.evaluate(PRESSED)
-        for k in range(PRESSES):
+        for k in range(PRESS_COUNT):
             writes(tokens[:WRITERS] if k % 2 else tokens, k)
-            page.wait_for_timeout(WRITES_MS)
+            page.wait_for_timeout(WRITE_INTERVAL_MS)
             page.click("#stop", no_wait_after=True)
         waits: list[float] = page.evaluate("window.waits")
         context.close()
@@ -253,12 +253,12 @@ def _works_ms(events: list[dict[str, Any]]) -> list[float]:
     """Return the processor time of the page's main thread from each picture to the next."""
     draws = [event for event in events if event["name"] == "FireAnimationFrame"]
     thread = Counter((draw["pid"], draw["tid"]) for draw in draws).most_common(1)[0][0]
-    asked = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
-    works = [0.0] * len(asked)
+    draw_times = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
+    works = [0.0] * len(draw_times)
     for task in events:
         if task["name"] != TASK or task.get("ph") != "X" or (task["pid"], task["tid"]) != thread:
             continue
-        picture = bisect_right(asked, task["ts"] + task["dur"]) - 1  # the newest
+        picture = bisect_right(draw_times, task["ts"] + task["dur"]) - 1  # the newest
         if picture >= 0:
             works[picture] += task.get("tdur", 0) / 1000
     return works
@@ -288,10 +288,10 @@ def _visit(browser: Browser, address: str) -> Iterator[Page]:
         context.close()
 
 
-def _program(lines: int = LINES) -> str:
+def _program(line_count: int = PROGRAM_LINES) -> str:
     """Return a program of so many lines."""
     rows = ["SI|LOOP(3)"]
-    for k in range((lines - 4) // 4):
+    for k in range((line_count - 4) // 4):
         rows += [f"  IF(DISTANCE < {k})", "    R(0.5, 60)", "  END_IF", "  F(1, 80)"]
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
 
@@ -313,12 +313,12 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
-    matches: list[dict[str, Any]] = []
-    for _ in range(RATINGS):
+    reports: list[dict[str, Any]] = []
+    for _ in range(RATING_COUNT):
         completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
-        matches.append(json.loads(completed.stdout)["categories"])
+        reports.append(json.loads(completed.stdout)["categories"])
     return {
-        name: 100 * median(item[name]["score"] for item in matches) for name in RATED_CATEGORIES
+        name: 100 * median(item[name]["score"] for item in reports) for name in RATED_CATEGORIES
     }
 
 

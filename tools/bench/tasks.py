@@ -30,10 +30,10 @@ from tools.bench.sketch_cycles import SENSOR_PIN
 from tools.uno import CYCLES_PER_MS, Uno
 
 ROBOT = robots.load(robots.DEFAULT)
-LOOK_MS = 20
-LOOKS = 40
+LOOK_INTERVAL_MS = 20
+LOOK_COUNT = 40
 COUNTING = "TASK; {0} = 0; LOOP(FOREVER); {0} = {0} + 1; END_LOOP; END_TASK;"
-TURNS = 1000
+TURN_COUNT = 1000
 WITH_TASKS = "-Dtiniscript_with_tasks"
 WATCH = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
 
@@ -57,22 +57,25 @@ def main() -> int:
         return 2
     try:
         firmware = firmware_size.measure("uno").firmware
-        without = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
+        firmware_without_tasks = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2
     page.show("tasks", [(row, f"{jitter_ms(firmware, others):.2f} ms")
                         for others, row in COUNTING_ROWS.items()])  # fmt: skip
     rounds = [turns_cycles(tasks) for tasks in range(5)]
-    first, *more = [(after - before) / TURNS for before, after in pairwise(rounds)]
-    least, most = min(more), max(more)
-    print(f"A turn of a task takes {first:,.0f} cycles where it is the only one, and {least:,.0f} "
-          f"to {most:,.0f} where it is the second to the fourth.\n")  # fmt: skip
-    less = parts_of(without)
-    page.show("tasks", [
-        (part, *(f"{size[item] - less[part][item] or ''}" for item in ("flash", "ram")))
-        for part, size in parts_of(firmware).items()
-    ], which=1)  # fmt: skip
+    first, *later_rounds = [(after - before) / TURN_COUNT for before, after in pairwise(rounds)]
+    least_cycles, most_cycles = min(later_rounds), max(later_rounds)
+    print(
+        f"A turn of a task takes {first:,.0f} cycles where it is the only one, and "
+        f"{least_cycles:,.0f} to {most_cycles:,.0f} where it is the second to the fourth.\n"
+    )
+    parts_without_tasks = parts_of(firmware_without_tasks)
+    rows = []
+    for part, size in parts_of(firmware).items():
+        less = parts_without_tasks[part]
+        rows.append((part, *(f"{size[item] - less[item] or ''}" for item in ("flash", "ram"))))
+    page.show("tasks", rows, position=1)
     return 0
 
 
@@ -87,16 +90,16 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
     return parts
 
 
-def turns_cycles(tasks: int) -> int:
+def turns_cycles(task_count: int) -> int:
     """Return the cycles of the machine while each task goes so often around an empty loop."""
-    text = f"TASK;LOOP({TURNS});END_LOOP;END_TASK;" * tasks + "W(1.2)"
+    text = f"TASK;LOOP({TURN_COUNT});END_LOOP;END_TASK;" * task_count + "W(1.2)"
     code = image_of(text, ROBOT.kit).code
     return count(code, (), BUDGET, WITH_TASKS)[1]
 
 
-def jitter_ms(firmware: Path, others: int) -> float:
+def jitter_ms(firmware: Path, task_count: int) -> float:
     """Return how far apart the looks of a WHEN are on their grid of 20 ms."""
-    text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:others])
+    text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:task_count])
     names = {"left": f"D{ROBOT.board.motors.pins['left_pwm']}"}
     with tempfile.TemporaryDirectory() as folder, Uno(
         firmware, names=names, eeprom=Path(folder) / "eeprom",
@@ -106,16 +109,16 @@ def jitter_ms(firmware: Path, others: int) -> float:
         image = image_of(text, ROBOT.kit)
         require_ok(wired, wired.session.upload(image, saves=False, is_detached=True))
         at_ms: list[float] = []
-        for number in range(LOOKS):
-            board.run_ms(LOOK_MS * number / LOOKS + 0.3)
+        for number in range(LOOK_COUNT):
+            board.run_ms(LOOK_INTERVAL_MS * number / LOOK_COUNT + 0.3)
             board.analog(SENSOR_PIN, 900)
-            pin_change = board.run_until("left", "pwm", 3 * LOOK_MS)
+            pin_change = board.run_until("left", "pwm", 3 * LOOK_INTERVAL_MS)
             at_ms.append(pin_change.cycle / CYCLES_PER_MS)
             board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]
-        late = [(at_m - first + LOOK_MS / 2) % LOOK_MS for at_m in at_ms]
-        return max(late) - min(late)
+        lateness_ms = [(at_m - first + LOOK_INTERVAL_MS / 2) % LOOK_INTERVAL_MS for at_m in at_ms]
+        return max(lateness_ms) - min(lateness_ms)
 
 
 if __name__ == "__main__":

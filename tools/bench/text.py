@@ -17,8 +17,8 @@ from tools.uno import CYCLES_PER_MS, Uno
 SHORT = "SI|F(2,80)"
 ROWS = (f"`{SHORT}`", "the paper's obstacle program")
 SILENCE_MS = 1100  # what comes sooner after a stop is ignored
-TRIES = 20  # the main loop is elsewhere each time: the slowest counts
-MUST_MS = 5.0  # for the short line
+TRY_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
+LONGEST_MS = 5.0  # for the short line
 
 
 def typed_line_ms(board: Uno, line: str, wait: int) -> float:
@@ -28,16 +28,16 @@ def typed_line_ms(board: Uno, line: str, wait: int) -> float:
     board.send(line.encode() + b"\n")
     board.run_ms(3 * len(line) + 200)
     at = first_move(board, began)
-    heard = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
-    if len(heard) != len(line) + 1:
-        raise RuntimeError(f"the robot moved after {len(heard)} of {len(line) + 1} bytes")
+    line_bytes = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
+    if len(line_bytes) != len(line) + 1:
+        raise RuntimeError(f"the robot moved after {len(line_bytes)} of {len(line) + 1} bytes")
     board.send(b"S\n")
     board.run_ms(SILENCE_MS)
-    return (at - heard[-1].cycle) / CYCLES_PER_MS
+    return (at - line_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 def slowest(board: Uno, line: str) -> float:
-    return max(typed_line_ms(board, line, 300 + k) for k in range(TRIES))
+    return max(typed_line_ms(board, line, 300 + k) for k in range(TRY_COUNT))
 
 
 def measure(firmware: Path, baud: int) -> list[float]:
@@ -50,12 +50,12 @@ def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, list[float]], _: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, list[float]], _: Path) -> bool:
     """Print the figures; return whether the short line's are kept."""
-    by_line = zip(*found.values(), strict=True)
+    by_line = zip(*figures_by_baud.values(), strict=True)
     page.show("text", [(row, *(f"{ms:.2f} ms" for ms in figures))
                        for row, figures in zip(ROWS, by_line, strict=True)])  # fmt: skip
-    return all(short_ms <= MUST_MS for short_ms, _ in found.values())
+    return all(short_ms <= LONGEST_MS for short_ms, _ in figures_by_baud.values())
 
 
 if __name__ == "__main__":

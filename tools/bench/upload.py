@@ -25,8 +25,8 @@ from tiniscript import robots
 from tools import ROOT
 from tools.bench import page
 
-RUNS = 21
-LIMIT_S = 20.0
+RUN_COUNT = 21
+UPLOAD_LIMIT_S = 20.0
 CROWD = 30
 UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
@@ -70,7 +70,7 @@ class Bench:
         upload = self.start(*UPLOAD)
         while not self.pty_robot.moves:
             time.sleep(0.0003)
-            if time.perf_counter() - begin_s > LIMIT_S:
+            if time.perf_counter() - begin_s > UPLOAD_LIMIT_S:
                 raise RuntimeError("the robot did not move")
         took_ms = (time.perf_counter() - begin_s) * 1000
         if upload.wait():
@@ -78,15 +78,15 @@ class Bench:
         return took_ms
 
 
-def measure(bench: Bench, runs: int) -> tuple[float, float]:
+def measure(bench: Bench, run_count: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.measure_move_ms()  # what is cached is cached now
-    matches = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(runs)]
-    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*matches, strict=True))
+    pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(run_count)]
+    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*pairs, strict=True))
     return moves_ms, nothing_ms
 
 
-def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
+def crowd(count: int, run_count: int, folder: str) -> tuple[float, float]:
     """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
     environ = environment(folder)
     moving, stopping = [], []
@@ -105,7 +105,7 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
                 raise RuntimeError(f"tsc {verb[0]} failed")
             return took_s * 1000
 
-        for _ in range(runs):
+        for _ in range(run_count):
             moving.append(measure_ms(UPLOAD, True))
             stopping.append(measure_ms(("stop",), False))
     return statistics.median(moving), statistics.median(stopping)
@@ -115,7 +115,7 @@ def main() -> int:
     if missing():
         print(missing(), file=sys.stderr)
         return 2
-    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUNS
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUN_COUNT
     kit = robots.load("tinibot").kit
     with (
         tempfile.TemporaryDirectory() as folder,

@@ -15,8 +15,8 @@ from tiniscript.virtual.robot import VirtualRobot
 from tools import ROOT
 from tools.bench import page
 
-SECONDS = 60
-RUNS = 3
+RUN_SECONDS = 60
+RUN_COUNT = 3
 PROGRAMS = (
     # program, robot, world
     ("obstacle.ts", "tinibot", "obstacles"),
@@ -28,11 +28,11 @@ ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 
 
 def main() -> None:
-    matches = []
+    figure_rows = []
     for name, robot, world in PROGRAMS:
-        times = max(SECONDS / _run_alone_s(name, robot, world) for _ in range(RUNS))
-        matches.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
-    page.show("virtual", matches)
+        times = max(RUN_SECONDS / _run_alone_s(name, robot, world) for _ in range(RUN_COUNT))
+        figure_rows.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
+    page.show("virtual", figure_rows)
 
 
 def _run_alone_s(name: str, robot: str, world: str) -> float:
@@ -40,7 +40,7 @@ def _run_alone_s(name: str, robot: str, world: str) -> float:
     text = (ROOT / "examples" / name).read_text(encoding="utf-8")
     Talk(virtual).upload(text, is_detached=True)
     began_s = process_time()
-    virtual.step(virtual.now_ms + SECONDS * 1000)
+    virtual.step(virtual.now_ms + RUN_SECONDS * 1000)
     return process_time() - began_s
 
 

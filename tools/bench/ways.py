@@ -31,12 +31,12 @@ from tiniscript.virtual.wheels import Roughness
 from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
-SEEDS = 100
+SEED_COUNT = 100
 WANTED_PERCENT = 95  # of them
 FAST, SLOW = 107.5, 92.5  # percent
 SLIPS = (0.005, 0.02, 0.05)
 GO, TURN = "F(100 CM, 60)", "R(360 DEG, 60)"
-LONGEST_MS = 30_000
+LONGEST_RUN_MS = 30_000
 TAPE_CM, PROTRACTOR = 1, 5  # as near as one reads them
 # how the way is known: along, aside and turned, as far as each may be off
 LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.inf,) * 3}
@@ -66,36 +66,36 @@ class Robot(Talk):
         """Return how far a program leads ahead and aside, and how far it turns, to the left."""
         before = self.robot.pose
         self.upload(text, is_detached=True)
-        end_ms = self.robot.now_ms + LONGEST_MS
+        end_ms = self.robot.now_ms + LONGEST_RUN_MS
         while self.robot.is_running and self.robot.now_ms < end_ms:
             self.robot.step(self.robot.now_ms + 100)
         self.robot.step(self.robot.now_ms + 500)
         pose = self.robot.pose
         along = math.radians(before.heading)
         x, y = pose.x_cm - before.x_cm, pose.y_cm - before.y_cm
-        ahead = x * math.cos(along) + y * math.sin(along)
-        aside = y * math.cos(along) - x * math.sin(along)
-        return ahead, aside, pose.heading - before.heading
+        ahead_cm = x * math.cos(along) + y * math.sin(along)
+        aside_cm = y * math.cos(along) - x * math.sin(along)
+        return ahead_cm, aside_cm, pose.heading - before.heading
 
     def calibrate(self, seed: int) -> None:
         """Do what `tsc set trim` does: make it straight, and measure at two powers."""
         weaker = round(100 * (1 - SLOW / FAST))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
         self.until(self.session.trim(trim.data()))
-        matches = []
+        measures = []
         for power in (40, 80):
-            ahead, _, _ = self.drive(f"F(2, {power})")
-            matches.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
+            ahead_cm, _, _ = self.drive(f"F(2, {power})")
+            measures.append(round(ahead_cm / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
             _, _, turned = self.drive(f"R(1, {power})")
-            matches.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
-        self.until(self.session.trim(trim._replace(pace=Pace(*matches)).data()))
+            measures.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
+        self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
-def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
+def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]:
     """Return how far one robot is off: along and aside in cm, turned in degrees."""
-    one = Robot(seed, slip, how == "discs")
-    if how == "time, calibrated":
+    one = Robot(seed, slip, method == "discs")
+    if method == "time, calibrated":
         one.calibrate(seed)
     ahead, aside, _ = one.drive(GO)
     _, _, turned = one.drive(TURN)
@@ -107,56 +107,60 @@ def worst_wanted(values: Sequence[float]) -> float:
     return sorted(values)[WANTED_PERCENT * len(values) // 100 - 1]
 
 
-def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
+def offset_of_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
     """Return the same of the firmware of an Uno, on its simulated chip."""
     motors = (FAST, SLOW) if seed % 2 else (SLOW, FAST)
     one = Driven(firmware, seed, motors, Roughness(slip))
     with one.uno:
         one.drive(GO)
-        gone = one.pose
+        pose_after = one.pose
         one.drive(TURN)
-        turned = one.pose.heading - gone.heading
-    return abs(gone.x_cm - 100), abs(gone.y_cm), abs(turned + 360)
+        turned = one.pose.heading - pose_after.heading
+    return abs(pose_after.x_cm - 100), abs(pose_after.y_cm), abs(turned + 360)
 
 
 def flash() -> int:
     """Return the bytes that an Uno's firmware is larger than one that knows no ways."""
-    known = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
-             r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
+    replacements = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
+                    r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         project = Path(folder) / PROJECT.name
         shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
         header = project / "src" / "vm" / "bytecode.h"
         text = header.read_text(encoding="utf-8")
-        for pattern, none in known.items():
-            text, found = re.subn(pattern, none, text)
-            assert found == 1, pattern
+        for pattern, none in replacements.items():
+            text, count = re.subn(pattern, none, text)
+            assert count == 1, pattern
         header.write_text(text, encoding="utf-8")
         return measure("uno").flash - measure("uno", project).flash
 
 
-def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
+def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
-        result = Off.summarise(
-            "discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
+        result = WorstOffsets.summarise(
+            "discs", [offset_of_uno(firmware, seed, SLIPS[0]) for seed in range(1, seed_count + 1)]
         )
-        along, aside, turn = result.cells()
-        print(f"With discs and 0.5 % of slip {along} along, {aside} aside and {turn}, "
-              f"{result.within} within.")  # fmt: skip
+        along_cell, aside_cell, turn_cell = result.cells()
+        print(
+            f"With discs and 0.5 % of slip {along_cell} along, {aside_cell} aside and "
+            f"{turn_cell}, {result.within} within."
+        )
         return int(not result.is_good)
     is_good = True
     rows = []
-    for how, (row, slips) in SHOWN_ROWS.items():
+    for method, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
-            result = Off.summarise(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
+            result = WorstOffsets.summarise(
+                method, [offset_of(seed, slip, method) for seed in range(1, seed_count + 1)]
+            )
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
             is_good = is_good and (result.is_good or slip != SLIPS[0])
-    page.show("ways", rows, keys=2)
+    page.show("ways", rows, key_cells=2)
     return int(not is_good)
 
 
-class Off(NamedTuple):
+class WorstOffsets(NamedTuple):
     """How far robots are off: what WANTED_PERCENT are within, and how many keep the limits."""
 
     worst: tuple[float, ...]
@@ -164,14 +168,14 @@ class Off(NamedTuple):
     is_good: bool
 
     @classmethod
-    def summarise(cls, how: str, found: Sequence[tuple[float, float, float]]) -> Off:
-        limits = LIMITS[how]
-        ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in found)
-        turns = sum(item[2] <= limits[2] for item in found)
-        within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
-        is_good = 100 * min(ways, turns) >= WANTED_PERCENT * len(found)
+    def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> WorstOffsets:
+        limits = LIMITS[method]
+        good_way_count = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
+        good_turn_count = sum(item[2] <= limits[2] for item in offsets)
+        within = f"{good_way_count} and {good_turn_count}" if limits[0] < math.inf else "-"
+        is_good = 100 * min(good_way_count, good_turn_count) >= WANTED_PERCENT * len(offsets)
         return cls(
-            tuple(worst_wanted(column) for column in zip(*found, strict=True)), within, is_good
+            tuple(worst_wanted(column) for column in zip(*offsets, strict=True)), within, is_good
         )
 
     def cells(self) -> tuple[str, str, str]:
@@ -181,11 +185,11 @@ class Off(NamedTuple):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("seeds", nargs="?", type=int, default=SEEDS)
+    parser.add_argument("seeds", nargs="?", type=int, default=SEED_COUNT)
     parser.add_argument("--uno", action="store_true", help="the firmware on a simulated chip")
     parser.add_argument("--size", action="store_true", help="only what they take of an Uno's flash")
-    given = parser.parse_args()
-    if given.size:
+    options = parser.parse_args()
+    if options.size:
         print(f"Without discs ways take {flash()} bytes of an Uno's flash.")
         sys.exit()
-    sys.exit(main(given.seeds, given.uno))
+    sys.exit(main(options.seeds, options.uno))

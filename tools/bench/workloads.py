@@ -89,7 +89,9 @@ def expected_values(work: Work) -> tuple[int, ...]:
     )
 
 
-def check(machine: str, work: Work, shown: Sequence[object]) -> None:
+def check(machine: str, work: Work, values_shown: Sequence[object]) -> None:
     """Raise WrongResult where a machine does not say the same as the one in Python."""
-    if tuple(shown) != expected_values(work):
-        raise WrongResult(f"{machine}, work {work.name}: {shown}, not {expected_values(work)}")
+    if tuple(values_shown) != expected_values(work):
+        raise WrongResult(
+            f"{machine}, work {work.name}: {values_shown}, not {expected_values(work)}"
+        )

@@ -101,8 +101,12 @@ def missing(chip: Chip, can_run: bool = False) -> str:
     if can_run:
         tools.append(chip.emulator)
     names = dict.fromkeys(words[0] for words in tools if words)
-    expected = [name for name in names if not shutil.which(name)]
-    return f"no {' and no '.join(expected)} on this computer: no {chip.board}" if expected else ""
+    missing_names = [name for name in names if not shutil.which(name)]
+    return (
+        f"no {' and no '.join(missing_names)} on this computer: no {chip.board}"
+        if missing_names
+        else ""
+    )
 
 
 def build(
@@ -130,27 +134,27 @@ def size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(probe, encoding="utf-8")
-        used = [path for module in ("vm", *modules)
-                for path in sorted((SOURCES / "src" / module).glob("*.cpp"))]  # fmt: skip
-        code = [source, *used, SOURCES / "extras" / "qemu" / "library.cpp"]
+        module_sources = [path for module in ("vm", *modules)
+                          for path in sorted((SOURCES / "src" / module).glob("*.cpp"))]  # fmt: skip
+        code = [source, *module_sources, SOURCES / "extras" / "qemu" / "library.cpp"]
         build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
         row = _command([chip.measurer, str(program)]).splitlines()[1]
     text, data, bss = (int(word) for word in row.split()[:3])
     return text + data, data + bss
 
 
-def compile_one(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None:
+def compile_one(chip: Chip, path: Path, object_file: str, flags: Sequence[str]) -> None:
     """Make an object of one file."""
-    usual = (*USUAL, *flags) if path.suffix == ".cpp" else ()
+    flags_for_cpp = (*USUAL, *flags) if path.suffix == ".cpp" else ()
     if not chip.assembler:
-        _command([*chip.compiler, *usual, str(path), "-o", made])
+        _command([*chip.compiler, *flags_for_cpp, str(path), "-o", object_file])
         return
-    text = f"{made}.s"
+    text = f"{object_file}.s"
     if path.suffix == ".cpp":
-        _command([*chip.compiler, *usual, str(path), "-o", text])
+        _command([*chip.compiler, *flags_for_cpp, str(path), "-o", text])
     else:
         _command([chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", text])
-    _command([*chip.assembler, text, "-o", made])
+    _command([*chip.assembler, text, "-o", object_file])
 
 
 def _command(words: Sequence[str]) -> str:

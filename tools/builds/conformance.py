@@ -36,8 +36,8 @@ def write(target: Path, text: str) -> None:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    about, _, _ = (__doc__ or "").partition("\n\n")
-    reader = argparse.ArgumentParser(prog=COMMAND, description=about)
+    description, _, _ = (__doc__ or "").partition("\n\n")
+    reader = argparse.ArgumentParser(prog=COMMAND, description=description)
     reader.add_argument("folder", type=Path, nargs="?", default=FOLDER,
                         help="tiniscript/conformance of another installation")  # fmt: skip
     folder: Path = reader.parse_args(words).folder

@@ -84,8 +84,8 @@ def build_all(target: Path, licence: Path) -> list[Path]:
             "https://www.gnu.org/licenses/old-licenses/lgpl-2.1.txt is one"
         )
     if building.platformio() is None:
-        how = install_advice.command(install_advice.FIRMWARE)
-        raise CannotMake(f"PlatformIO is not installed. Install it:  {how}")
+        install_command = install_advice.command(install_advice.FIRMWARE)
+        raise CannotMake(f"PlatformIO is not installed. Install it:  {install_command}")
     os.environ.update(settings_for(PROJECT, offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:

@@ -25,7 +25,7 @@ SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
 BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
 NEAR = range(-4096, 4096)  # bytes, from just after a short call
-TRIES = 200_000
+TRY_COUNT = 200_000
 # What the compiler appends to a name may be another number after the next change.
 _APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
 # Assembly calls its other files by short calls: they stay together.
@@ -88,9 +88,9 @@ def calls(disassembled: str, sections: list[Section]) -> list[Call]:
 
     calls = []
     for at, target in _CALL.findall(disassembled):
-        here, there = place(int(at, 16)), place(int(target, 16))
-        if here and there and here[0] != there[0]:
-            calls.append(Call(*here, *there))
+        caller, callee = place(int(at, 16)), place(int(target, 16))
+        if caller and callee and caller[0] != callee[0]:
+            calls.append(Call(*caller, *callee))
     return calls
 
 
@@ -120,19 +120,19 @@ def move_some(order: list[int], chance: random.Random) -> list[int]:
 
 
 def best_order(
-    among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random
+    among: list[Piece], all_calls: list[Call], try_count: int, chance: random.Random
 ) -> list[int]:
     """Search by simulated annealing."""
     order = result = list(range(len(among)))
-    now = least = count_far(order, among, all_calls)
-    for number in range(tries):
-        heat = 3.0 * (1 - number / tries) + 0.05
+    far_count = least_far_count = count_far(order, among, all_calls)
+    for number in range(try_count):
+        heat = 3.0 * (1 - number / try_count) + 0.05
         other = move_some(order, chance)
         count = count_far(other, among, all_calls)
-        if count <= now or chance.random() < math.exp((now - count) / heat):
-            order, now = other, count
-            if now < least:
-                result, least = order, now
+        if count <= far_count or chance.random() < math.exp((far_count - count) / heat):
+            order, far_count = other, count
+            if far_count < least_far_count:
+                result, least_far_count = order, far_count
     return result
 
 
@@ -146,7 +146,7 @@ def main() -> int:
     command = ["avr-objdump", "-d", str(sketch.firmware)]
     completed = subprocess.run(command, capture_output=True, text=True, check=True)
     all_calls = calls(completed.stdout, sections)
-    order = best_order(among, all_calls, TRIES, random.Random(1))
+    order = best_order(among, all_calls, TRY_COUNT, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
           f"{count_far(list(range(len(among))), among, all_calls)} before, "
           f"{count_far(order, among, all_calls)} then")  # fmt: skip

@@ -44,15 +44,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the library for Arduino and PlatformIO.")
     parser.add_argument("folder", type=Path, help="a new folder, or one that this has made")
     parser.add_argument("--url", default=address(ROOT), help="where its sources are, https://…")
-    given = parser.parse_args(arguments)
-    folder: Path = given.folder
+    options = parser.parse_args(arguments)
+    folder: Path = options.folder
     if folder.exists() and not is_ours(folder):
         print(f"{folder} is there, and is no library of TiniScript. Name another.", file=sys.stderr)
         return 2
-    if not given.url:
+    if not options.url:
         print("pyproject.toml has no address. Say it:  --url https://…", file=sys.stderr)
         return 2
-    make(folder, given.url)
+    make(folder, options.url)
     print(f"TiniScript {__version__} is in {folder}. Pack it:  pio pkg pack {folder}")
     return 0
 
@@ -61,8 +61,10 @@ def is_ours(folder: Path) -> bool:
     """Whether a folder is empty, or a library that was made here."""
     if not folder.is_dir():
         return False
-    about = folder / "library.properties"
-    has_name = about.is_file() and about.read_text("utf-8").startswith("name=TiniScript\n")
+    properties_path = folder / "library.properties"
+    has_name = properties_path.is_file() and properties_path.read_text("utf-8").startswith(
+        "name=TiniScript\n"
+    )
     return has_name or not any(folder.iterdir())
 
 
@@ -118,7 +120,7 @@ def properties(url: str) -> str:
 
 def manifest(url: str) -> str:
     """Return `library.json`, for PlatformIO."""
-    found = {
+    fields = {
         "name": "TiniScript",
         "version": __version__,
         "description": f"{SENTENCE} {PARAGRAPH}",
@@ -131,7 +133,7 @@ def manifest(url: str) -> str:
         "platforms": list(PLATFORMS),
         "headers": ["TiniScript.h", "TiniScriptLink.h", "TiniMotor.h"],
     }
-    return json.dumps(found, indent=2) + "\n"
+    return json.dumps(fields, indent=2) + "\n"
 
 
 if __name__ == "__main__":

@@ -27,14 +27,14 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
     The one without a key has which form is for which number, from 0 to 199.
     """
-    own = language_info(language)
+    info = language_info(language)
     text = texts("command", language)
     result = texts("studio", language) | {key: text[value] for key, value in COMMAND_TEXTS.items()}
     return {
-        "": own.form_of,
+        "": info.form_of,
         **{
             key: value if isinstance(value, str)
-            else [value.get(form, value["other"]) for form in own.forms]
+            else [value.get(form, value["other"]) for form in info.forms]
             for key, value in result.items()
         },
     }  # fmt: skip

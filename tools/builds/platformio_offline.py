@@ -120,9 +120,9 @@ def why_needless(project: Path, offline: bool) -> str:
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
     if HOME in platforms.parents:
         return ""  # the variables are set already
-    own = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
-    if own:
-        return f"PlatformIO has platforms of its own ({', '.join(own)})"
+    own_platforms = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
+    if own_platforms:
+        return f"PlatformIO has platforms of its own ({', '.join(own_platforms)})"
     if not offline and registry_answers():
         return "PlatformIO's registry answers"
     return ""
@@ -152,11 +152,15 @@ def registry_answers() -> bool:
             if json.load(answer)["name"] == "native":
                 answers.append(host)
 
-    asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
-    for thread in asking:
+    asking_threads = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
+    for thread in asking_threads:
         thread.start()
     end = time.monotonic() + REGISTRY_SECONDS  # looking up a host's address has no timeout
-    while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
+    while (
+        not answers
+        and any(thread.is_alive() for thread in asking_threads)
+        and time.monotonic() < end
+    ):
         time.sleep(0.02)
     return bool(answers)
 
@@ -221,10 +225,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
     version = ".".join(match[1] for match in parts if match)
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
-    named = re.search(r"doctest/doctest@[^\"']+", runner)
-    if named is None:
+    requirement = re.search(r"doctest/doctest@[^\"']+", runner)
+    if requirement is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    expected = PackageSpec(named[0])
+    expected = PackageSpec(requirement[0])
     if Version(version) not in expected.requirements:
         raise CannotMake(
             f"doctest-dev is doctest {version}, the tests want {expected.requirements}"
@@ -298,16 +302,16 @@ def add_boards(folder: Path) -> None:
     for value, (name, chip, variant, macro, flash, ram) in BOARDS.items():
         build = {"mcu": chip, "f_cpu": "16000000L", "core": "arduino", "variant": variant,
                  "extra_flags": f"-DARDUINO_AVR_{macro}"}  # fmt: skip
-        about = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
-                 "frameworks": ["arduino"], "build": build,
-                 "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
-        (folder / f"{value}.json").write_text(json.dumps(about), encoding="utf-8")
+        description = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
+                       "frameworks": ["arduino"], "build": build,
+                       "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
+        (folder / f"{value}.json").write_text(json.dumps(description), encoding="utf-8")
 
 
 def install_scons(version: str, folder: Path) -> None:
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    pip_command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     completed = subprocess.run(
-        [*pip, "--no-deps", "--target", str(folder), f"SCons=={version}"],
+        [*pip_command, "--no-deps", "--target", str(folder), f"SCons=={version}"],
         stdout=sys.stderr,
         check=False,
     )
@@ -326,8 +330,8 @@ def describe(
 ) -> None:
     """Write by what PlatformIO knows an installed package: its manifest and `.piopm`."""
     if manifest:
-        about = {"name": name, "version": version, "description": "An offline stand-in."}
-        (folder / manifest).write_text(json.dumps(about), encoding="utf-8")
+        description = {"name": name, "version": version, "description": "An offline stand-in."}
+        (folder / manifest).write_text(json.dumps(description), encoding="utf-8")
     spec = {"owner": owner, "id": None, "name": name, "requirements": None, "uri": None}
     piopm = {"type": kind, "name": name, "version": version, "spec": spec}
     (folder / ".piopm").write_text(json.dumps(piopm), encoding="utf-8")

@@ -56,16 +56,16 @@ SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 
           ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM, ".drive": PROGRAM,
           ".teacher": PROGRAM, ".wall": "", ".more": PROGRAM}  # fmt: skip
 WALL = ".wall"  # of a teacher, with thirty pupils
-PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
-          "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
-          "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
-          "Diego"]  # fmt: skip
+PUPIL_NAMES = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
+               "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
+               "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
+               "Diego"]  # fmt: skip
 TURNS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
 PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
 BREAKPOINT_LINE = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
-COLOURS = 72  # of a picture: its bytes are less than half, and nobody sees it
+COLOUR_COUNT = 72  # of a picture: its bytes are less than half, and nobody sees it
 WORDS_SCENE = "words"  # the text of the picture that has them
 SEEN_SELECTOR = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/en/class.md")
@@ -93,10 +93,10 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
-    for why in wrong:
+    complaints = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
+    for why in complaints:
         print(f"screenshot: {why}", file=sys.stderr)
-    return 1 if wrong else 0
+    return 1 if complaints else 0
 
 
 def take(language: str, scene: str, target: Path) -> None:
@@ -104,7 +104,7 @@ def take(language: str, scene: str, target: Path) -> None:
     words: list[str] = []
     shots: list[Image.Image] = []
 
-    def look() -> None:
+    def take_shot() -> None:
         page.evaluate(studio.SETTLED)
         words.extend(
             page.eval_on_selector_all(
@@ -117,22 +117,22 @@ def take(language: str, scene: str, target: Path) -> None:
     with (
         _serve_scene(scene) as (address, entrance),
         studio.driver() as driver,
-        studio.browser(driver) as opened,
+        studio.browser(driver) as browser,
     ):
-        pages = studio.Pages(opened, address, patience_s=120)
+        pages = studio.Pages(browser, address, patience_s=120)
         view = "wall" if scene == WALL else "text"
         page = pages.visit(entrance, view, viewport=SIZE, device_scale_factor=1)
         studio.speak(page, language)
         if scene != WALL:
             studio.write(page, PROGRAM)
-        SHEETS.get(scene, _take_single)(page, scene, look)
+        SHEETS.get(scene, _take_single)(page, scene, take_shot)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
-    kept = PngInfo()
+    metadata = PngInfo()
     text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    kept.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
-    _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+    metadata.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
+    _sheet(shots).quantize(COLOUR_COUNT).save(target, optimize=True, pnginfo=metadata)
 
 
 @contextmanager
@@ -143,17 +143,17 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
             yield server.address, server.address
         return
     with studio.taught([]) as (server, room):
-        room.teach({"do": "class_places", "places": len(PUPILS)})
+        room.teach({"do": "class_places", "places": len(PUPIL_NAMES)})
         joins = {"do": "join", "code": room.code}
-        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPILS]
+        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPIL_NAMES]
         is_over = Event()
 
         def come() -> None:
             while True:
                 for k, token in enumerate(tokens):
                     here = {"do": "here", "text": f"SI|{TURNS[k % len(TURNS)]}", "robot": "tinibot"}
-                    done = [folder.name for folder in catalogue.folders()[: k % 5]]
-                    room.answer(token, PUPIL, {**here, "lessons": done, "hand": k == HAND})
+                    done_lessons = [folder.name for folder in catalogue.folders()[: k % 5]]
+                    room.answer(token, PUPIL, {**here, "lessons": done_lessons, "hand": k == HAND})
                 if is_over.wait(1):
                     return
 
@@ -166,7 +166,7 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
             pupils.join()
 
 
-def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_single(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     if scene == ".start":
         page.click("#home")
         page.click("#start_write")
@@ -190,49 +190,49 @@ def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
     if scene in ("", ".lesson"):
         page.click("#view_blocks")
         studio.shown(page)
-    look()
+    take_shot()
 
 
 def _in_phase(page: Page, phase: str) -> None:
     page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
 
 
-def _drawing(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _drawing(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.select_option("#world", "parking")
     page.click("#world_draw")
     page.select_option("#world_part", index=1)
-    look()
+    take_shot()
 
 
-def _phone(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _phone(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """The program, the robot on its way, and a world that is drawn."""
     page.select_option("#world", "maze")
     page.select_option("#speed", "20")
     page.click("#view_blocks")
     studio.shown(page)
     page.set_viewport_size({"width": 390, "height": 844})
-    look()
+    take_shot()
     page.click("#run")
     _in_phase(page, "ended")
-    look()
+    take_shot()
     page.click("#world_draw")
     page.select_option("#world_part", index=1)
-    look()
+    take_shot()
 
 
-def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _minute(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """The start, a robot that dances, its blocks, one of them changed, run again, and a lesson."""
     page.click("#home")
-    look()
+    take_shot()
     page.click("[data-begin=obstacle]")
     _in_phase(page, "running")
     page.wait_for_timeout(2500)
-    look()
+    take_shot()
     page.click("#stop")
     page.click("#view_blocks")
     studio.shown(page)
     page.locator(".blocklyToolboxCategory").first.click()
-    look()
+    take_shot()
     page.keyboard.press("Escape")
     page.click("#view_text")
     studio.write(page, PROGRAM.replace("(0.5, 60)", "(0.9, 60)"))
@@ -241,19 +241,19 @@ def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
     page.click("#run")
     _in_phase(page, "running")  # the run before has ended, too
     _in_phase(page, "ended")
-    look()
+    take_shot()
     page.select_option("#world", "maze")
     page.click("#run")
     page.locator("#score").wait_for()
     page.wait_for_timeout(500)
-    look()
+    take_shot()
     page.click("#stop")
     page.click("#side_lessons")
     page.locator("#lesson_check:enabled").wait_for(state="attached")
-    look()
+    take_shot()
 
 
-def _drive(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _drive(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """By hand: straight on, a turn with the horn, and the same on a large screen."""
     page.click("#home")
     page.set_viewport_size({"width": 390, "height": 844})
@@ -263,27 +263,27 @@ def _drive(page: Page, scene: str, look: Callable[[], None]) -> None:
         page.keyboard.down(key)
         page.wait_for_timeout(lasts_ms)
         if key != "ArrowLeft":
-            look()
+            take_shot()
     page.set_viewport_size({"width": 1366, "height": 768})
     page.click("#view_blocks")
     studio.shown(page)
-    look()
+    take_shot()
 
 
-def _teacher(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _teacher(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """A real robot in four steps, and below them what is for the teacher."""
     page.click("#side_real")
     page.click("#link_teacher summary")
-    look()
+    take_shot()
 
 
-def _wall(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _wall(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """Thirty pupils, one with a hand up, without scrolling."""
-    page.locator("#wall img[src^=blob]").nth(len(PUPILS) - 1).wait_for()
-    look()
+    page.locator("#wall img[src^=blob]").nth(len(PUPIL_NAMES) - 1).wait_for()
+    take_shot()
 
 
-def _take_more(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """A loose block, a wrong one, a link, a phone on its side twice, a block that keys move."""
     page.click("#view_blocks")
     for text in ("SI|F(1, 80)\n\n/// R(0.5, 60)\n/// B(1, 80)\n", "SI|F(-2, 80)\nR(0.5, 60)\n"):
@@ -291,26 +291,26 @@ def _take_more(page: Page, scene: str, look: Callable[[], None]) -> None:
         studio.shown(page)
         if "-2" in text:
             page.locator(".blocklyBubble").wait_for()
-        look()
+        take_shot()
     studio.write(page, "SI|F(1, 80)\nR(0.5, 60)\n")
     page.click("#my_programs")
     page.click("#share summary")
     page.locator("#programs[data-shared=done]").wait_for()
-    look()
+    take_shot()
     page.click("#programs_close")
     page.set_viewport_size({"width": 844, "height": 390})
-    look()
+    take_shot()
     page.click("#other")
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    look()
+    take_shot()
     page.click("#side_virtual")
     page.set_viewport_size({"width": SIZE["width"], "height": SIZE["height"]})
     page.evaluate(studio.SETTLED)
     page.locator("#redo").focus()
     for key in ("Tab", "Tab", "Tab", "ArrowDown", "ArrowDown", "m", "ArrowDown"):
         page.keyboard.press(key)
-    look()
+    take_shot()
 
 
 # Scenes of several pictures, or beside the program.
@@ -355,9 +355,10 @@ def why_stale(language: str, scene: str = "") -> str:
         words = json.loads(str(image.info.get(WORDS_SCENE, "[]")))
     if not words:
         return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
-    gone = [word for word in words if not is_said(word)]
-    if gone:
-        return f"{path.name} shows “{gone[0]}”, which the page says no more. Take it:  {COMMAND}"
+    missing_words = [word for word in words if not is_said(word)]
+    if missing_words:
+        word = missing_words[0]
+        return f"{path.name} shows “{word}”, which the page says no more. Take it:  {COMMAND}"
     return ""
 
 

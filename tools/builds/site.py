@@ -70,18 +70,18 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     texts = build_all()
     result = documents(root, texts)
-    on = shelf(root, result, texts)
+    shelf_ = shelf(root, result, texts)
     halves = halves_of(result)
 
     def make(language: str) -> None:
         half = scratch / language
-        stage(half, result, on, language)
+        stage(half, result, shelf_, language)
         render(half, folder / language, result, has_studio)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         list(pool.map(make, halves))
-    for name in sorted(on.files):
-        on.copy(name, folder / FILES / name)
+    for name in sorted(shelf_.files):
+        shelf_.copy(name, folder / FILES / name)
     link = ""
     if has_studio:
         shutil.copytree(studio.PAGE, folder / "studio",
@@ -92,9 +92,9 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     choice = choice.replace("STUDIO", link).replace("HALVES", rows)
     (folder / "index.html").write_text(choice, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
-    wrong = links.dead_links(folder)
-    if wrong:
-        raise CannotMake("\n".join(wrong))
+    dead_links = links.dead_links(folder)
+    if dead_links:
+        raise CannotMake("\n".join(dead_links))
 
 
 def halves_of(documents: list[Document]) -> list[str]:
@@ -109,24 +109,24 @@ def _start_page(language: str) -> str:
     return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{sentence}</a>'
 
 
-def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> None:
+def stage(half: Path, documents: list[Document], shelf_: Shelf, language: str) -> None:
     """Write the sources of one half, as Sphinx reads them. Raises CannotMake.
 
     A language without a front page has the English one.
     """
     pages = {
-        document.name: page(document.sources[language], on)
+        document.name: page(document.sources[language], shelf_)
         for document in documents
         if language in document.sources
     }
-    front = sources(on.root, FRONT_PAGE)
-    front_page = page(front.get(language, FRONT_PAGE), on, Place(language, "index"))
-    for name, said in {**pages, "index": front_page + contents(documents, language)}.items():
+    front = sources(shelf_.root, FRONT_PAGE)
+    front_page = page(front.get(language, FRONT_PAGE), shelf_, Place(language, "index"))
+    for name, markdown in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(said, encoding="utf-8")
-    for name in sorted(on.pictures):
-        on.copy(name, half / FILES / name)
+        target.write_text(markdown, encoding="utf-8")
+    for name in sorted(shelf_.pictures):
+        shelf_.copy(name, half / FILES / name)
     for name in ("templates", "static"):
         shutil.copytree(SITE / name, half / name)
     shutil.copy(SITE / "conf.py", half)
@@ -135,18 +135,25 @@ def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> No
 def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
-    others = {item: language_info(item).name for item in halves_of(documents) if item != language}
-    told = {"others": others, "pages": {page.name: list(page.sources) for page in documents},
-            "has_studio": has_studio}  # fmt: skip
-    (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
+    language_names = {
+        item: language_info(item).name for item in halves_of(documents) if item != language
+    }
+    settings = {
+        "others": language_names,
+        "pages": {page.name: list(page.sources) for page in documents},
+        "has_studio": has_studio,
+    }
+    (half / "half.json").write_text(json.dumps(settings), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
              str(half), str(folder)]  # fmt: skip
     paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
-    ended = subprocess.run(words, capture_output=True, text=True, errors="replace",
-                           env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
-    if ended.returncode:
-        raise CannotMake((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
+    completed = subprocess.run(words, capture_output=True, text=True, errors="replace",
+                               env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
+    if completed.returncode:
+        raise CannotMake(
+            (completed.stdout + completed.stderr).replace(f"{half}{os.sep}", "").strip()
+        )
     if language != SOURCE_LANGUAGE:
         theme.translate(folder, language)
 

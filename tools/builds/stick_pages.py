@@ -51,7 +51,7 @@ def make(root: Path, folder: Path) -> None:
     pages = {path: path.read_text(encoding="utf-8")
              for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))}  # fmt: skip
     pages |= {
-        root / name: made for name, made in build_all().items() if name.endswith("command.md")
+        root / name: text for name, text in build_all().items() if name.endswith("command.md")
     }
     expected = {(root / name).resolve() for name in sources(root, POSTER).values()}
     titles: dict[str, str] = {}
@@ -93,20 +93,20 @@ def render(text: str) -> tuple[str, str]:
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = reader.parse(text)
     title = ""
-    known: dict[str, int] = {}
+    heading_counts: dict[str, int] = {}
     for token, inside in pairwise(tokens):
         if token.type == "heading_open":
             title = title or inside.content.replace("`", "")
-            token.attrSet("id", _name(inside, known))
+            token.attrSet("id", _name(inside, heading_counts))
     body = str(reader.renderer.render(tokens, reader.options, {}))
     return body.replace("<li>[ ] ", '<li class="check">\N{BALLOT BOX} '), title
 
 
-def _name(heading: Token, known: dict[str, int]) -> str:
+def _name(heading: Token, heading_counts: dict[str, int]) -> str:
     words = "".join(token.content for token in heading.children or ())
     name = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
-    number = known.get(name, 0)
-    known[name] = number + 1
+    number = heading_counts.get(name, 0)
+    heading_counts[name] = number + 1
     return f"{name}-{number}" if number else name
 
 
@@ -127,15 +127,15 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
     title, lessons, pupils, teacher, wiring, guides, poster = (
         text("documents", f"stick/{key}", language) for key in keys
     )
-    others = " · ".join(
+    other_links = " · ".join(
         f'<a href="{name_in(item, INDEX)}">{language_info(item).name}</a>'
         for item in translated_languages("documents", "stick/title")
         if item != language
     )
-    rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]
+    rows = [f"<h1>{title}</h1>", f"<p>{other_links}</p>", f"<h2>{guides}</h2>", "<ul>"]
     for guide in GUIDES:
-        own = name_in(language, guide)
-        name = own if own in titles else guide
+        own_name = name_in(language, guide)
+        name = own_name if own_name in titles else guide
         address = f"{name.removesuffix('.md')}.html"
         rows.append(f'<li><a href="{address}">{escape(titles[name])}</a></li>')
     file = sources(root, POSTER).get(language, POSTER)
@@ -147,10 +147,10 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
     rows += ["</ul>", f"<h2>{lessons}</h2>", "<ol>"]
     for number, place in enumerate(catalogue.folders(), 1):
         links = []
-        for label, more in ((pupils, []), (teacher, ["--teacher"])):
-            path = Path("lessons") / f"{number:02}.{'teacher.' if more else ''}{language}.html"
+        for label, options in ((pupils, []), (teacher, ["--teacher"])):
+            path = Path("lessons") / f"{number:02}.{'teacher.' if options else ''}{language}.html"
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
-            words = ["lesson", "sheet", str(number), "-o", str(folder / path), *more]
+            words = ["lesson", "sheet", str(number), "-o", str(folder / path), *options]
             with redirect_stdout(StringIO()):
                 failed = tsc([*words, "--lang", language])
             if failed:

@@ -110,8 +110,8 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
             new.writestr(zipfile.ZipInfo(item, moment), data, zipfile.ZIP_DEFLATED)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             rows.append(f"{item},sha256={digest},{len(data)}\n")
-        whole = "".join([*rows, f"{record},,\n"])
-        new.writestr(zipfile.ZipInfo(record, moment), whole, zipfile.ZIP_DEFLATED)
+        record_text = "".join([*rows, f"{record},,\n"])
+        new.writestr(zipfile.ZipInfo(record, moment), record_text, zipfile.ZIP_DEFLATED)
     return target
 
 
@@ -123,14 +123,14 @@ def make_ours(root: Path, folder: Path) -> Path:
         return Path(shutil.copy(path, folder))
 
 
-def fetch(ours: Path, folder: Path, system: System, python: str, extras: str) -> None:
+def fetch(wheel: Path, folder: Path, system: System, python: str, extras: str) -> None:
     """Put what a wheel of ours needs on a system into a folder. Raises CannotMake."""
     words = ["download", "--quiet", "--only-binary=:all:", "--dest", str(folder),
              "--find-links", str(folder), "--implementation", "cp",
              "--python-version", python]  # fmt: skip
     for tag in system.tags:
         words += ["--platform", tag]
-    _pip([*words, f"{ours}{extras}"], system.markers(python))
+    _pip([*words, f"{wheel}{extras}"], system.markers(python))
 
 
 def _pip(words: list[str], environment: dict[str, str]) -> None:

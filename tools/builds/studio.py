@@ -138,8 +138,8 @@ def put_own(page: Path) -> None:
         for name, content in zip(
             language_files(code), (page_texts(code), messages(code)), strict=True
         ):
-            whole = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
-            (page / name).write_text(whole, encoding="utf-8")
+            content_json = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
+            (page / name).write_text(content_json, encoding="utf-8")
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
     html = html.replace("POLICY", POLICY).replace("COMING", coming_text())
     (page / "index.html").write_text(html, encoding="utf-8")
@@ -175,8 +175,8 @@ def build_again(page: Path) -> None:
 
 def bring_firmware(page: Path) -> None:
     """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
-    found = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
-    if not found:
+    firmware_files = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
+    if not firmware_files:
         raise CannotMake(
             "the package has no firmware. Build it:  python -m tools.builds.firmware_files"
         )
@@ -251,14 +251,25 @@ def bundle(tools: Tools, target: Path) -> None:
 def offline(target: Path) -> None:
     """Write the service worker, which knows all files of this build."""
     names = sorted(path.name for path in target.iterdir())
-    whole = hashlib.sha256()
+    build_hash = hashlib.sha256()
     for name in names:
-        whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
-    said = {code: language_files(code) for code in languages()}
-    later = {name for code in said if code != SOURCE_LANGUAGE for name in said[code]}
-    apart = {"index.html", LICENCES, FIRMWARE, *later}
-    files = ["./", *(name for name in names if name not in apart)]
-    constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": said}
+        build_hash.update(
+            f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest()
+        )
+    files_by_language = {code: language_files(code) for code in languages()}
+    later_files = {
+        name
+        for code in files_by_language
+        if code != SOURCE_LANGUAGE
+        for name in files_by_language[code]
+    }
+    not_cached = {"index.html", LICENCES, FIRMWARE, *later_files}
+    files = ["./", *(name for name in names if name not in not_cached)]
+    constants = {
+        "VERSION": build_hash.hexdigest()[:16],
+        "FILES": files,
+        "LANGUAGES": files_by_language,
+    }
     head = "".join(f"const {name} = {json.dumps(value)};\n" for name, value in constants.items())
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
     (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
@@ -271,10 +282,10 @@ def licences() -> str:
     names = {_package(path) for path in inputs if path.startswith("node_modules/")}
     for name in sorted({*names, BLOCKLY.name}):
         folder = MODULES / name
-        about = json.loads((folder / "package.json").read_text(encoding="utf-8"))
+        package = json.loads((folder / "package.json").read_text(encoding="utf-8"))
         files = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("LICEN[CS]E*"))]
-        text = files[0] if files else MPL if about["license"] == "MPL-2.0" else about["license"]
-        parts.append(f"{name} {about['version']}, from npm\n\n{text.strip()}\n")
+        text = files[0] if files else MPL if package["license"] == "MPL-2.0" else package["license"]
+        parts.append(f"{name} {package['version']}, from npm\n\n{text.strip()}\n")
     parts.append(f"Python, as Pyodide brings it\n\n{PSF}\n")
     parts.append(f"cobs {version('cobs')}, from PyPI, under the MIT licence\n")
     return f"\n{'-' * 70}\n\n".join(parts)
@@ -288,15 +299,19 @@ def _package(path: str) -> str:
 
 def size_rows(page: Path) -> list[str]:
     """Return what the page's files weigh, and packed as a server sends them."""
-    rows, whole, packed = [], 0, 0
+    rows, total_bytes, packed_bytes = [], 0, 0
     for path in sorted(page.iterdir()):
         if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix in (".hex", ".bin"):
             continue
         data = path.read_bytes()
-        small = len(gzip.compress(data, 9, mtime=0))
-        whole, packed = whole + len(data), packed + small
-        rows.append(f"{len(data):>12,} {small:>12,}  {path.name}")
-    return [f"{'bytes':>12} {'gzipped':>12}", *rows, f"{whole:>12,} {packed:>12,}  in all"]
+        compressed_bytes = len(gzip.compress(data, 9, mtime=0))
+        total_bytes, packed_bytes = total_bytes + len(data), packed_bytes + compressed_bytes
+        rows.append(f"{len(data):>12,} {compressed_bytes:>12,}  {path.name}")
+    return [
+        f"{'bytes':>12} {'gzipped':>12}",
+        *rows,
+        f"{total_bytes:>12,} {packed_bytes:>12,}  in all",
+    ]
 
 
 def run(call: list[str], *arguments: str) -> str:
@@ -314,8 +329,8 @@ def run(call: list[str], *arguments: str) -> str:
     return completed.stdout
 
 
-def say(what: str) -> None:
-    print(f"build_studio: {what}", file=sys.stderr, flush=True)
+def say(sentence: str) -> None:
+    print(f"build_studio: {sentence}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

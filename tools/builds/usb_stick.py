@@ -42,11 +42,11 @@ class Missing(NamedTuple):
     """What could not be had: the key of its sentence, what fills it, and why, for who builds it."""
 
     key: str
-    what: str
+    name: str
     why: str
 
     def sentence(self, language: str) -> str:
-        return text("documents", f"stick/{self.key}", language).format(what=self.what)
+        return text("documents", f"stick/{self.key}", language).format(what=self.name)
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -86,31 +86,35 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def add_wheels(
-    wheels: Path, systems: Sequence[str], pythons: Sequence[str], ours: Path | None = None
+    wheels: Path, systems: Sequence[str], pythons: Sequence[str], given_wheel: Path | None = None
 ) -> list[Missing]:
     """Put all wheels into a folder; return what could not be had. Raises CannotMake.
 
-    `ours` is the wheel of TiniScript; where there is none it is made.
+    `given_wheel` is the wheel of TiniScript; where there is none it is made.
     """
     stick_wheels.make_sources(wheels)
-    here = Path(shutil.copy(ours, wheels)) if ours else stick_wheels.make_ours(ROOT, wheels)
+    wheel = (
+        Path(shutil.copy(given_wheel, wheels))
+        if given_wheel
+        else stick_wheels.make_ours(ROOT, wheels)
+    )
     missing: list[Missing] = []
     for name in systems:
         for python in pythons:
             title = f"{SYSTEMS[name].title}, Python {python}"
             print(f"wheels for {title}", flush=True)
             try:
-                stick_wheels.fetch(here, wheels, SYSTEMS[name], python, EXTRAS)
+                stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, EXTRAS)
             except CannotMake as why:
-                missing.append(_with_fewer(here, wheels, name, python, str(why)))
+                missing.append(_with_fewer(wheel, wheels, name, python, str(why)))
     return missing
 
 
-def _with_fewer(ours: Path, wheels: Path, name: str, python: str, why: str) -> Missing:
+def _with_fewer(wheel: Path, wheels: Path, name: str, python: str, why: str) -> Missing:
     """Fetch what a class needs most; return what is missing then."""
     title = f"{SYSTEMS[name].title}, Python {python}"
     try:
-        stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
+        stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
     except CannotMake:
         return Missing("no_system", title, why)
     return Missing("no_radio", title, why)
@@ -151,8 +155,8 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
     for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
         lacks = text("documents", "stick/lacks", language)
-        how = text("documents", "stick/readme", language).format(index=index)
-        rows = [how, *(lacks.format(what=item.sentence(language)) for item in missing)]
+        instructions = text("documents", "stick/readme", language).format(index=index)
+        rows = [instructions, *(lacks.format(what=item.sentence(language)) for item in missing)]
         title = text("documents", "stick/title", language)
         parts.append("\n".join((title, "", *rows, "")))
     sentence = "\n".join(parts)

@@ -31,16 +31,19 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--list", action="store_true", help="only say what is reached")
     parser.add_argument("--minutes", type=float, default=inf, help="end after so many minutes")
     options = parser.parse_args(arguments)
-    unknown = [name for name in options.goals if name not in BY_NAME]
-    if unknown:
-        parser.error(f"no goal is called {', '.join(unknown)}. There are: {', '.join(BY_NAME)}")
+    unknown_goals = [name for name in options.goals if name not in BY_NAME]
+    if unknown_goals:
+        parser.error(
+            f"no goal is called {', '.join(unknown_goals)}. There are: {', '.join(BY_NAME)}"
+        )
     goals = [BY_NAME[name] for name in options.goals] or list(GOALS)
     code = 0 if options.list else run(goals, time.monotonic() + 60 * options.minutes)
-    done = results.read()
+    results_by_goal = results.read()
     for goal in goals:
-        result = done.get(goal.name)
-        when = f"; {result.date}, code of {result.commit}" if result else ""
-        print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {figure_text(goal, result)}{when}")
+        result = results_by_goal.get(goal.name)
+        reached_text = f"; {result.date}, code of {result.commit}" if result else ""
+        figure = figure_text(goal, result)
+        print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {figure}{reached_text}")
     return code
 
 
@@ -49,18 +52,18 @@ def run(goals: Sequence[Goal], end_s: float) -> int:
     commit = results.commit()
     if commit.endswith("+"):
         print("Code that is not committed: what it reaches is not kept.", flush=True)
-    done = results.read()
+    results_by_goal = results.read()
     is_wrong = False
     try:
         for goal in goals:
-            while not is_reached(goal, done.get(goal.name), commit):
+            while not is_reached(goal, results_by_goal.get(goal.name), commit):
                 if time.monotonic() >= end_s:
                     print("The time is over; the next campaign goes on from here.", flush=True)
                     return int(is_wrong)
-                done[goal.name] = piece(goal, done.get(goal.name), commit)
+                results_by_goal[goal.name] = piece(goal, results_by_goal.get(goal.name), commit)
                 if not commit.endswith("+"):
-                    results.write(done)
-                if done[goal.name].wrong:
+                    results.write(results_by_goal)
+                if results_by_goal[goal.name].wrong:
                     is_wrong = True
                     break
     except KeyboardInterrupt:
@@ -89,12 +92,12 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
     count = min(goal.piece, goal.target - before.done)
     words = [sys.executable, "-m", *goal.command.format(count=count, seed=seed).split()]
     print(f"{goal.name}: {before.done:,} of {goal.target:,}; {' '.join(words[1:])}", flush=True)
-    begun = time.monotonic()
-    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, errors="replace")
-    seconds = round(before.seconds + time.monotonic() - begun, 1)
+    begin_s = time.monotonic()
+    completed = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, errors="replace")
+    seconds = round(before.seconds + time.monotonic() - begin_s, 1)
     day = datetime.now(timezone.utc).date().isoformat()
-    if ended.returncode:
-        print((ended.stdout + ended.stderr)[-4000:], flush=True)
+    if completed.returncode:
+        print((completed.stdout + completed.stderr)[-4000:], flush=True)
         return before._replace(date=day, wrong=f"seed {seed}, `python {' '.join(words[1:])}`")
     return Result(before.done + count, seconds, before.seed, seed + goal.stride, day, commit)
 

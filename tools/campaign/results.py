@@ -77,7 +77,7 @@ def is_old(goal: Goal, result: Result) -> bool:
     return not is_same_code(goal, result.commit)
 
 
-def old() -> list[str]:
+def outdated_goals() -> list[str]:
     """Return the names of the goals whose figures are old."""
     result = read()
     return [goal.name for goal in GOALS if goal.name in result and is_old(goal, result[goal.name])]
@@ -110,11 +110,11 @@ def rows() -> list[tuple[str, ...]]:
     outcome: list[tuple[str, ...]] = []
     for goal in GOALS:
         result = results.get(goal.name)
-        about = ("", "", "")
+        run_cells = ("", "", "")
         if result is not None:
             last = max(result.seed, result.next_seed - goal.stride)
             seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
-            about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
+            run_cells = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
         row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
-        outcome.append((*row, figure_text(goal, result), *about))
+        outcome.append((*row, figure_text(goal, result), *run_cells))
     return outcome

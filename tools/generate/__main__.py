@@ -100,8 +100,8 @@ def image_table() -> str:
         (at, field.size, f"`{field.name}`", field.meaning)
         for at, field in zip(offsets, image.FIELDS, strict=False)
     ]
-    more = f"`header_length` - {image.HEADER_BYTES}"
-    rows.append((image.HEADER_BYTES, more, "later", "Fields of later versions."))
+    later_bytes = f"`header_length` - {image.HEADER_BYTES}"
+    rows.append((image.HEADER_BYTES, later_bytes, "later", "Fields of later versions."))
     rows.append(("`header_length`", "`code_length`", "`code`", "The instructions."))
     return table(("offset", "bytes", "field", "meaning"), rows)
 
@@ -124,8 +124,10 @@ def operand_table() -> str:
     return table(("operand", "bytes", "range", "meaning"), rows)
 
 
-def numbered(head: Sequence[str], found: Mapping[str, tuple[int, str]]) -> str:
-    return table(head, [(number, f"`{name}`", what) for name, (number, what) in found.items()])
+def numbered(head: Sequence[str], meanings: Mapping[str, tuple[int, str]]) -> str:
+    return table(
+        head, [(number, f"`{name}`", meaning) for name, (number, meaning) in meanings.items()]
+    )
 
 
 def role_table() -> str:
@@ -138,9 +140,9 @@ def role_table() -> str:
 
 def fault_table() -> str:
     rows = []
-    for number, name, what in opcodes.FAULTS:
+    for number, name, meaning in opcodes.FAULTS:
         faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING_OPS[name])
-        rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
+        rows.append((number, f"`{name}`", meaning, faulting or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 
 
@@ -148,7 +150,7 @@ def limit_table() -> str:
     compiler, operand, deep = "compiler", "verifier: `BAD_OPERAND`", "verifier: `TOO_DEEP`"
     for_blocks = "words: 1 for an IF, 2 for a loop"
     both = "compiler, and verifier: `{}`"
-    counted = "counted loops open at once, including those around a call"
+    loops_text = "counted loops open at once, including those around a call"
     rows = (
         ("code", limits.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
         ("nested blocks in a text, including those around a call", limits.BLOCKS, "", compiler),
@@ -161,7 +163,7 @@ def limit_table() -> str:
             f"the robot's profile, and {operand}",
         ),
         ("tasks beside the main one", limits.TASKS, "", both.format("TOO_MANY_TASKS")),
-        (f"{counted}, in all tasks together", limits.COUNTERS, "", deep),
+        (f"{loops_text}, in all tasks together", limits.COUNTERS, "", deep),
         ("calls open at once, in all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),
         ("procedures", limits.DEFS, "", both.format("TOO_MANY_DEFS")),
         ("open blocks of one routine", limits.NEST_WORDS, for_blocks, deep),
@@ -175,10 +177,10 @@ def device_table() -> str:
     rows: list[tuple[object, ...]] = []
     for name in KITS:
         kit = robots.load(name).kit
-        many, read = len(kit.sensors), len(kit.readings)
+        sensor_count, reading_count = len(kit.sensors), len(kit.readings)
         for k, (line, hashed) in enumerate(zip(kit.device_lines(), kit.hashes, strict=True)):
-            if not many <= k < read:
-                number = k if k < many else k - read
+            if not sensor_count <= k < reading_count:
+                number = k if k < sensor_count else k - reading_count
                 rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
     remote = Kit(())  # the same for every robot, after its n sensors
     for k, (line, hashed) in enumerate(zip(remote.device_lines(), remote.hashes, strict=True)):

@@ -36,11 +36,11 @@ def makers_of_kept() -> Made:
 
 def build_all() -> dict[str, str]:
     """Return the documents of a site, by the names that they would have in a clone."""
-    made = {
+    file_makers = {
         name_in(language, "docs/en/command.md"): partial(page, language, COMMAND, table)
         for language in DOCUMENTED
     }
-    return {name: make() for name, make in (made | wiring_pages(COMMAND)).items()}
+    return {name: make() for name, make in (file_makers | wiring_pages(COMMAND)).items()}
 
 
 def _shown_drawings() -> set[str]:

@@ -48,7 +48,7 @@ def _overview(language: str, table: Table) -> Iterator[str]:
         yield heading
         yield table(
             [_text(key, language) for key in ("command", "does")],
-            [(f"`{typed}`", does) for typed, does in rows],
+            [(f"`{typed}`", summary) for typed, summary in rows],
         )
     yield from (verb_text(note, language) for note in NOTES)
     yield _text("each", language)
@@ -59,13 +59,17 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield f"{'##' if command in VERBS else '###'} `tsc {command_words(command)}`"
     yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
     yield verb_sentence(command, "says", language)
-    own = [option for option in shown_of(command) if option.verbs != "*"]
-    is_apart = any(option.name == "virtual" for option in own)
-    yield _options([option for option in own if not (is_apart and option.virtual)], language, table)
-    virtual = [option for option in own if is_apart and option.virtual]
-    if virtual:
+    options = [option for option in shown_of(command) if option.verbs != "*"]
+    has_virtual_section = any(option.name == "virtual" for option in options)
+    yield _options(
+        [option for option in options if not (has_virtual_section and option.virtual)],
+        language,
+        table,
+    )
+    virtual_options = [option for option in options if has_virtual_section and option.virtual]
+    if virtual_options:
         yield verb_text("virtual", language)
-        yield _options(virtual, language, table)
+        yield _options(virtual_options, language, table)
     yield verb_sentence(command, "ends", language).replace("\n", "\\\n")
 
 

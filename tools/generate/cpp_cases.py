@@ -38,6 +38,6 @@ def _row(case: Case) -> tuple[str, str, str]:
     return case.id, request.hex(), answer
 
 
-def _text(found: str) -> str:
-    """Return `found` as a literal of C++; all of our texts are UTF-8."""
-    return json.dumps(found, ensure_ascii=False)
+def _text(content: str) -> str:
+    """Return `content` as a literal of C++; all of our texts are UTF-8."""
+    return json.dumps(content, ensure_ascii=False)

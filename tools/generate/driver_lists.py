@@ -29,9 +29,9 @@ def with_drivers(profile: Path) -> str:
             for driver in DRIVERS.values()
             if driver.used_by == used_by
         )
-        head, found, tail = text.partition(f"{end}\n")
-        assert found, f"{profile.name} has no line that ends with {end}"
-        text = head + found + rows + re.sub(r"^(#   .*\n)*", "", tail)
+        head, end_line, tail = text.partition(f"{end}\n")
+        assert end_line, f"{profile.name} has no line that ends with {end}"
+        text = head + end_line + rows + re.sub(r"^(#   .*\n)*", "", tail)
     return text
 
 

@@ -24,7 +24,7 @@ from tools.site.documents import sources
 
 PROGRAM = ROOT / "examples" / "obstacle_until.ts"
 ROBOT, WORLD = "tinibot", "obstacles"
-LASTS_MS = 30_000
+RUN_MS = 30_000
 RIGHT = "SI|F(1, 80); BEEP(0.1, 880)"
 WIDTH, HEIGHT = 1240, 508
 PAD, ROW, SMALL_ROW = 24, 22, 20
@@ -66,17 +66,17 @@ def _lines() -> list[str]:
     return list(dropwhile(lambda row: row.startswith("//"), rows))
 
 
-def _row(x: float, y: float, inside: str, size: int = 15) -> str:
+def _row(x: float, y: float, content: str, size: int = 15) -> str:
     return (
         f'<text x="{x:g}" y="{y:g}" font-family="{MONO}" font-size="{size}" fill="{INK}"'
-        f' xml:space="preserve">{inside}</text>'
+        f' xml:space="preserve">{content}</text>'
     )
 
 
 def _color(row: str) -> str:
     code, slashes, note = row.partition("//")
-    matches = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
-    return "".join([*matches, _span(DIM, slashes + note)])
+    spans = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
+    return "".join([*spans, _span(DIM, slashes + note)])
 
 
 def _span(colour: str, text: str) -> str:
@@ -120,7 +120,7 @@ def _console_lines(verb: str, program: str, language: str) -> list[str]:
 
 @cache
 def _driven_path() -> Way:
-    return drive_way(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), LASTS_MS)
+    return drive_way(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), RUN_MS)
 
 
 def _arena(language: str) -> list[str]:

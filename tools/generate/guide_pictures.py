@@ -24,7 +24,7 @@ GUIDES = sources(ROOT, GUIDE)
 PAD, PAPER, SKY = 10, "#ffffff", "#dcebfb"
 
 
-def floor(width: int, height: int, x: int, y: int, heading: int) -> World:
+def floor_world(width: int, height: int, x: int, y: int, heading: int) -> World:
     """Return a floor with a wall around it, lengths in cm, and where the robot begins."""
     text = f"""
         floor = {{ width_cm = {width}, height_cm = {height}, border = true }}
@@ -32,22 +32,22 @@ def floor(width: int, height: int, x: int, y: int, heading: int) -> World:
     return worlds.read(text, "floor")
 
 
-def before(wall: int) -> World:
+def wall_world(wall: int) -> World:
     """Return a floor with a robot so many cm before its right wall."""
-    return floor(110, 50, 110 - wall - FRONT, 25, 0)
+    return floor_world(110, 50, 110 - wall - FRONT, 25, 0)
 
 
 FRONT = 9  # cm from the middle of a robot to its distance sensor
 OBSTACLES = worlds.load("obstacles")
-LANE = floor(125, 30, 15, 15, 0)
+LANE = floor_world(125, 30, 15, 15, 0)
 Drives = tuple[tuple[World, int], ...]  # worlds, each for so many milliseconds
 DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program begins
-    "moves.svg": (REFERENCE, "SPEED = 90", ((floor(110, 110, 80, 25, 0), 4000),)),
-    "until.svg": (REFERENCE, "F(3, 80) UNTIL", ((floor(120, 40, 20, 20, 0), 4000),)),
+    "moves.svg": (REFERENCE, "SPEED = 90", ((floor_world(110, 110, 80, 25, 0), 4000),)),
+    "until.svg": (REFERENCE, "F(3, 80) UNTIL", ((floor_world(120, 40, 20, 20, 0), 4000),)),
     "faster.svg": (REFERENCE, "SPEED = 40", ((LANE, 1000), (LANE, 2000), (LANE, 3000))),
     "if.svg": (REFERENCE, "SI|IF(DISTANCE < 10)",
-               ((before(8), 2000), (before(20), 2000), (before(60), 2000))),
-    "def.svg": (REFERENCE, "DEF SIDE(SIZE)", ((floor(75, 85, 18, 68, 0), 5000),)),
+               ((wall_world(8), 2000), (wall_world(20), 2000), (wall_world(60), 2000))),
+    "def.svg": (REFERENCE, "DEF SIDE(SIZE)", ((floor_world(75, 85, 18, 68, 0), 5000),)),
     "dice.svg": (REFERENCE, "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", ((OBSTACLES, 20_000),)),
     "course.svg": (GUIDE, "SB|LOOP(FOREVER)", ((OBSTACLES, 20_000),)),
 }  # fmt: skip
@@ -56,8 +56,11 @@ DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program beg
 def guide_pictures(command: str) -> dict[str, partial[str]]:
     """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
-    made |= {f"phone.{guide}.svg": partial(phone, command, guide) for guide in GUIDES}
-    return made | {"lesson.svg": partial(lesson, command), "hand.svg": partial(hand, command)}
+    made |= {f"phone.{guide}.svg": partial(phone_picture, command, guide) for guide in GUIDES}
+    return made | {
+        "lesson.svg": partial(lesson_picture, command),
+        "hand.svg": partial(hand_picture, command),
+    }
 
 
 def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
@@ -68,12 +71,12 @@ def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
     return _path_pictures(command, "tinibot", *runs)
 
 
-def lesson(command: str) -> str:
+def lesson_picture(command: str) -> str:
     """Return three worlds of lesson 7, with the way of a right program in each."""
     folder = catalogue.folders()[6]
-    found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
-    runs = ((vary(found, k), program, 8000) for k in (1, 2, 3))
-    return _path_pictures(command, found.robot, *runs)
+    shown_lesson, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
+    runs = ((vary(shown_lesson, k), program, 8000) for k in (1, 2, 3))
+    return _path_pictures(command, shown_lesson.robot, *runs)
 
 
 def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> str:
@@ -87,10 +90,10 @@ def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> s
     return _svg(command, width, world.height_cm * scale, parts)
 
 
-def phone(command: str, language: str) -> str:
+def phone_picture(command: str, language: str) -> str:
     """Return a guide's conversation with a robot on a phone."""
-    [said] = re.findall(r"^```terminal\n(.*?)^```", _text(GUIDES[language]), re.M | re.S)
-    rows = said.splitlines()
+    [conversation] = re.findall(r"^```terminal\n(.*?)^```", _text(GUIDES[language]), re.M | re.S)
+    rows = conversation.splitlines()
     parts = [f'<rect x="{PAD}" y="{PAD}" width="460" height="{34 * len(rows) + 40}" rx="24"'
              f' fill="{FLOOR}" stroke="{WALL}" stroke-width="6"/>']  # fmt: skip
     for k, row in enumerate(rows):
@@ -101,16 +104,16 @@ def phone(command: str, language: str) -> str:
     return _svg(command, 460, 34 * len(rows) + 40, parts)
 
 
-def hand(command: str) -> str:
+def hand_picture(command: str) -> str:
     """Return what a robot before something shows when a guide asks it for the distance."""
-    [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
-    world, scale = before(int(said.split()[1])), 4.0
+    [line, answer] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
+    world, scale = wall_world(int(answer.split()[1])), 4.0
     way = drive_way(f"SI|{line}", "tinibot", world, 200)
     front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))
     y = PAD + world.height_cm / 2 * scale
     parts = arena(world, way, PAD, PAD, scale)
     parts.append(f'<path d="M{front:g},{y:g} L{wall:g},{y:g}" stroke="{WAY}" stroke-width="3"/>')
-    parts.append(_words((front + wall) / 2 - 32, y - 10, said))
+    parts.append(_words((front + wall) / 2 - 32, y - 10, answer))
     return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
 
 

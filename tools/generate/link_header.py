@@ -24,7 +24,7 @@ UNKNOWN_REQUEST = 255  # no payload is so long
 
 def header(command: str) -> str:
     """Return `messages.h`: every number of the link."""
-    named = [(message.name, message.number, message.meaning) for message in MESSAGES]
+    message_rows = [(message.name, message.number, message.meaning) for message in MESSAGES]
     statuses = [
         (name, number, text("statuses", f"{name}/said", SOURCE_LANGUAGE))
         for name, number in messages.STATUSES.items()
@@ -50,7 +50,7 @@ def header(command: str) -> str:
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.WHEELS)),
         "// What the robot is able to do and who may drive it, in one number.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.FEATURES)),
-        enumeration("Message", named),
+        enumeration("Message", message_rows),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants_of(messages, "FIRST_ACTING")
         + _last_request(),
@@ -62,7 +62,7 @@ def header(command: str) -> str:
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
         + enumeration("Answer", statuses),
         *(
-            enumeration(name, [(each, k, what) for k, (each, what) in enumerate(rows)])
+            enumeration(name, [(each, k, meaning) for k, (each, meaning) in enumerate(rows)])
             for name, rows in (
                 ("State", messages.STATES), ("Saved", messages.SAVED), ("Cause", messages.CAUSES),
                 ("Reset", messages.RESETS), ("TextLevel", messages.TEXT_LEVELS),
@@ -72,14 +72,16 @@ def header(command: str) -> str:
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
-        + enumeration("LinkFault", [(name, n, what) for n, name, what in messages.LINK_FAULTS]),
+        + enumeration(
+            "LinkFault", [(name, n, meaning) for n, name, meaning in messages.LINK_FAULTS]
+        ),
     )  # fmt: skip
-    about = (
+    comment_lines = (
         "The numbers of the link: messages, where the fields of their requests begin,",
         "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
     body = "\n".join(parts)
-    return cpp_file(command, "link/messages.h", about, body, "../vm/build.h", "../vm/cpu.h")
+    return cpp_file(command, "link/messages.h", comment_lines, body, "../vm/build.h", "../vm/cpu.h")
 
 
 def tables(command: str) -> str:
@@ -105,18 +107,23 @@ def _length_row(request: Message | None) -> str:
     if request is None:
         return "    {kUnknownRequest, 0},  // retired\n"
     lengths = _length_range(request.request)
-    for names, has in ((messages.OF_RADIO, "kHasTransports"), (messages.OF_REMOTE, "kHasRemote")):
+    for names, condition in (
+        (messages.OF_RADIO, "kHasTransports"),
+        (messages.OF_REMOTE, "kHasRemote"),
+    ):
         if request.name in names:
-            least, most = lengths.split(", ")
-            lengths = f"{has} ? {least} : kUnknownRequest, {has} ? {most} : 0"
+            least_bytes, most_bytes = lengths.split(", ")
+            lengths = (
+                f"{condition} ? {least_bytes} : kUnknownRequest, {condition} ? {most_bytes} : 0"
+            )
     return f"    {{{lengths}}},  // {request.name}\n"
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:
     """Return the least and the most of a payload; what fills a frame depends on the robot."""
-    least, most = messages.sizes(fields)
+    least_bytes, most_bytes = messages.sizes(fields)
     is_filling = any(field.fills_frame for field in fields)
-    return f"{least}, {'kPayloadBytes' if is_filling else most}"
+    return f"{least_bytes}, {'kPayloadBytes' if is_filling else most_bytes}"
 
 
 def _requests() -> list[messages.Message]:
@@ -179,12 +186,16 @@ def status_rows() -> Rows:
 
 
 def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
-    rows = [(number, f"`{name}`", what) for number, (name, what) in enumerate(table)]
+    rows = [(number, f"`{name}`", meaning) for number, (name, meaning) in enumerate(table)]
     return ("number", "name", "meaning"), rows
 
 
-def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: int = 2) -> Rows:
-    rows = [(f"0x{number:0{digits}x}", f"`{name}`", what) for number, name, what in table]
+def bit_rows(
+    table: Sequence[tuple[int, str, str]], bits: str = "bits", digit_count: int = 2
+) -> Rows:
+    rows = [
+        (f"0x{number:0{digit_count}x}", f"`{name}`", meaning) for number, name, meaning in table
+    ]
     return (bits, "name", "meaning"), rows
 
 
@@ -193,7 +204,7 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
         "messages": message_rows,
         "modes": lambda: bit_rows(messages.MODES),
         "wheels": lambda: bit_rows(messages.WHEELS, "bit"),
-        "features": lambda: bit_rows(messages.FEATURES, digits=4),
+        "features": lambda: bit_rows(messages.FEATURES, digit_count=4),
         "text levels": lambda: number_rows(messages.TEXT_LEVELS),
         "statuses": status_rows,
         "states": lambda: number_rows(messages.STATES),
@@ -230,8 +241,10 @@ def payloads(command: str) -> str:
         "from typing import Literal, NamedTuple\n"
     ]
     for name, shared in types.items():
-        of = ", ".join(message.name for message in shared)
-        parts.append(_type_definition(name, f"What is in the reply to {of}.", shared[0].reply))
+        message_names = ", ".join(message.name for message in shared)
+        parts.append(
+            _type_definition(name, f"What is in the reply to {message_names}.", shared[0].reply)
+        )
     for event in events:
         tag = f'    name: Literal["{event.name}"] = "{event.name}"\n'
         parts.append(_type_definition(_event(event), event.meaning, event.reply, tag))

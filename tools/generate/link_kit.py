@@ -23,7 +23,7 @@ from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tools.generate.machine_kit import MOST_STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
 
-LONGEST_MS = 3000
+LONGEST_RUN_MS = 3000
 MOST_SHOWS = 40
 MOST_BYTES = 200  # of code: any robot has room for it
 UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # what nobody knows beforehand
@@ -70,7 +70,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         machine = Machine(code, robot, len(run.kit.readings))
         while (status := machine.tick(robot.now_ms, MOST_STEPS)) == WAITING:
             robot.now_ms = machine.wake_ms
-            if robot.now_ms > LONGEST_MS:
+            if robot.now_ms > LONGEST_RUN_MS:
                 break
         shows = [
             [event.values[0], int(event.text.endswith("E"))]
@@ -78,8 +78,8 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
             if event.what == "SHOW"
         ]
         is_still = all(not any(e.values) for e in robot.events if e.what == "MOTORS")
-        others = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
-        if status not in (DONE, FAULT) or others or not is_still or len(shows) > MOST_SHOWS:
+        other_events = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
+        if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MOST_SHOWS:
             continue
         numbers = {name: number for number, name, _ in FAULTS}
         fault = numbers[machine.fault] if machine.fault else 0
@@ -97,16 +97,16 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     """Return code that is refused in the same way whatever devices there are."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
-        matches = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
-        if len(matches) > 1 or "" in matches or len(code) > MOST_BYTES:
+        verdicts = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
+        if len(verdicts) > 1 or "" in verdicts or len(code) > MOST_BYTES:
             continue
-        rule, at = matches.pop().split()
+        rule, at = verdicts.pop().split()
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
 
 
-def verdict(code: bytes, devices: int) -> str:
+def verdict(code: bytes, device_count: int) -> str:
     try:
-        verify(code, devices, devices)
+        verify(code, device_count, device_count)
     except Refused as refused:
         return f"{refused.name} {refused.offset}"
     return ""
@@ -122,16 +122,16 @@ def conversation(case: LinkCase) -> dict[str, object]:
         if not words[0].isdigit():
             rows.append({"happens": row.strip()})
             continue
-        kind, said = words[1], words[2] if len(words) > 2 else ""
+        kind, content = words[1], words[2] if len(words) > 2 else ""
         step: dict[str, object] = {"ms": int(words[0])}
         if kind[0] in "<>":
-            match = BYTES.match(said)
+            match = BYTES.match(content)
             assert match, (case.id, row)
             step[KINDS[kind[0]]] = match[1].strip()
             step["means"] = (match[2] or "").strip()
             if kind.endswith("x"):
                 step["is_lost"] = True
         else:
-            step[KINDS[kind]] = said
+            step[KINDS[kind]] = content
         rows.append(step)
     return {"name": case.id, "has_session": has_session(case), "rows": rows}

@@ -41,10 +41,10 @@ TINIBOT = robots.load("tinibot").kit
 MOST_STEPS = (
     100_000  # a case that runs more without a wait says nothing about its end: it is left out,
 )
-CALLS = 1000  # and so is one of more calls at one time
+MOST_CALLS = 1000  # and so is one of more calls at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
-TASK_MS = 600
+TASK_RUN_MS = 600
 WAY_PROGRAMS = range(1000, 1012)
 When = tuple[int, tuple[int, ...]]
 
@@ -53,7 +53,7 @@ When = tuple[int, tuple[int, ...]]
 USUAL: When = (0, (1,))
 WRAPS: When = (2**32 - 7, (1,))
 SELDOM: When = (2**31 - 30, (7,))
-LATE_MS = 45  # between two calls
+LATE_CALL_MS = 45  # between two calls
 OFTEN = (3, 7, 20)  # ms between two calls, for tasks: each has a clock of its own
 ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
 FAR = Senses({"DISTANCE": [50_000]})
@@ -72,7 +72,7 @@ class Run(NamedTuple):
     name: str
     kit: Kit
     image: bytes
-    senses: Senses = Senses()
+    inputs: Senses = Senses()
     when: When = USUAL
     slow: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
@@ -139,12 +139,12 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         "name": run.name,
         "kit": kit,
         "image": run.image.hex(),
-        "readings": _by_number(names, run.senses.readings),
+        "readings": _by_number(names, run.inputs.readings),
         **({"slow": _by_number(names, run.slow)} if run.slow else {}),
-        "seed": run.senses.seed,
+        "seed": run.inputs.seed,
         "begin": begin,
         "every": list(every_ms),
-        "until": run.senses.max_ms,
+        "until": run.inputs.max_ms,
         **({"needs": run.needs} if run.needs else {}),
         "answer": answer,
     }
@@ -158,7 +158,7 @@ class SlowRobot(TracedRobot):
     """A robot whose slow sensors are not always ready."""
 
     def __init__(self, run: Run) -> None:
-        super().__init__(run.kit, lists_of(run.kit, run.senses))
+        super().__init__(run.kit, lists_of(run.kit, run.inputs))
         self.slow = run.slow
         self.was_slow = False  # in this call
 
@@ -185,9 +185,9 @@ def answer_of(
     begin, every_ms = run.when
     every = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
-    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
+    machine = machine_of(code, robot, len(run.kit.readings), run.inputs.seed, begin)
     calls = 0  # at the same time
-    while calls < CALLS:
+    while calls < MOST_CALLS:
         robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
@@ -200,11 +200,11 @@ def answer_of(
             wake_ms = max(machine.wake_ms - begin, robot.now_ms + robot.was_slow)
             each_ms = next(every)
             wake_ms = -(-wake_ms // each_ms) * each_ms
-            if wake_ms <= run.senses.max_ms:
+            if wake_ms <= run.inputs.max_ms:
                 calls = calls + 1 if wake_ms == robot.now_ms else 0
                 robot.now_ms = wake_ms
                 continue
-            robot.now_ms = run.senses.max_ms
+            robot.now_ms = run.inputs.max_ms
             robot.say("LIMIT", (), "LIMIT")
         return [str(event) for event in robot.events]
     return None
@@ -227,7 +227,7 @@ def documented_runs() -> Iterator[Run]:
             continue
         yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
         yield run._replace(name=f"{case.id} (called every 7 ms, time wraps around)", when=SELDOM)
-        yield run.call_every(LATE_MS)
+        yield run.call_every(LATE_CALL_MS)
         if run.needs & TASKS:
             yield from (run.call_every(every_ms) for every_ms in OFTEN)
         if senses.readings:
@@ -252,13 +252,13 @@ def takes_time(run: Run) -> bool:
 def times() -> Iterator[Run]:
     """Return runs that are called late, by as much as a clock catches up or not, or after weeks."""
     beyond = Senses({"DISTANCE": [50_000] * 6 + [9_000]}, 2**33)
-    until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
+    move_until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
     for name, text, when, senses in (
         ("20 ms late", "W(0.001); F(0.1, 80)", (0, (21, 1)), Senses()),
         ("21 ms late", "W(0.001); F(0.1, 80)", (0, (22, 1)), Senses()),
-        ("UNTIL begins 20 ms late", f"W(0.001); {until}", (0, (21, 1)), FAR),
-        ("UNTIL begins 21 ms late", f"W(0.001); {until}", (0, (22, 1)), FAR),
-        ("UNTIL is checked late", until, (0, (30, 61, 1)), FAR),
+        ("UNTIL begins 20 ms late", f"W(0.001); {move_until}", (0, (21, 1)), FAR),
+        ("UNTIL begins 21 ms late", f"W(0.001); {move_until}", (0, (22, 1)), FAR),
+        ("UNTIL is checked late", move_until, (0, (30, 61, 1)), FAR),
         ("UNTIL past 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
          (0, (ROUND_MS, ROUND_MS - 20, 90, 1)), beyond),
         ("UNTIL past 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
@@ -401,18 +401,18 @@ def change_byte(image: bytes, at: int, value: int) -> bytes:
 def arithmetic() -> Iterator[Run]:
     """Return operations on the edges of numbers: what faults ends a run, the rest shares one."""
     for op in map(BY_NAME.__getitem__, CALCULATIONS):
-        shown = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
-        together = b""
+        show_op = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
+        joined_code = b""
         for values in product(EDGES, repeat=op.pops):
-            code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[shown].code])
+            code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[show_op].code])
             run = Run(title(op, values), TINIBOT, pack("SI", 0, code))
             answer = answer_of(run)
             assert answer is not None
             if answer[-1].endswith("DONE"):
-                together += code
+                joined_code += code
             else:
                 yield run
-        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, together))
+        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, joined_code))
 
 
 def push32(value: int) -> bytes:
@@ -455,7 +455,7 @@ def task_programs() -> Iterator[Run]:
 
 
 def task_run(name: str, text: str, readings: Mapping[str, Sequence[int]]) -> Run:
-    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_MS), text=text)
+    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_RUN_MS), text=text)
 
 
 def ways() -> Iterator[Run]:
@@ -478,7 +478,7 @@ def ways() -> Iterator[Run]:
         senses = FAR._replace(max_ms=5000)
         run = Run(f"ways: {text}", TINIBOT, compile_image(text), senses, text=text)
         yield run
-        yield run.call_every(LATE_MS)
+        yield run.call_every(LATE_CALL_MS)
     go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
     two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
     for name, code, needs in (

@@ -16,9 +16,9 @@ END_CODE = 0  # of a text; the pairs are numbered from 1
 FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
 FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
 COMMON = 16 - FIRST_COMMON
-DEEPEST = 3  # pairs in pairs: the robot's stack holds a call for each
+MOST_NESTED_PAIRS = 3  # pairs in pairs: the robot's stack holds a call for each
 LEAST_SAVED = 4  # halves of bytes, of which a pair itself takes 4
-ROUNDS = 8  # which codes are common, and which pairs save most, depends on each other
+ROUND_COUNT = 8  # which codes are common, and which pairs save most, depends on each other
 
 Pair = tuple[int, int]
 
@@ -40,7 +40,7 @@ def pack(texts: Sequence[str]) -> Packed:
     rows = [[*text.encode("ascii"), END_CODE] for text in texts]
     common = _most_common(rows)
     candidates = []
-    for _ in range(ROUNDS):
+    for _ in range(ROUND_COUNT):
         pairs, shorter = _pair_codes(rows, common)
         candidates.append(Packed(common, pairs, _split_halves(shorter, common)))
         common = _most_common(shorter)
@@ -81,8 +81,8 @@ def letters_of(code: int, pairs: Sequence[Pair]) -> bytes:
 def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
     """Return the end and the most frequent letters, which take 4 bits."""
     uses = Counter(code for row in rows for code in row if code >= FIRST_LETTER)
-    most = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON - 1]
-    return (END_CODE, *sorted(most))
+    commonest_codes = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON - 1]
+    return (END_CODE, *sorted(commonest_codes))
 
 
 def _pair_codes(
@@ -98,12 +98,12 @@ def _pair_codes(
 
     while len(pairs) < FIRST_LETTER - 1:
         uses = Counter(pair for row in items for pair in _row_pairs(row) if END_CODE not in pair)
-        possible = [
+        possible_pairs = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
-            if max(depths.get(item, 0) for item in pair) < DEEPEST
+            if max(depths.get(item, 0) for item in pair) < MOST_NESTED_PAIRS
         ]
-        saved, pair = max(possible, default=(0, (END_CODE, END_CODE)))
+        saved, pair = max(possible_pairs, default=(0, (END_CODE, END_CODE)))
         if saved <= LEAST_SAVED:
             break
         code = 1 + len(pairs)

@@ -94,9 +94,9 @@ def _poster_text(key: str, language: str) -> str:
 def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]:
     """Yield words and what is said of them; below a word those which stand for it with fixed values."""
     for code in rows:
-        shown = translated("documents", f"code/{code}", language) or code
+        code_shown = translated("documents", f"code/{code}", language) or code
         yield (
-            re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, shown),
+            re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, code_shown),
             _poster_text(code, language),
         )
         for word in WORDS.values():
@@ -141,7 +141,7 @@ def page(language: str) -> Page:
         Line(LEFT, 53, 10, SANS, WHITE, _poster_text("subtitle", language)),
     ]
     y = 74.0
-    shown: list[str] = []
+    shown_words: list[str] = []
     groups = [(heading, list(_with_fixed(rows, language))) for heading, rows in GROUPS]
     next(rows for heading, rows in groups if heading == OTHERS).extend(_others(language))
     room = paper.HEIGHT - 26 - y - (HEAD_PT + 2) * len(groups)
@@ -150,22 +150,22 @@ def page(language: str) -> Page:
     for heading, rows in groups:
         page.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _poster_text(heading, language)))
         y += HEAD_PT
-        for number, (code, says) in enumerate(rows):
+        for number, (code, sentence) in enumerate(rows):
             key = f"block/{code.partition('(')[0]} in languages/{language}/studio.toml"
             assert len(code) <= CODE_SIGNS, f"too long for the poster: {code}"
-            assert len(says) <= SAYS_SIGNS, (
-                f"too long for the poster: {code} {says}; {key} is shorter"
+            assert len(sentence) <= SAYS_SIGNS, (
+                f"too long for the poster: {code} {sentence}; {key} is shorter"
             )
-            assert says, f"the poster has nothing to say of {code}: {key}"
-            shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
-            shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
+            assert sentence, f"the poster has nothing to say of {code}: {key}"
+            shown_words += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
+            shown_words += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:
                 page.append(Box(LEFT, y, RIGHT - LEFT, row_pt, PALE))
             page.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO, BLACK, code))
-            page.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, says))
+            page.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, sentence))
             y += row_pt
         y += 2
-    missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown)
+    missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown_words)
     assert not missing, f"the poster lacks {sorted(missing)}"
     page.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _poster_text("foot", language)))
     return page

@@ -10,10 +10,10 @@ from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
 from tools.generate.packed_texts import (
-    DEEPEST,
     END_CODE,
     FIRST_COMMON,
     FIRST_LETTER,
+    MOST_NESTED_PAIRS,
     letters_of,
     pack,
 )
@@ -24,14 +24,14 @@ SMALLEST = "uno"
 
 def remarks_header(command: str) -> str:
     """Return `remarks.h`."""
-    about = "What the robot says to a person beside what is wrong with a line."
-    return file_of(command, "remarks.h", about, [numbers_of("Remark", REMARKS)])
+    comment = "What the robot says to a person beside what is wrong with a line."
+    return file_of(command, "remarks.h", comment, [numbers_of("Remark", REMARKS)])
 
 
 def texts_header(command: str) -> str:
     """Return `texts.h`. The last of the names of faults is that of the highest number."""
     first, last = LINK_FAULTS[0][0], LINK_FAULTS[-1][0]
-    own = sum(number < first for number, *_ in FAULTS)
+    own_fault_count = sum(number < first for number, *_ in FAULTS)
     before = len(PROBLEMS) + len(REMARKS) - 1
     after = before + len(FAULTS) + len(LINK_FAULTS)
     return file_of(
@@ -49,7 +49,7 @@ def texts_header(command: str) -> str:
             "constexpr uint8_t name_of_fault(uint8_t fault) {",
             "  return static_cast<uint8_t>(",
             f"      fault > {last} ? {after} : fault < {first} ? fault + {before}",
-            f"                             : fault - {first} + {before + own + 1});",
+            f"                             : fault - {first} + {before + own_fault_count + 1});",
             "}",
             "",
             "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",
@@ -60,7 +60,7 @@ def texts_header(command: str) -> str:
             f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
             "",
             "// In flash: all texts, the codes of halves, and the two codes of each pair, which",
-            f"// may be pairs again, {DEEPEST} deep.",
+            f"// may be pairs again, {MOST_NESTED_PAIRS} deep.",
             "const uint8_t* packed_texts();",
             "const uint8_t* packed_codes();",
             "const uint8_t* pair_of(uint8_t code);",
@@ -142,11 +142,11 @@ def texts(command: str, all_texts: str, small_texts: str) -> str:
 
 def _table_function(function: str, table: str, at: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    first, *others = (f"k{item.title()}{table}" for item in answer_languages())
+    first_table, *other_tables = (f"k{item.title()}{table}" for item in answer_languages())
     numbers = [language_number(item) for item in answer_languages()[1:]]
-    pairs = zip(numbers, others, strict=True)
+    pairs = zip(numbers, other_tables, strict=True)
     choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
-    choice += first
+    choice += first_table
     return [
         f"const uint8_t* {function} {{",
         f"  return {f'({choice}){at}' if at else choice};",

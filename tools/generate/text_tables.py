@@ -66,10 +66,22 @@ def opcode_of(word: Word) -> int:
 def words_in_order() -> list[Word]:
     """Return the words of the language as the reader numbers them."""
     # as they are numbered in an image and in the bytecode
-    numbered = [*STARTS, "CHECK_CONNECTION", "FALSE", "TRUE", "TIME", "ABS", "MIN", "MAX", "ROUND"]
+    numbered_words = [
+        *STARTS,
+        "CHECK_CONNECTION",
+        "FALSE",
+        "TRUE",
+        "TIME",
+        "ABS",
+        "MIN",
+        "MAX",
+        "ROUND",
+    ]
 
     def place(word: Word) -> tuple[int, int]:
-        number = numbered.index(word.text) if word.text in numbered else len(numbered)
+        number = (
+            numbered_words.index(word.text) if word.text in numbered_words else len(numbered_words)
+        )
         role = ROLES.index(role_of(word))
         return role, number if role_of(word) in ("setup", "value", "function") else 0
 
@@ -123,7 +135,7 @@ def words_header(command: str) -> str:
         f"constexpr uint8_t kWord{camel(word.text)} = 0x{FIRST_WORD + k:02x};"
         for k, word in enumerate(words)
     ]
-    commands = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
+    command_count = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
     return file_of(
         command,
         "words.h",
@@ -136,7 +148,7 @@ def words_header(command: str) -> str:
             f"constexpr uint8_t kWordsEnd = 0x{FIRST_WORD + len(words):02x};",
             "",
             "// The words up to this one take arguments in brackets.",
-            f"constexpr uint8_t kCommands = {commands};",
+            f"constexpr uint8_t kCommands = {command_count};",
             "",
             "// What an argument may be; from kFirstRange on a number in a range.",
             f"constexpr uint8_t kAnyKind = {ANY};",
@@ -198,8 +210,8 @@ def words_tables(command: str) -> str:
 
 def problems_header(command: str) -> str:
     """Return `problems.h`."""
-    about = "What the reader of text says about a wrong line."
-    return file_of(command, "problems.h", about, [numbers_of("Problem", PROBLEMS)])
+    comment = "What the reader of text says about a wrong line."
+    return file_of(command, "problems.h", comment, [numbers_of("Problem", PROBLEMS)])
 
 
 def numbers_of(name: str, keys: Sequence[str]) -> str:
@@ -215,10 +227,10 @@ def bytes_of_table(data: Iterable[int]) -> str:
     return " ".join(f"0x{item:02x}," for item in data)
 
 
-def file_of(command: str, name: str, about: str, lines: Sequence[str], *includes: str) -> str:
+def file_of(command: str, name: str, comment: str, lines: Sequence[str], *includes: str) -> str:
     """Return a file of `vm_arduino/src/text/`; `includes` are more headers."""
     first = ["../vm/cpu.h"] if name.endswith(".h") else [f"{Path(name).stem}.h"]
     if includes and not name.endswith(".h"):
         first.append("")
-    rows = [about] if about else []
+    rows = [comment] if comment else []
     return cpp_file(command, f"text/{name}", rows, "\n".join([*lines, ""]), *first, *includes)

@@ -61,10 +61,10 @@ def _page(command: str, name: str, language: str, is_kept: bool) -> str:
 def _blocks(name: str, language: str, is_kept: bool) -> list[Block]:
     """Return the parts of a page; what is kept has no finished robot below a heading."""
     blocks = page_of(plan_of(robots.load(name), language))
-    after = [*(block.kind for block in blocks[1:]), ""]
+    kinds_after = [*(block.kind for block in blocks[1:]), ""]
     return [
         block
-        for block, then in zip(blocks, after, strict=True)
+        for block, then in zip(blocks, kinds_after, strict=True)
         if not is_kept or "finished" not in (block.kind, then)
     ]
 

@@ -31,7 +31,7 @@ from tools.builds.studio import find_tools
 from tools.campaign import results
 from tools.release import facts
 from tools.release.packing import sha256
-from tools.release.parts import PARTS, Clone, chosen
+from tools.release.parts import PARTS, Clone, chosen_parts
 
 SUMS = "SHA256SUMS"
 # Two folders of other depths and names: what has a path in it differs.
@@ -40,9 +40,9 @@ NEEDED = {"setuptools": "release", "twine": "release", "sphinx": "site", "platfo
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    about, _, more = (__doc__ or "").partition("\n\n")
+    description, _, epilog = (__doc__ or "").partition("\n\n")
     reader = argparse.ArgumentParser(
-        prog="python -m tools.release", description=about, epilog=more,
+        prog="python -m tools.release", description=description, epilog=epilog,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
     reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
@@ -55,7 +55,7 @@ def main(words: Sequence[str] | None = None) -> int:
     folder: Path = options.folder.absolute()
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         return _fail(f"{folder} is there already, and is not empty.")
-    parts = chosen(options.part)
+    parts = chosen_parts(options.part)
     lacking = lacks(parts)
     if lacking:
         return _fail(lacking)
@@ -75,11 +75,13 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
             clones = _clones(Path(scratch), options.url, options.whole_stick)
         except CannotMake as why:
             return _fail(str(why))
-        wrong = list(facts.complaints(clones[0].root))
-        wrong += [complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint]
-        for item in wrong:
+        complaints = list(facts.complaints(clones[0].root))
+        complaints += [
+            complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint
+        ]
+        for item in complaints:
             _say(item)
-        if wrong and not options.as_is:
+        if complaints and not options.as_is:
             return _fail("Nothing was made. To rehearse all the same:  --as-is")
         try:
             items = [_make(clone, parts) for clone in clones]
@@ -89,19 +91,21 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         except CannotMake as why:
             return _fail(str(why))
         files = [file for paths in items[0].values() for file in paths]
-        again = clones[1].parts
-        failed = [path.name for path in files if sha256(path) != sha256(again / path.name)]
+        second_clone_parts = clones[1].parts
+        failed_parts = [
+            path.name for path in files if sha256(path) != sha256(second_clone_parts / path.name)
+        ]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
     sums = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
     (folder / SUMS).write_text(sums, encoding="utf-8", newline="\n")
     print(sums, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
-    if old := ", ".join(results.old()):
+    if old := ", ".join(results.outdated_goals()):
         _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
-    for item in failed:
+    for item in failed_parts:
         print(f"made twice, it is not the same: {item}", file=sys.stderr)
-    if wrong or failed:
+    if complaints or failed_parts:
         return 1
     if options.tag:
         try:
@@ -141,10 +145,10 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
         if completed.returncode:
             sentence = completed.stderr.strip().splitlines() or ["git says nothing"]
             raise CannotMake(f"This folder is no clone that git can copy: {sentence[-1]}")
-        about = root / "pyproject.toml"
-        text = about.read_text("utf-8")
+        project_file = root / "pyproject.toml"
+        text = project_file.read_text("utf-8")
         if url and facts.with_address(text, url) != text:
-            about.write_text(facts.with_address(text, url), encoding="utf-8")
+            project_file.write_text(facts.with_address(text, url), encoding="utf-8")
             _commit(root)
         clones.append(Clone(root, parts, facts.version(root), facts.address(root),
                            facts.epoch(ROOT), number, whole_stick))  # fmt: skip
@@ -159,10 +163,12 @@ def _commit(root: Path) -> None:
 
 
 def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
-    git = ["git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
-           "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false"]  # fmt: skip
+    git_command = [
+        "git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
+        "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false",
+    ]  # fmt: skip
     for step in steps:
-        completed = subprocess.run([*git, *step], capture_output=True, text=True)
+        completed = subprocess.run([*git_command, *step], capture_output=True, text=True)
         if completed.returncode:
             text = (completed.stderr or completed.stdout).strip().splitlines() or [
                 "git says nothing"
@@ -175,9 +181,9 @@ def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
     result = {}
     for name in parts:
         _say(f"{name}, in {clone.root.name}")
-        begun = time.monotonic()
+        begin_s = time.monotonic()
         result[name] = PARTS[name].make(clone)
-        _say(f"{name}: {time.monotonic() - begun:.0f} s")
+        _say(f"{name}: {time.monotonic() - begin_s:.0f} s")
     return result
 
 

@@ -56,17 +56,20 @@ def tags(root: Path) -> list[str]:
 
 def complaints(root: Path) -> Iterator[str]:
     """Yield a sentence for each thing that keeps a clone from being released."""
-    changed = _git(root, "status", "--porcelain").splitlines()
-    if changed:
-        name = changed[0][3:]
-        yield f"{len(changed)} files are not committed, {name} among them. Commit them first."
-    ours = version(root)
-    yield from _check_tags(root, ours)
-    yield from _check_changelog(root, ours)
+    changed_files = _git(root, "status", "--porcelain").splitlines()
+    if changed_files:
+        name = changed_files[0][3:]
+        yield f"{len(changed_files)} files are not committed, {name} among them. Commit them first."
+    own_version = version(root)
+    yield from _check_tags(root, own_version)
+    yield from _check_changelog(root, own_version)
     for name, pattern in _REPEATED.items():
         result = _first_match(root / name, pattern)
-        if result != ours:
-            yield f"{name} has version {result or 'none'}; tiniscript/base/version.py has {ours}."
+        if result != own_version:
+            yield (
+                f"{name} has version {result or 'none'}; "
+                f"tiniscript/base/version.py has {own_version}."
+            )
     for name, pattern in _PEOPLE.items():
         result = _first_match(root / name, pattern)
         if result != PEOPLE:
@@ -80,29 +83,35 @@ def complaints(root: Path) -> Iterator[str]:
         )
 
 
-def _check_tags(root: Path, ours: str) -> Iterator[str]:
+def _check_tags(root: Path, own_version: str) -> Iterator[str]:
     versions = [name for name in tags(root) if re.fullmatch(r"v\d.*", name)]
-    if versions and f"v{ours}" not in versions:
-        yield f"The commit has the tag {versions[0]}, and the version {ours}: one of both is wrong."
-    elif not versions and _git(root, "tag", "--list", f"v{ours}"):
-        yield f"The tag v{ours} is that of another commit: give this one a new version."
+    if versions and f"v{own_version}" not in versions:
+        yield (
+            f"The commit has the tag {versions[0]}, and the version {own_version}: "
+            "one of both is wrong."
+        )
+    elif not versions and _git(root, "tag", "--list", f"v{own_version}"):
+        yield f"The tag v{own_version} is that of another commit: give this one a new version."
 
 
-def _check_changelog(root: Path, ours: str) -> Iterator[str]:
+def _check_changelog(root: Path, own_version: str) -> Iterator[str]:
     text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
     dated = _DATED.search(text)
-    if f"\n## {ours}" not in text:
-        yield f"CHANGELOG.md has no section for {ours}."
-    elif dated is None or dated.group(1) != ours:
-        yield f"CHANGELOG.md has no date for {ours}. Write:  ## {ours} (2026-01-31)"
+    if f"\n## {own_version}" not in text:
+        yield f"CHANGELOG.md has no section for {own_version}."
+    elif dated is None or dated.group(1) != own_version:
+        yield f"CHANGELOG.md has no date for {own_version}. Write:  ## {own_version} (2026-01-31)"
     elif cited := _first_match(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
         if cited != dated.group(2):
             yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated.group(2)}."
     _, _, rest = text.partition("\n## Unreleased\n")
     if not rest:
         yield "CHANGELOG.md has no section Unreleased: the next change has no place."
-    elif f"\n## {ours}" in text and rest.partition("\n## ")[0].strip():
-        yield f"CHANGELOG.md has changes under Unreleased, above {ours}: they are not released."
+    elif f"\n## {own_version}" in text and rest.partition("\n## ")[0].strip():
+        yield (
+            f"CHANGELOG.md has changes under Unreleased, above {own_version}: "
+            "they are not released."
+        )
 
 
 def _first_match(path: Path, pattern: str) -> str:

@@ -39,10 +39,10 @@ class Clone(NamedTuple):
 
     def environment(self) -> dict[str, str]:
         """Return the variables of a process that builds."""
-        found = {name: value for name, value in os.environ.items()
-                 if not name.startswith(("PIP_REQUIRE", "PYTHON", "XDG_STATE"))}  # fmt: skip
+        variables = {name: value for name, value in os.environ.items()
+                     if not name.startswith(("PIP_REQUIRE", "PYTHON", "XDG_STATE"))}  # fmt: skip
         return {
-            **found,
+            **variables,
             "PYTHONPATH": os.pathsep.join(map(str, (self.root, self.root / "compiler"))),
             "PYTHONHASHSEED": str(self.seed),
             "PYTHONDONTWRITEBYTECODE": "1",
@@ -103,10 +103,10 @@ def page(clone: Clone) -> list[Path]:
     if (clone.root / READY).is_dir():
         clone.python("-c", _FIRMWARE_BESIDE)
     stamp = clone.root / PAGE / "build.json"
-    kept = stamp.read_bytes()
+    stamp_data = stamp.read_bytes()
     stamp.unlink()  # says of which files it was built, not a file of the page
     path = pack(clone.root / PAGE, clone.file_of("studio"), clone.epoch)
-    stamp.write_bytes(kept)
+    stamp.write_bytes(stamp_data)
     return [path]
 
 
@@ -132,8 +132,8 @@ def stick(clone: Clone) -> list[Path]:
     folder = clone.parts / "stick"
     words = ["--wheel", str(next(clone.parts.glob("*.whl")))]
     if not clone.whole_stick:
-        here = f"{sys.version_info[0]}.{sys.version_info[1]}"
-        words += ["--system", "linux", "--python", here, "--no-installer"]
+        python_version = f"{sys.version_info[0]}.{sys.version_info[1]}"
+        words += ["--system", "linux", "--python", python_version, "--no-installer"]
     # 1: something could not be had, which the stick's README.txt then names
     good = (0, 1) if clone.whole_stick else (0,)
     clone.python("-m", "tools.builds.usb_stick", str(folder), *words, good=good)
@@ -162,7 +162,7 @@ PARTS = {
 }
 
 
-def chosen(names: list[str]) -> list[str]:
+def chosen_parts(names: list[str]) -> list[str]:
     """Return parts with those that they need, in the order in which they are made."""
     expected = set(names or PARTS)
     for name in reversed(PARTS):

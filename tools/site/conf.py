@@ -61,10 +61,14 @@ def lead_to_the_other_halves(
 ) -> None:
     """Tell a page where it is in each other language, and where the studio is."""
     up = "../" * (name.count("/") + 1)
-    there = HALF["pages"].get(name, [])
+    languages_there = HALF["pages"].get(name, [])
     context["others"] = [
-        (language, said, f"{up}{language}/{name if language in there else 'index'}.html")
-        for language, said in HALF["others"].items()
+        (
+            language,
+            language_name,
+            f"{up}{language}/{name if language in languages_there else 'index'}.html",
+        )
+        for language, language_name in HALF["others"].items()
     ]
     context["has_studio"] = HALF["has_studio"]
     context["studio_address"] = f"{up}studio/index.html"

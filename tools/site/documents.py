@@ -48,20 +48,20 @@ def language_of(name: str) -> str:
 
 def sources(root: Path, english: str) -> dict[str, str]:
     """Return the files of a document by language, English first."""
-    found = {language: name_in(language, english) for language in languages()}
+    name_of_language = {language: name_in(language, english) for language in languages()}
     return {
         language: name
-        for language, name in found.items()
+        for language, name in name_of_language.items()
         if language == SOURCE_LANGUAGE or (root / name).is_file()
     }
 
 
-def links(language: str, english: str, others: Iterable[str]) -> list[str]:
+def links(language: str, english: str, other_languages: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
-    here = PurePosixPath(name_in(language, english)).parent
+    own_folder = PurePosixPath(name_in(language, english)).parent
     return [
-        f"[{language_info(other).name}]({_relative_path(name_in(other, english), here)})"
-        for other in others
+        f"[{language_info(other).name}]({_relative_path(name_in(other, english), own_folder)})"
+        for other in other_languages
         if other != language
     ]
 
@@ -107,7 +107,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
 
     `built` are the names of those that are there beside its files.
     """
-    matches = [
+    documents_in_clone = [
         *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
         *_guides(root, "write", "language", "robots", "studio", "command"),
         *_guides(root, "teach", "class"),
@@ -126,15 +126,18 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_rows(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE_LANGUAGE: INDEX_PAGE}),
     ]
-    there = [
+    readable_documents = [
         document
-        for document in matches
+        for document in documents_in_clone
         if document.sources[SOURCE_LANGUAGE] in built
         or (root / document.sources[SOURCE_LANGUAGE]).is_file()
     ]
-    return [document._replace(sources=_with_built(built, document.sources)) for document in there]
+    return [
+        document._replace(sources=_with_built(built, document.sources))
+        for document in readable_documents
+    ]
 
 
-def _with_built(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
-    names = {language: name_in(language, kept[SOURCE_LANGUAGE]) for language in languages()}
-    return {value: name for value, name in names.items() if value in kept or name in built}
+def _with_built(built: Collection[str], sources: dict[str, str]) -> dict[str, str]:
+    names = {language: name_in(language, sources[SOURCE_LANGUAGE]) for language in languages()}
+    return {value: name for value, name in names.items() if value in sources or name in built}

@@ -80,7 +80,7 @@ def _link_problem(
     if not target.is_file():
         return "no such file"
     name = unquote(parts.fragment)
-    there = pages.get(target)
-    if name and there is not None and name not in there.names:
+    target_page = pages.get(target)
+    if name and target_page is not None and name not in target_page.names:
         return "no such place on that page"
     return ""

@@ -68,53 +68,59 @@ def shelf(root: Path, documents: list[Document], built: dict[str, str] | None = 
     places: dict[str, Place] = {}
     twins: dict[str, dict[str, Place]] = {}
     for document in documents:
-        own = {language: Place(language, document.name) for language in document.sources}
+        place_of_language = {
+            language: Place(language, document.name) for language in document.sources
+        }
         for language, source in document.sources.items():
-            places[source], twins[source] = own[language], own
+            places[source], twins[source] = place_of_language[language], place_of_language
     return Shelf(root, places, twins, built or {})
 
 
-def page(source: str, on: Shelf, place: Place | None = None) -> str:
+def page(source: str, shelf: Shelf, place: Place | None = None) -> str:
     """Return the Markdown of a document's page; note the files that it leads to.
 
     `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
     file.
     """
-    matches: list[str] = []
-    path = on.root / source
-    here = place or on.places[source]
-    text = on.text(source)
+    parts: list[str] = []
+    path = shelf.root / source
+    place_ = place or shelf.places[source]
+    text = shelf.text(source)
     if (path.parent / "lesson.toml").is_file():
         text = fill_numbers(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
-        matches.append(
+        parts.append(
             part
             if is_code
-            else _LINK.sub(lambda link: _resolved_link(link, source, here, on), part)
+            else _LINK.sub(lambda link: _resolved_link(link, source, place_, shelf), part)
         )
-    return "".join(matches)
+    return "".join(parts)
 
 
-def _resolved_link(link: re.Match[str], source: str, place: Place, on: Shelf) -> str:
+def _resolved_link(link: re.Match[str], source: str, place: Place, shelf: Shelf) -> str:
     """Return a link of a document as the page has it."""
     mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
     if not path or ":" in path:
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
-    twins = on.twins.get(target, {})
+    twins = shelf.twins.get(target, {})
     is_itself = place in twins.values()  # in another language
-    there = on.places.get(target) if is_itself else twins.get(place.language, on.places.get(target))
-    if there is not None and there.language == place.language:
-        return f"[{text}]({way(place.name, there.name)}.md{anchor})"
-    if there is not None:
-        return _outside_link(text, way(place.address, there.address) + anchor)
-    if not on.has(target):
+    target_place = (
+        shelf.places.get(target)
+        if is_itself
+        else twins.get(place.language, shelf.places.get(target))
+    )
+    if target_place is not None and target_place.language == place.language:
+        return f"[{text}]({way(place.name, target_place.name)}.md{anchor})"
+    if target_place is not None:
+        return _outside_link(text, way(place.address, target_place.address) + anchor)
+    if not shelf.has(target):
         raise CannotMake(f"{source}: {path}")
     if mark:
-        on.pictures.add(target)
+        shelf.pictures.add(target)
         return f"![{text}](/{FILES}/{target})"
-    on.files.add(target)
+    shelf.files.add(target)
     return _outside_link(text, way(place.address, f"{FILES}/{target}"))
 
 
@@ -123,6 +129,6 @@ def _outside_link(text: str, address: str) -> str:
     return f'<a href="{escape(address)}">{text}</a>'
 
 
-def way(here: str, there: str) -> str:
+def way(source_page: str, target_page: str) -> str:
     """Return the relative address of one page on another, both named from the same folder."""
-    return Path(os.path.relpath(there, start=PurePosixPath(here).parent)).as_posix()
+    return Path(os.path.relpath(target_page, start=PurePosixPath(source_page).parent)).as_posix()

@@ -155,9 +155,9 @@ class Uno:
         try:
             yield
         finally:
-            there = len(self.events)
+            event_count = len(self.events)
             self._print_state("back")
-            self._wait_for_pause(there)
+            self._wait_for_pause(event_count)
             del self.events[mark:]
 
     def pause(self) -> None:
@@ -166,11 +166,14 @@ class Uno:
         self._wait_for_pause(mark)
 
     def wait_for(
-        self, wanted: Callable[[Event], bool], timeout_s: float = PATIENCE_S, since: int = 0
+        self,
+        is_wanted: Callable[[Event], bool],
+        timeout_s: float = PATIENCE_S,
+        first_number: int = 0,
     ) -> Event:
-        """Return the first event that is wanted, from number `since` on; wait for it if need be."""
+        """Return the first wanted event from `first_number` on; wait for it if need be."""
         end = time.monotonic() + timeout_s
-        at = since
+        at = first_number
         while True:
             with self._news:
                 while at >= len(self.events) and not self._has_ended:
@@ -182,7 +185,7 @@ class Uno:
             at += 1
             if event.what == "mistake":
                 raise ValueError(event["text"])
-            if wanted(event):
+            if is_wanted(event):
                 return event
 
     # -- what is around it --------------------------------------------------------------------
@@ -259,7 +262,7 @@ class Uno:
         """
         mark = len(self.events)
         self._print_state(f"stack {from_address}")
-        return Stack.of(self.wait_for(lambda event: event.what == "stack", since=mark))
+        return Stack.of(self.wait_for(lambda event: event.what == "stack", first_number=mark))
 
     # -- interrupts ---------------------------------------------------------------------------
 
@@ -270,7 +273,9 @@ class Uno:
         """
         mark = len(self.events)
         self._print_state("masked")
-        self.wait_for(lambda event: event.what == "masked" and "places" in event.rest, since=mark)
+        self.wait_for(
+            lambda event: event.what == "masked" and "places" in event.rest, first_number=mark
+        )
         events = [event for event in self.events[mark:] if event.what == "masked"]
         return [Masked.of(event) for event in events if "vector" in event.rest]
 
@@ -285,8 +290,8 @@ class Uno:
         except BrokenPipeError:
             raise RuntimeError(f"the Uno has ended: {self._serial_output()}") from None
 
-    def _wait_for_pause(self, since: int) -> Event:
-        event = self.wait_for(lambda event: event.what == "paused", since=since)
+    def _wait_for_pause(self, first_number: int) -> Event:
+        event = self.wait_for(lambda event: event.what == "paused", first_number=first_number)
         self.cycle = event.cycle
         return event
 

@@ -45,14 +45,14 @@ def build() -> Path:
     program = folder / key.hexdigest()[:16]
     if not program.exists():
         folder.mkdir(mode=0o700, exist_ok=True)
-        own = program.with_suffix(f".{os.getpid()}")
+        temporary = program.with_suffix(f".{os.getpid()}")
         code = [str(path) for path in inputs if path.suffix == ".c"]
         completed = subprocess.run(
-            ["gcc", *FLAGS, *WARNINGS, *code, *LIBRARIES, "-o", str(own)],
+            ["gcc", *FLAGS, *WARNINGS, *code, *LIBRARIES, "-o", str(temporary)],
             capture_output=True,
             text=True,
         )
         if completed.returncode != 0:
             raise RuntimeError(f"gcc refuses the simulated Uno:\n{completed.stderr[:4000]}")
-        own.replace(program)
+        temporary.replace(program)
     return program

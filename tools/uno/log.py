@@ -67,11 +67,11 @@ class Byte:
 class Stack:
     """Bytes of RAM after what is there all the time, and how much of it the stack has taken.
 
-    `untouched` are as power-on has left them. `program` and `interrupt` are the deepest that each
-    of the two went by itself.
+    `untouched_bytes` are as power-on has left them. `program` and `interrupt` are the deepest that
+    each of the two went by itself.
     """
 
-    untouched: int
+    untouched_bytes: int
     room: int
     program: int
     interrupt: int
@@ -97,7 +97,7 @@ class Masked:
     vector: int
     is_entry: bool
     pc: int
-    cycles: int
+    cycle_count: int
 
     @classmethod
     def of(cls, event: Event) -> Masked:

@@ -35,9 +35,9 @@ Problem = tuple[int, str]  # a line of a file, and a sentence
 class Entry:
     """An English text, and what a language has of it.
 
-    `said` are the forms of its translation, empty without one, and `seen` is the hash of the text
-    that it translates, UNKNOWN where nobody has said that. A stale one is of what the English text
-    was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
+    `said` are the forms of its translation, empty without one, and `seen_hash` is the hash of the
+    text that it translates, UNKNOWN where nobody has said that. A stale one is of what the English
+    text was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
     language says it in another way, or since its words stand under the key `like`, too.
     """
 
@@ -45,7 +45,7 @@ class Entry:
     english: str
     plural: str = ""
     translation: Forms = field(default_factory=dict)
-    seen: str = ""
+    seen_hash: str = ""
     notes: list[str] = field(default_factory=list)
     is_same: bool = False
     like: str = ""
@@ -62,7 +62,7 @@ class Entry:
 
     @property
     def is_stale(self) -> bool:
-        return self.seen not in ("", UNKNOWN_HASH, self.hash)
+        return self.seen_hash not in ("", UNKNOWN_HASH, self.hash)
 
     @property
     def is_translated(self) -> bool:
@@ -92,23 +92,27 @@ class Catalogue:
 class Row:
     """A key of a file with what stands after it, which is None where it cannot be read.
 
-    `above` are the rows of notes and tables before it.
+    `text_above` are the rows of notes and tables before it.
     """
 
     key: str
     value: Any
     line: int
     text: str
-    above: str = ""
+    text_above: str = ""
     table: str = ""
 
     def takes(self, other: Row) -> bool:
         """Take other forms of the same text from another row, `KEY.one` and `KEY.other`."""
-        one, more = self.value, other.value
-        if not isinstance(one, dict) or not isinstance(more, dict) or one.keys() & more.keys():
+        one, other_value = self.value, other.value
+        if (
+            not isinstance(one, dict)
+            or not isinstance(other_value, dict)
+            or one.keys() & other_value.keys()
+        ):
             return False
-        self.value = {**one, **more}
-        self.text += other.above + other.text
+        self.value = {**one, **other_value}
+        self.text += other.text_above + other.text
         return True
 
 
@@ -131,10 +135,10 @@ def decode_file(path: Path) -> tuple[str, list[Problem]]:
 
 def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     """Return the rows of a TOML file, what stands below all of them, and what is no TOML."""
-    found: dict[str, Row] = {}
-    again: list[Row] = []  # a key that is there twice
+    row_by_key: dict[str, Row] = {}
+    repeated_rows: list[Row] = []  # a key that is there twice
     problems: list[Problem] = []
-    above, table = "", ""
+    text_above, table = "", ""
     lines = re.findall(r".*\n|.+", text)
     at = 0
     while at < len(lines):
@@ -148,17 +152,21 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
             )
             value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
         if is_row:
-            row = Row(*next(iter(value.items())), at + 1, block, above, table)
-            if (first := found.setdefault(row.key, row)) is not row and not first.takes(row):
-                again.append(row)
-            above = ""
+            row = Row(*next(iter(value.items())), at + 1, block, text_above, table)
+            if (first := row_by_key.setdefault(row.key, row)) is not row and not first.takes(row):
+                repeated_rows.append(row)
+            text_above = ""
         else:
-            above += block
+            text_above += block
             table = next(iter(value), table)
         at = end
-    if not problems and not again:
-        problems = [(line, f"this is no TOML: {said}") for line, said in _toml_problems(text)]
-    return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
+    if not problems and not repeated_rows:
+        problems = [(line, f"this is no TOML: {reason}") for line, reason in _toml_problems(text)]
+    return (
+        sorted([*row_by_key.values(), *repeated_rows], key=lambda row: row.line),
+        text_above,
+        problems,
+    )
 
 
 def _is_row_start(line: str) -> bool:
@@ -209,10 +217,10 @@ def load(path: Path) -> Catalogue:
     """Read the English texts of a file. What is wrong in it is a problem."""
     catalogue = Catalogue()
     text, catalogue.problems = decode_file(path)
-    read, _, problems = rows(text)
+    catalogue_rows, _, problems = rows(text)
     catalogue.problems += problems
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()
-    for row in read:
+    for row in catalogue_rows:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
         for item in row.value if isinstance(row.value, list) else [row.value]:

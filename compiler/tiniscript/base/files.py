@@ -28,8 +28,9 @@ NAME_CHARACTERS = 100  # of a file's name in that of its new one
 LOCK_ENDING = (
     ".lock"  # the end of the name of a file that commands lock while they change another one
 )
-LOCK_S = 5.0  # for which a command waits for another one
-OPEN_S = 1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
+LOCK_WAIT_S = 5.0  # for which a command waits for another one
+# For which a file may be open elsewhere until it cannot be replaced on Windows.
+REPLACE_WAIT_S = 1.0
 OWNER_ONLY = 0o700  # a folder that only its user may look into
 ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
 
@@ -54,7 +55,7 @@ def settings_folder() -> Path:
     return user_config_path("tiniscript", appauthor=False)
 
 
-def _linux_folder(variable: str, usual: str) -> Path | None:
+def _linux_folder(variable: str, usual_folder: str) -> Path | None:
     """Return a folder of ours as Linux has it, or None.
 
     Nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long as
@@ -62,8 +63,8 @@ def _linux_folder(variable: str, usual: str) -> Path | None:
     """
     if sys.platform not in ("linux", "emscripten") or "ANDROID_ROOT" in os.environ:
         return None
-    chosen = os.environ.get(variable)
-    folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / usual
+    configured = os.environ.get(variable)
+    folder = Path(configured) if configured else Path(os.environ.get("HOME", "")) / usual_folder
     return folder / "tiniscript" if folder.is_absolute() else None
 
 
@@ -128,18 +129,18 @@ def _refuse_foreign_links(path: Path) -> None:
     """
     if sys.platform == "win32":
         return
-    here, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
+    current, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
     followed = 0
     while rest:
-        step = here / rest.pop(0)
+        step = current / rest.pop(0)
         try:
             link = step.lstat()
         except OSError:  # nothing is there, so nothing leads away
             return
         if not stat.S_ISLNK(link.st_mode):
-            here = step
+            current = step
             continue
-        folder = here.stat()
+        folder = current.stat()
         is_shared = folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
         if is_shared and link.st_uid not in (os.geteuid(), folder.st_uid, 0):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
@@ -147,7 +148,7 @@ def _refuse_foreign_links(path: Path) -> None:
         if followed > MOST_LINKS:
             return  # what opens it says so
         target = step.readlink()
-        here = Path(target.anchor) if target.anchor else here
+        current = Path(target.anchor) if target.anchor else current
         rest = [*target.parts[1 if target.anchor else 0 :], *rest]
 
 
@@ -157,7 +158,7 @@ def _move_into_place(new: Path, target: Path) -> None:
     Windows replaces no file that is open, and a virus scanner or another command may be reading it
     just now: then this waits a moment.
     """
-    end_s = monotonic() + OPEN_S
+    end_s = monotonic() + REPLACE_WAIT_S
     while True:
         try:
             new.replace(target)
@@ -179,7 +180,7 @@ def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
     number = os.open(lock, flags, mode)
     try:
-        end_s = monotonic() + LOCK_S
+        end_s = monotonic() + LOCK_WAIT_S
         while not try_lock(number):
             if monotonic() >= end_s:
                 raise TimeoutError(110, os.strerror(110))
@@ -205,13 +206,15 @@ def try_lock(number: int) -> bool:
     return True
 
 
-def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".json",)) -> None:
-    """Remove what killed commands have left in a folder of ours; `kept` is what names may end in.
+def remove_abandoned(
+    folder: Path, names: list[str], kept_endings: tuple[str, ...] = (".json",)
+) -> None:
+    """Remove what killed commands have left in a folder of ours, but for names with `kept_endings`.
 
     `names` are those of the folder. A file that may still become whole is left alone.
     """
     for name in names:
-        if not name.endswith(kept):
+        if not name.endswith(kept_endings):
             with suppress(OSError):
                 if (folder / name).lstat().st_mtime < time() - ABANDONED_AFTER_S:
                     (folder / name).unlink()

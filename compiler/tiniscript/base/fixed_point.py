@@ -74,9 +74,9 @@ def whole(a: int) -> int:
     return (a + 500) // ONE if a >= 0 else -((500 - a) // ONE)
 
 
-def round_to(a: int, decimals: int) -> int:
-    """ROUND(a, decimals): `decimals` is rounded to a whole number first; 3 or more keep `a`."""
-    places = whole(decimals)
+def round_to(a: int, decimal_count: int) -> int:
+    """ROUND(a, decimals): their count is rounded to a whole number first; 3 or more keep `a`."""
+    places = whole(decimal_count)
     if places >= 3:
         return a
     if places < -6:  # half of 10**7 is more than any number

@@ -64,15 +64,15 @@ KIT_WORDS_SINCE = {device.name: "0.3" for device in REMOTE}
 class Kit(NamedTuple):
     """`speed` and `turn` are thousandths of a centimetre and of a degree in a second at 100 %.
 
-    0: not known, and programs have no moves by the one or the other. `given` are the words that
-    have given way to one program's own.
+    0: not known, and programs have no moves by the one or the other. `given_words` are the words
+    that have given way to one program's own.
     """
 
     sensors: tuple[Device, ...]
     actuators: tuple[Device, ...] = ()
     speed: int = 0
     turn: int = 0
-    given: frozenset[str] = frozenset()
+    given_words: frozenset[str] = frozenset()
 
     @property
     def has_remote(self) -> bool:
@@ -87,15 +87,15 @@ class Kit(NamedTuple):
         """
         if not self.has_remote:
             return self.sensors
-        taken = self.given.union(self.names) & KIT_WORDS_SINCE.keys()
-        if not taken:
+        taken_words = self.given_words.union(self.names) & KIT_WORDS_SINCE.keys()
+        if not taken_words:
             return (*self.sensors, *REMOTE)
-        return (*self.sensors, *(device._replace(name="") if device.name in taken else device
+        return (*self.sensors, *(device._replace(name="") if device.name in taken_words else device
                                  for device in REMOTE))  # fmt: skip
 
     def asks_remote(self, uses: Sequence[tuple[str, int]]) -> bool:
         """Whether code that uses these devices reads a remote control; a use is as below."""
-        return any(what == "sensor" and k >= len(self.sensors) for what, k in uses)
+        return any(kind == "sensor" and k >= len(self.sensors) for kind, k in uses)
 
     def go_ms(self, way: int, power: int, turns: bool) -> int:
         """Return how long a move takes that goes, or `turns`, so many thousandths.
@@ -133,11 +133,11 @@ class Kit(NamedTuple):
         """
         hashes = self.hashes if uses else ()
         result = 0
-        for what, number in uses:
+        for kind, number in uses:
             result <<= 1
             if result > 0xFFFF:
                 result ^= 0x10000 | DEVICES_POLYNOMIAL
-            result ^= hashes[number + (0 if what == "sensor" else len(self.readings))]
+            result ^= hashes[number + (0 if kind == "sensor" else len(self.readings))]
         return result
 
     def lines(self) -> list[str]:
@@ -150,9 +150,9 @@ class Kit(NamedTuple):
         return [*_lines("sensor", (*self.sensors, *remote)), *_lines("actuator", self.actuators)]
 
 
-def _lines(what: str, devices: Sequence[Device]) -> list[str]:
+def _lines(kind: str, devices: Sequence[Device]) -> list[str]:
     return [
-        f"{what} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
+        f"{kind} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
         for device in devices
     ]
 

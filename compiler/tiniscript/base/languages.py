@@ -157,15 +157,15 @@ def plural_text(name: str, key: str, count: int, language: str) -> str:
 def catalogue(name: str, language: str) -> Texts:
     """Return the texts of a catalogue by key; of an unknown language they are English."""
     language = language if language in languages() else SOURCE_LANGUAGE
-    own, path = files(name, language)[1], FOLDER / language / (name + CACHE_ENDING)
-    if not own.is_file() and (is_clone() or not path.is_file()):
+    translation_path, path = files(name, language)[1], FOLDER / language / (name + CACHE_ENDING)
+    if not translation_path.is_file() and (is_clone() or not path.is_file()):
         if language != SOURCE_LANGUAGE:  # nothing is translated, or a page has not fetched it
             return catalogue(name, SOURCE_LANGUAGE)
         if not is_clone():
             return {}
-    beside = (own.with_name(item) for item in (SEEN_FILE, ABOUT_FILE))
+    companion_files = (translation_path.with_name(item) for item in (SEEN_FILE, ABOUT_FILE))
     result: Texts = _load_cached(
-        path, [*files(name, language), *beside], lambda: texts(name, language)
+        path, [*files(name, language), *companion_files], lambda: texts(name, language)
     )
     return result
 
@@ -190,12 +190,16 @@ def entries(name: str, language: str) -> Catalogue:
     )
 
     source, path = files(name, language)
-    own = read_translation_file(path) if language != SOURCE_LANGUAGE else TranslationFile()
-    english = load(source) if name != NAMES_CATALOGUE else catalogue_of_names(own)
+    translation_file = (
+        read_translation_file(path) if language != SOURCE_LANGUAGE else TranslationFile()
+    )
+    english = load(source) if name != NAMES_CATALOGUE else catalogue_of_names(translation_file)
     for line, why in english.problems:
         raise WrongTexts(f"{source}:{line}: {why}")
-    seen, _ = read_seen(path.with_name(SEEN_FILE))
-    return merge_translations(english, name, own, seen, read_language(path.with_name(ABOUT_FILE)))
+    seen_hashes, _ = read_seen(path.with_name(SEEN_FILE))
+    return merge_translations(
+        english, name, translation_file, seen_hashes, read_language(path.with_name(ABOUT_FILE))
+    )
 
 
 def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:

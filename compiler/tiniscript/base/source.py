@@ -118,12 +118,14 @@ def decode(data: bytes) -> str:
 REPLACEMENT_SIGN = "?"  # of a character that is not printable
 
 
-def printable(text: str, most: int | None = None) -> str:
+def printable(text: str, most_characters: int | None = None) -> str:
     """Return a text without control characters, line ends and marks of direction.
 
-    What is longer than `most` characters is cut, which the reader can see.
+    What is longer than `most_characters` characters is cut, which the reader can see.
     """
-    cut = text if most is None else text[:most]
-    if not cut.isprintable():
-        cut = "".join(letter if letter.isprintable() else REPLACEMENT_SIGN for letter in cut)
-    return cut + "…" if len(cut) < len(text) else cut
+    shown_text = text if most_characters is None else text[:most_characters]
+    if not shown_text.isprintable():
+        shown_text = "".join(
+            letter if letter.isprintable() else REPLACEMENT_SIGN for letter in shown_text
+        )
+    return shown_text + "…" if len(shown_text) < len(text) else shown_text

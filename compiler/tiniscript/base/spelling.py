@@ -13,8 +13,8 @@ from functools import cache
 from tiniscript.base.languages import languages, table
 
 
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the word among `known` that a slip of the finger away is `word`, or None.
+def nearest(word: str, candidates: Iterable[str]) -> str | None:
+    """Return the word among `candidates` that a slip of the finger away is `word`, or None.
 
     A slip is a letter that is wrong, missing, doubled or exchanged with the next: one in short
     words, two in longer ones. A wrong suggestion is worse than none, so in a word of three
@@ -22,12 +22,14 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     """
     if not 2 < len(word) <= 40:
         return None
-    allowed = 1 if len(word) <= 5 else 2
-    best, its_edits = None, allowed + 1
+    most_edits = 1 if len(word) <= 5 else 2
+    best, its_edits = None, most_edits + 1
     letters = set(word)
-    for other in known:
-        is_far = abs(len(other) - len(word)) > allowed or len(letters.difference(other)) > allowed
-        if len(other) > 1 and not is_far:
+    for other in candidates:
+        is_too_different = (
+            abs(len(other) - len(word)) > most_edits or len(letters.difference(other)) > most_edits
+        )
+        if len(other) > 1 and not is_too_different:
             edits = _edits(word, other)
             if edits == 1 and len(word) <= 3 and len(other) == len(word):
                 edits += sorted(word) != sorted(other)
@@ -36,9 +38,9 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     return best
 
 
-def is_slip(word: str, known: str) -> bool:
+def is_slip(word: str, intended: str) -> bool:
     """Whether a word is one slip away from another, which may be short: its place says the rest."""
-    return len(word) > 1 and abs(len(word) - len(known)) < 2 and _edits(word, known) == 1
+    return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edits(word, intended) == 1
 
 
 def _edits(one: str, other: str) -> int:
@@ -48,10 +50,10 @@ def _edits(one: str, other: str) -> int:
     for i, letter in enumerate(one, 1):
         row = [i]
         for k, other_letter in enumerate(other, 1):
-            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
+            least_edits = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
             if i > 1 and k > 1 and letter == other[k - 2] and other_letter == one[i - 2]:
-                least = min(least, before_last[k - 2] + 1)
-            row.append(least)
+                least_edits = min(least_edits, before_last[k - 2] + 1)
+            row.append(least_edits)
         before_last, last = last, row
     return last[-1]
 

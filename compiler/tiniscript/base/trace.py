@@ -42,15 +42,15 @@ class Ending(NamedTuple):
 class Senses:
     """Readings from lists: each takes the next value, the last one repeats, no list is 0."""
 
-    def __init__(self, kit: Kit, lists: Mapping[int, Sequence[int]]) -> None:
-        """`lists` maps the number of a sensor to its readings, in thousandths."""
-        self.lists = [list(lists.get(i, ())) or [0] for i in range(len(kit.readings))]
-        self.taken = [0] * len(kit.readings)
+    def __init__(self, kit: Kit, readings_by_sensor: Mapping[int, Sequence[int]]) -> None:
+        """`readings_by_sensor` maps the number of a sensor to its readings, in thousandths."""
+        self.lists = [list(readings_by_sensor.get(i, ())) or [0] for i in range(len(kit.readings))]
+        self.read_counts = [0] * len(kit.readings)
 
     def __call__(self, sensor: int) -> int:
         values = self.lists[sensor]
-        value = values[min(self.taken[sensor], len(values) - 1)]
-        self.taken[sensor] += 1
+        value = values[min(self.read_counts[sensor], len(values) - 1)]
+        self.read_counts[sensor] += 1
         return value
 
 
@@ -63,8 +63,8 @@ class TracedRobot:
         self.now_ms = 0
         self.events: list[Event] = []
 
-    def say(self, what: str, values: tuple[int, ...], text: str) -> None:
-        self.events.append(Event(self.now_ms, what, values, text))
+    def say(self, name: str, values: tuple[int, ...], text: str) -> None:
+        self.events.append(Event(self.now_ms, name, values, text))
 
     def motors(self, left: int, right: int) -> None:
         self.say("MOTORS", (left, right), f"MOTORS {left} {right}")

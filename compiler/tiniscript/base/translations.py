@@ -55,20 +55,28 @@ def read_language(path: Path) -> Language:
     """Read what a language says of itself; what it does not say is as in English."""
     language = Language(path.parent.name, path.parent.name)
     text, language.problems = decode_file(path)
-    read, _, problems = rows(text)
+    language_rows, _, problems = rows(text)
     language.problems += problems
-    known: dict[str, Any] = {"name": str, "english_name": str, "read_by": str, "is_complete": bool,
-                             "forms": list, "which_form": str}  # fmt: skip
+    type_of_key: dict[str, Any] = {
+        "name": str,
+        "english_name": str,
+        "read_by": str,
+        "is_complete": bool,
+        "forms": list,
+        "which_form": str,
+    }
     values: dict[str, Any] = {}
-    for row in read:
-        if row.key not in known:
+    for row in language_rows:
+        if row.key not in type_of_key:
             language.problems.append((row.line, f"{row.key}: a language does not say that"))
         elif row.key in values:
             language.problems.append((row.line, f"{row.key}: it is there twice"))
-        elif isinstance(row.value, known[row.key]):
+        elif isinstance(row.value, type_of_key[row.key]):
             values[row.key] = row.value
         elif row.value is not None:
-            language.problems.append((row.line, f"{row.key}: it is no {_KINDS[known[row.key]]}"))
+            language.problems.append(
+                (row.line, f"{row.key}: it is no {_KINDS[type_of_key[row.key]]}")
+            )
     language.name = values.get("name", language.name)
     language.english_name = values.get("english_name", language.english_name)
     language.read_by, language.is_complete = (
@@ -81,7 +89,7 @@ def read_language(path: Path) -> Language:
     )
     form_of, why = _form_of(rule, names)
     if why:
-        line = next((row.line for row in read if row.key in ("which_form", "forms")), 1)
+        line = next((row.line for row in language_rows if row.key in ("which_form", "forms")), 1)
         language.problems.append((line, why))
         names, rule, (form_of, _) = (
             _ENGLISH_FORMS,
@@ -113,7 +121,7 @@ def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
 
 def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
     """Return the hashes of a language by file and key, and what is wrong with the file of them."""
-    found: dict[str, list[str]] = {}
+    hashes_by_key: dict[str, list[str]] = {}
     text, problems = decode_file(path) if path.is_file() else ("", [])
     for number, line in enumerate(text.split("\n"), 1):
         row = _SEEN_ROW.fullmatch(line)
@@ -121,11 +129,11 @@ def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
             continue
         if row is None:
             problems.append((number, f"this is no file, key and hash: {line[:60]}"))
-        elif row[1] in found:
+        elif row[1] in hashes_by_key:
             problems.append((number, f"{row[1]} is there twice"))
         else:
-            found[row[1]] = row[2].split()
-    return found, problems
+            hashes_by_key[row[1]] = row[2].split()
+    return hashes_by_key, problems
 
 
 @dataclass
@@ -136,31 +144,31 @@ class TranslationFile:
     texts: dict[str, list[Forms]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
-    below: str = ""
+    text_below: str = ""
 
 
 def read_translation_file(path: Path) -> TranslationFile:
     """Read the texts of a language; of a file that is not there none."""
-    own = TranslationFile()
+    result = TranslationFile()
     if not path.is_file():
-        return own
-    text, own.problems = decode_file(path)
-    own.rows, own.below, problems = rows(text)
-    own.problems += problems
-    for row in own.rows:
-        if row.key in own.texts:
-            own.problems.append((row.line, f"{row.key}: it is there twice"))
+        return result
+    text, result.problems = decode_file(path)
+    result.rows, result.text_below, problems = rows(text)
+    result.problems += problems
+    for row in result.rows:
+        if row.key in result.texts:
+            result.problems.append((row.line, f"{row.key}: it is there twice"))
             continue
         values = row.value if isinstance(row.value, list) else [row.value]
         texts = [_forms(value) for value in values]
         if row.value is None or "\ufffd" in row.text:
             texts = []
         elif None in texts or not texts:
-            own.problems.append((row.line, f"{row.key}: it has no text"))
+            result.problems.append((row.line, f"{row.key}: it has no text"))
             texts = []
-        own.texts[row.key] = [text for text in texts if text is not None]
-        own.lines[row.key] = row.line
-    return own
+        result.texts[row.key] = [text for text in texts if text is not None]
+        result.lines[row.key] = row.line
+    return result
 
 
 def _forms(value: object) -> Forms | None:
@@ -172,27 +180,28 @@ def _forms(value: object) -> Forms | None:
     return None
 
 
-def catalogue_of_names(own: TranslationFile) -> Catalogue:
+def catalogue_of_names(translation_file: TranslationFile) -> Catalogue:
     """Return the texts of a file whose keys are the English texts."""
-    return Catalogue({(key, key): Entry(key, key) for key in own.texts})
+    return Catalogue({(key, key): Entry(key, key) for key in translation_file.texts})
 
 
 def merge_translations(
     english: Catalogue,
     name: str,
-    own: TranslationFile,
-    seen: dict[str, list[str]],
+    translation_file: TranslationFile,
+    seen_hashes: dict[str, list[str]],
     language: Language,
 ) -> Catalogue:
     """Return English texts with those of a language, and what is wrong with these."""
     catalogue = Catalogue(
-        {at: without_translation(entry) for at, entry in english.entries.items()}, own.problems[:]
+        {at: without_translation(entry) for at, entry in english.entries.items()},
+        translation_file.problems[:],
     )
     groups = catalogue.groups()
-    for key, texts in own.texts.items():
-        line, group = own.lines[key], groups.get(key, [])
-        unknown = [entry.hash if entry.english == key else UNKNOWN_HASH for entry in group]
-        hashes = seen.get(f"{name} {key}", unknown)
+    for key, texts in translation_file.texts.items():
+        line, group = translation_file.lines[key], groups.get(key, [])
+        unknown_hashes = [entry.hash if entry.english == key else UNKNOWN_HASH for entry in group]
+        hashes = seen_hashes.get(f"{name} {key}", unknown_hashes)
         hashes = [*hashes, *[UNKNOWN_HASH] * len(texts)][: len(texts)]
         if not group:
             catalogue.problems.append((line, f"{key}: there is no such English text"))
@@ -202,7 +211,7 @@ def merge_translations(
             entry.line = line
             for why in misfits(entry, language):
                 catalogue.problems.append((line, f"{key}: {why}"))
-                entry.translation, entry.seen = {}, ""
+                entry.translation, entry.seen_hash = {}, ""
     for entry in catalogue.entries.values():
         if entry.like and not entry.translation:
             first = catalogue.entries[entry.like, entry.english]
@@ -217,22 +226,22 @@ def without_translation(entry: Entry) -> Entry:
 
 def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
     """Give each English text of a key its translation; return why one has no text, or nothing."""
-    own = {place: entry.hash for place, entry in enumerate(group)}
-    given = {place for place, forms in enumerate(texts) if forms}
+    english_hashes = {place: entry.hash for place, entry in enumerate(group)}
+    places_left = {place for place, forms in enumerate(texts) if forms}
     has_moved = False
-    for place in sorted(given):
-        if places := [at for at, value in own.items() if value == hashes[place]]:
+    for place in sorted(places_left):
+        if places := [at for at, value in english_hashes.items() if value == hashes[place]]:
             at = place if place in places else places[0]
             has_moved |= at != place
-            group[at].translation, group[at].seen = texts[place], hashes[place]
-            del own[at]
-            given.remove(place)
-    for place in sorted(given):
+            group[at].translation, group[at].seen_hash = texts[place], hashes[place]
+            del english_hashes[at]
+            places_left.remove(place)
+    for place in sorted(places_left):
         if hashes[place] == UNKNOWN_HASH and has_moved:
             return "its English texts have other places now: first run  python -m tools.languages"
-        if place not in own:
+        if place not in english_hashes:
             return f"it has {len(texts)} texts, and English {len(group)}"
-        group[place].translation, group[place].seen = texts[place], hashes[place]
+        group[place].translation, group[place].seen_hash = texts[place], hashes[place]
     return ""
 
 
@@ -240,21 +249,29 @@ def misfits(entry: Entry, language: Language) -> list[str]:
     """Return what is wrong with the translation of a text that has not changed."""
     if not entry.is_translated:
         return []
-    used = {language.forms[int(digit)] for digit in language.form_of}
-    wanted, known = (used, {*language.forms, "other"}) if entry.plural else ({""}, {""})
-    if not wanted <= entry.translation.keys() <= known:
-        has, needs = (", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted))
-        return [f"it has {has}, and needs {needs}"]
+    used_forms = {language.forms[int(digit)] for digit in language.form_of}
+    wanted_forms, known_forms = (
+        (used_forms, {*language.forms, "other"}) if entry.plural else ({""}, {""})
+    )
+    if not wanted_forms <= entry.translation.keys() <= known_forms:
+        form_list, wanted_list = (
+            ", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted_forms)
+        )
+        return [f"it has {form_list}, and needs {wanted_list}"]
     places = gap_names(entry.english) | gap_names(entry.plural)
-    matches = []
+    problems = []
     for form in entry.translation.values():
         try:
-            own = gap_names(form)
+            gaps_translated = gap_names(form)
         except ValueError:
             return ["a brace { or } has no other half"]
-        matches += [f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - own)]
-        matches += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
-    return list(dict.fromkeys(matches))
+        problems += [
+            f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - gaps_translated)
+        ]
+        problems += [
+            f"{{{gap}}} is no gap of the English text" for gap in sorted(gaps_translated - places)
+        ]
+    return list(dict.fromkeys(problems))
 
 
 def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:

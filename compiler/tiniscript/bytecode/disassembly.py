@@ -57,17 +57,17 @@ def disassemble(
     `remarks` stand after the instruction at their offset; a kit gives devices their names, and
     `variables` are those of variables in the order of their numbers.
     """
-    named: dict[str, Sequence[str]] = {"variable": variables}
+    names_of_kind: dict[str, Sequence[str]] = {"variable": variables}
     if kit is not None:
-        named["sensor"] = [sensor.name for sensor in kit.readings]
-        named["actuator"] = [actuator.name for actuator in kit.actuators]
+        names_of_kind["sensor"] = [sensor.name for sensor in kit.readings]
+        names_of_kind["actuator"] = [actuator.name for actuator in kit.actuators]
     lines = []
     for row in rows(code):
         text = row.text
         names = [
-            named[kind][value]
+            names_of_kind[kind][value]
             for kind, value in _operand_values(row)
-            if kind in named and value < len(named[kind])
+            if kind in names_of_kind and value < len(names_of_kind[kind])
         ]
         remark = "  ".join([*names, *([remarks[row.offset]] if remarks and row.offset in remarks
                                       else [])])  # fmt: skip
@@ -86,10 +86,10 @@ def _operand_values(row: Row) -> list[tuple[str, int]]:
     if row.op is None:
         return []
     kinds = [operand.kind.name for operand in row.op.operands]
-    numbered = list(zip(kinds, row.operands, strict=True))
+    kinds_and_values = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:
-        numbered.append((row.op.implied.kind.name, row.op.implied.value))
-    return numbered
+        kinds_and_values.append((row.op.implied.kind.name, row.op.implied.value))
+    return kinds_and_values
 
 
 def assemble(text: str) -> bytes:

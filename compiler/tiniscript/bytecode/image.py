@@ -122,10 +122,10 @@ def checksum(image: bytes) -> int:
     return int.from_bytes(image[_CHECKSUM_AT:_AFTER_CHECKSUM], "little")
 
 
-def unpack(data: bytes, has: int = ALL_NEEDS) -> Image:
+def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, whose code and devices are not verified yet.
 
-    `has` is what the machine has of `needs`. Raises ImageRefused with the name of the reason.
+    `capabilities` is what the machine has of `needs`. Raises ImageRefused, which names the reason.
     """
     if data[: len(MAGIC)] != MAGIC[: len(data)] or not data:
         raise ImageRefused("NOT_AN_IMAGE")
@@ -133,25 +133,25 @@ def unpack(data: bytes, has: int = ALL_NEEDS) -> Image:
         raise ImageRefused("TRUNCATED")
     isa = data[2], data[3]
     if isa[0] != ISA_MAJOR or isa[1] > ISA_MINOR:
-        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
-        raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=ours)
+        image_version, own_version = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
+        raise ImageRefused("OTHER_VERSION", theirs=image_version, ours=own_version)
     if len(data) < HEADER_BYTES:
         raise ImageRefused("TRUNCATED")
     values = struct_unpack(_LAYOUT, data[:HEADER_BYTES])
-    _, _, _, start, header_length, devices, code_length, found, needs = values
+    _, _, _, start, header_length, devices, code_length, stored_checksum, needs = values
     if header_length < HEADER_BYTES or code_length > CODE_BYTES:
         raise ImageRefused("BAD_HEADER")
     if len(data) < header_length + code_length:
         raise ImageRefused("TRUNCATED")
     if len(data) > header_length + code_length:
         raise ImageRefused("TRAILING")
-    if checksum(with_checksum(data)) != found:
+    if checksum(with_checksum(data)) != stored_checksum:
         raise ImageRefused("DAMAGED")
-    if needs & ~has:
+    if needs & ~capabilities:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")
     if start >= len(STARTS):
         raise ImageRefused("UNKNOWN_START", found=str(start))
     if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
     later, code = data[HEADER_BYTES:header_length], data[header_length:]
-    return Image(STARTS[start], devices, code, found, isa, later, needs)
+    return Image(STARTS[start], devices, code, stored_checksum, isa, later, needs)

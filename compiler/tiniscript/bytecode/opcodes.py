@@ -143,10 +143,10 @@ def _op(code: int, name: str, operands: str, effect: str, role: str, meaning: st
     for text in operands.split():
         label, _, kind = text.partition(":")
         parts.append(Operand(label, OPERAND_KINDS[kind]))
-    taken, _, left = effect.partition("--")
+    operands_taken, _, results_left = effect.partition("--")
     size = 1 + (code > 0xFF) + sum(operand.kind.size for operand in parts)
     return Op(code, name, tuple(parts), effect, role, meaning,
-              size, len(taken.split()), len(left.split()))
+              size, len(operands_taken.split()), len(results_left.split()))
 
 
 def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: str) -> list[Op]:

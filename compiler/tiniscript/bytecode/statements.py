@@ -12,16 +12,16 @@ def statement_starts(code: bytes) -> list[int]:
     """Return the offsets where a statement begins: the stack is empty there, and no AND_THEN or
     OR_ELSE is open. The check of an UNTIL or a WHEN begins one, too."""
     result: list[int] = []
-    depth = joined = 0
+    depth = join_offset = 0
     for row in rows(code):
         if row.op is None:
             break
         after = row.offset + len(row.data)
-        if depth == 0 and row.offset >= joined:
+        if depth == 0 and row.offset >= join_offset:
             result.append(row.offset)
         depth += row.op.pushes - row.op.pops
         if row.op.control_role == "join":
-            joined = max(joined, after + row.operands[-1])
+            join_offset = max(join_offset, after + row.operands[-1])
     return result
 
 

@@ -273,12 +273,12 @@ class _Verifier:
         """Open a block that ends at `end`, or 0: unknown yet."""
         if end > len(self.code):
             self.refuse("BAD_TARGET")
-        around = self.blocks[-1] if self.blocks else None
-        if around is not None and around.end:
+        enclosing = self.blocks[-1] if self.blocks else None
+        if enclosing is not None and enclosing.end:
             # the end of a loop lies after what closes it
-            if end > around.end - (around.kind != _IF):
+            if end > enclosing.end - (enclosing.kind != _IF):
                 self.refuse("BAD_TARGET")
-            if kind == _IF and end == around.end:
+            if kind == _IF and end == enclosing.end:
                 return  # it shares the block around it
         if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
@@ -417,14 +417,14 @@ _EXPRESSION_ROLES = ("end", "value", "join")
 _CHECK_ROLES = ("read", "until", "look")
 
 
-def load_image(data: bytes, kit: Kit, has: int = ALL_NEEDS) -> Image:
+def load_image(data: bytes, kit: Kit, capabilities: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, for a machine that has so much of `needs`.
 
     Looks at its header, its code, and the devices that the code uses, as every machine does.
 
     Raises ImageRefused, or Refused.
     """
-    image = unpack(data, has)
+    image = unpack(data, capabilities)
     check(image, kit)
     return image
 

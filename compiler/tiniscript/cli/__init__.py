@@ -18,7 +18,7 @@ from tiniscript.base.languages import WrongTexts
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, say, say_aside, text
-from tiniscript.cli.texts.options import LANGUAGE, chosen
+from tiniscript.cli.texts.options import LANGUAGE, command_of
 from tiniscript.cli.texts.verbs import VERBS
 
 EXIT_OF_CLOSED_PIPE = 141  # 128 and the number of SIGPIPE
@@ -50,9 +50,9 @@ def _main(arguments: list[str]) -> int:
     _repair_streams()
     language = language_of(arguments)
     try:
-        code = _verb(arguments, language)
+        exit_code = _verb(arguments, language)
         sys.stdout.flush()
-        return code
+        return exit_code
     except KeyboardInterrupt:
         streams.drop_unread()
         print("\n" + text("stopped", language), file=sys.stderr)
@@ -114,8 +114,8 @@ def _tell_missing_parts(language: str) -> None:
         "version_page": serving.is_built(),
         "version_firmware": any(ready.FOLDER.glob("*.hex")),
     }
-    for key, is_there in parts.items():
-        if not is_there:
+    for key, is_installed in parts.items():
+        if not is_installed:
             say(key, language)
 
 
@@ -143,7 +143,7 @@ def _verb(arguments: list[str], language: str) -> int:
             from tiniscript.cli.verbless import is_help, refuse
 
             name = "help" if is_help(name) else refuse(name, arguments[1:], language)
-        command, words = chosen(name, arguments[1:])
+        command, words = command_of(name, arguments[1:])
         options = Options(command, language).read(words)
         if options is None:
             return 0
@@ -156,6 +156,6 @@ def _verb(arguments: list[str], language: str) -> int:
 def _explain_bug(bug: Exception, language: str) -> int:
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug
-    what = " ".join(f"{type(bug).__name__}: {bug}".split())
-    say_aside("bug", language, what=what[:300])
+    description = " ".join(f"{type(bug).__name__}: {bug}".split())
+    say_aside("bug", language, what=description[:300])
     return 2

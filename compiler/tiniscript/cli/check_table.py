@@ -30,7 +30,7 @@ class Row(NamedTuple):
 
     name: str
     messages: list[Message]
-    repaired: int
+    repair_count: int
     problem: str
 
     @property
@@ -63,41 +63,45 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
 def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> Row:
     if file.problem is not None:
         return Row(file.name, [], 0, file.problem.plain(language))
-    repaired = 0
-    given = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
-    if given.has_robot:
-        inputs.tell_other(given, robot, language)
+    repair_count = 0
+    program_input = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
+    if program_input.has_robot:
+        inputs.tell_other(program_input, robot, language)
     else:
-        robot = robot_of(given.data, robot)
+        robot = robot_of(program_input.data, robot)
     if options.fix or options.diff:
-        compiled, repaired, problem = _repair(given, options, robot, language)
+        compilation, repair_count, problem = _repair(program_input, options, robot, language)
         if problem:
             return Row(file.name, [], 0, problem)
     else:
-        compiled = compiling.compile_input(given, robot, is_strict=False)
-    compiled = compiling.for_level(compiled, robot, options.text_level)
+        compilation = compiling.compile_input(program_input, robot, is_strict=False)
+    compilation = compiling.for_level(compilation, robot, options.text_level)
     messages = [
-        message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
+        message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
     ]
     messages.sort(key=lambda each: each.severity != "mistake")
-    return Row(file.name, messages, repaired, "")
+    return Row(file.name, messages, repair_count, "")
 
 
 def _repair(
-    given: inputs.Input, options: Namespace, robot: Robot, language: str
+    program_input: inputs.Input, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compiled, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    result = repair(given, robot)
-    if result.repairs and not options.json:
-        print_difference(given.data, result.data, given.name)
+    result = repair(program_input, robot)
+    if result.repair_count and not options.json:
+        print_difference(program_input.data, result.data, program_input.name)
     if options.diff:
-        return compiling.compile_input(given, robot, is_strict=False), result.repairs, ""
-    if result.repairs:
+        return (
+            compiling.compile_input(program_input, robot, is_strict=False),
+            result.repair_count,
+            "",
+        )
+    if result.repair_count:
         try:
-            outputs.write(Path(given.name), result.data, "unwritable_source")
+            outputs.write(Path(program_input.name), result.data, "unwritable_source")
         except CommandError as problem:
-            return result.compiled, 0, problem.plain(language)
-    return result.compiled, result.repairs, ""
+            return result.compilation, 0, problem.plain(language)
+    return result.compilation, result.repair_count, ""
 
 
 def _line(row: Row, language: str) -> str:
@@ -113,7 +117,7 @@ def _line(row: Row, language: str) -> str:
 
 
 def _table(rows: Sequence[Row], language: str) -> list[str]:
-    has_repairs = any(row.repaired for row in rows)
+    has_repairs = any(row.repair_count for row in rows)
     columns = ["program_column", "mistakes_column", "warnings_column", "first_column"]
     heads = [text(key, language) for key in columns]
     cells = []
@@ -126,7 +130,7 @@ def _table(rows: Sequence[Row], language: str) -> list[str]:
         if row.problem:
             cells[-1] = [name, "-", "-", text("unread", language)]
         if has_repairs:
-            cells[-1].insert(3, str(row.repaired))
+            cells[-1].insert(3, str(row.repair_count))
     if has_repairs:
         heads.insert(3, text("repaired_column", language))
     widths = [max(len(each[k]) for each in (heads, *cells)) for k in range(len(heads))]
@@ -150,7 +154,7 @@ def _as_data(row: Row) -> dict[str, object]:
         "file": inputs.printable_name(row.name),
         "mistakes": row.mistakes,
         "warnings": row.warnings,
-        "repaired": row.repaired,
+        "repaired": row.repair_count,
         "problem": row.problem,
         "messages": as_json(row.messages),
     }
@@ -158,7 +162,7 @@ def _as_data(row: Row) -> dict[str, object]:
 
 def _as_csv(rows: Sequence[Row], language: str) -> bytes:
     def cells(row: Row) -> tuple[object, ...]:
-        counts = (inputs.printable_name(row.name), row.mistakes, row.warnings, row.repaired)
+        counts = (inputs.printable_name(row.name), row.mistakes, row.warnings, row.repair_count)
         if not row.mistakes:
             return (*counts, "", "", row.problem)
         first = row.messages[0]

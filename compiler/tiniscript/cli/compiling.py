@@ -13,27 +13,33 @@ from tiniscript.syntax.parser import parse
 
 
 def compile_input(
-    given: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
+    program_input: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
 ) -> Compiled:
     """Return the result of compiling an input, whose `--robot` has chosen the robot or not."""
-    return compile_source(given.data, robot, given.name, is_strict, names_robots=names_robots,
-                          is_chosen=given.has_robot)  # fmt: skip
+    return compile_source(
+        program_input.data,
+        robot,
+        program_input.name,
+        is_strict,
+        names_robots=names_robots,
+        is_chosen=program_input.has_robot,
+    )
 
 
-def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
-    """Return `compiled` with what a robot of the level `name` lacks to read the program as text."""
-    if name is None or compiled.program is None or not compiled.is_right:
-        return compiled
+def for_level(compilation: Compiled, robot: Robot, name: str | None) -> Compiled:
+    """Return a compilation with what a robot of this level lacks to read the program as text."""
+    if name is None or compilation.program is None or not compilation.is_right:
+        return compilation
     from tiniscript.library.text_fitting import misfits
 
-    lacking = misfits(compiled.source, compiled.program, robot.kit, LEVELS[name])
-    return compiled._replace(diagnostics=in_order([*compiled.diagnostics, *lacking]))
+    lacking = misfits(compilation.source, compilation.program, robot.kit, LEVELS[name])
+    return compilation._replace(diagnostics=in_order([*compilation.diagnostics, *lacking]))
 
 
-def parse_input(given: inputs.Input, kit: Kit) -> Compiled:
+def parse_input(program_input: inputs.Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
-    text = text_of(given.data, given.name)
+    text = text_of(program_input.data, program_input.name)
     if not isinstance(text, str):
         return text
-    source = Source(text, given.name)
+    source = Source(text, program_input.name)
     return Compiled(source, in_order(parse(source).diagnostics))

@@ -11,20 +11,22 @@ from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
 
 
-def print_disassembly(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
-    image = ready.image
+def print_disassembly(
+    ready_program: images.ReadyProgram, robot: Robot, name: str, language: str
+) -> None:
+    image = ready_program.image
     key = "for_robot" if image.devices else "any_robot"
     whose = text(key, language).format(robot=robot.name)
     say("head", language, file=name, start=image.start, robot=whose, code=len(image.code),
-        image=ready.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
-    result = remarks(ready.places, language)
+        image=ready_program.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
+    result = remarks(ready_program.places, language)
     kit = robot.kit if image.devices else None
-    variables = ready.places.variables if ready.places is not None else ()
+    variables = ready_program.places.variables if ready_program.places is not None else ()
     print(disassemble(image.code, result, kit, variables), end="")
 
 
-def print_json(ready: images.Ready, robot: Robot) -> None:
-    image = ready.image
+def print_json(ready_program: images.ReadyProgram, robot: Robot) -> None:
+    image = ready_program.image
     instructions = []
     for row in rows(image.code):
         assert row.op is not None
@@ -35,14 +37,14 @@ def print_json(ready: images.Ready, robot: Robot) -> None:
             "operands": list(row.operands),
             "text": row.text,
         }
-        place = ready.places.at(row.offset) if ready.places is not None else None
+        place = ready_program.places.at(row.offset) if ready_program.places is not None else None
         if place is not None:
             fields["line"] = place.line
             fields["column"] = place.column
         instructions.append(fields)
     print(json.dumps({
         "code_bytes": len(image.code),
-        "image_bytes": ready.image_bytes,
+        "image_bytes": ready_program.image_bytes,
         "start": image.start,
         "robot": robot.name if image.devices else None,
         "devices": f"{image.devices:04x}",

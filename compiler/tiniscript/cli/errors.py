@@ -23,9 +23,9 @@ class CommandError(Exception):
         if self.values.get("near"):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
-            what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
+            failure, advice, example = result.rpartition(try_it)  # what was typed may have it, too
             return Sentence(
-                f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
+                f"{failure} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
             )
         return result
 
@@ -38,9 +38,9 @@ def _value_text(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 
-def unwritable_error(how: str, file: str, why: str | Exception) -> CommandError:
-    """Return what is said of a file; `how` is the sentence's key, and the option that it names."""
-    key, _, option = how.partition(" ")
+def unwritable_error(key_and_option: str, file: str, why: str | Exception) -> CommandError:
+    """Return what is said of a file; the sentence's key may be followed by the option it names."""
+    key, _, option = key_and_option.partition(" ")
     return CommandError(2, key, file=file, why=why, option=option)
 
 

@@ -24,8 +24,8 @@ def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, lang
         name = printable_name(places.name)
         task = _task_text(places.task_of(place), language)
         where = text(key, language).format(name=name, line=place.line, task=task, shown=piece[:100])
-    what = text(f"fault_{fault}", language)
-    return text("fault_at", language).format(fault=fault, what=what, place=where)
+    meaning = text(f"fault_{fault}", language)
+    return text("fault_at", language).format(fault=fault, what=meaning, place=where)
 
 
 def _task_text(task: tuple[str, int] | None, language: str) -> str:

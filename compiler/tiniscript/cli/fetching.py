@@ -79,8 +79,12 @@ def ask_to_fetch(
     missing: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
 ) -> None:
     """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
-    named = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
-    values = {"mb": str(sum(part.mb for part in parts)), "parts": named, "minutes": str(minutes)}
+    parts_text = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
+    values = {
+        "mb": str(sum(part.mb for part in parts)),
+        "parts": parts_text,
+        "minutes": str(minutes),
+    }
     sentence = (
         f"{missing} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
     )
@@ -120,34 +124,34 @@ def run(
 ) -> None:
     """Run a program that fetches or builds, and show how far it is. Raises CommandError."""
     progress = Progress(language, 100)
-    doing = ""
+    step_key = ""
 
-    def look(said: str) -> None:
-        nonlocal doing
-        step = read_step(said)
-        if step.key != doing:
-            doing = step.key
+    def show_progress(output: str) -> None:
+        nonlocal step_key
+        step = read_step(output)
+        if step.key != step_key:
+            step_key = step.key
             progress.end()
-            progress.label = text(doing, language)
+            progress.label = text(step_key, language)
             if not sys.stderr.isatty():
                 print(f"{progress.label} …", file=sys.stderr, flush=True)
         progress.draw(step.percent)
 
     try:
-        code, log = children.run(command, folder, look, environment, may_end)
+        code, log = children.run(command, folder, show_progress, environment, may_end)
     except children.CannotStart as why:
         code, log = 1, str(why)
     finally:
         progress.end()
     if code:
-        raise _failure(text(doing, language) if doing else command[0], log)
+        raise _failure(text(step_key, language) if step_key else command[0], log)
 
 
-def _failure(doing: str, log: str) -> CommandError:
+def _failure(step_text: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
-    kept = files.cache_folder() / LOG_FILE
-    files.keep(kept, log.encode("utf-8", "replace"))  # else the sentence has to do
+    log_path = files.cache_folder() / LOG_FILE
+    files.keep(log_path, log.encode("utf-8", "replace"))  # else the sentence has to do
     kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
     why = printable_name(children.reason(log))
-    return CommandError(2, key, doing=doing, why=why, log=printable_name(str(kept)))
+    return CommandError(2, key, doing=step_text, why=why, log=printable_name(str(log_path)))

@@ -16,7 +16,13 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import LESS_REMOTE, LESS_TASKS, CannotBuild, Sources, StepProgress
+from tiniscript.flash.building import (
+    WITHOUT_REMOTE,
+    WITHOUT_TASKS,
+    CannotBuild,
+    Sources,
+    StepProgress,
+)
 from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -24,7 +30,7 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 
 LOG_FILE = "build.log"  # the output of the last failed build, in the folder of the ready files
 # Of fetching and building, for whoever fetches 10 Mbit a second or more.
-MINUTES, MINUTES_ESP32 = 3, 10
+BUILD_MINUTES, ESP32_BUILD_MINUTES = 3, 10
 AVR_BOARDS = tuple(AVRS)  # that avrdude writes to
 
 
@@ -57,8 +63,8 @@ def firmware(
         return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    with _show_build(robot, options, language) as look:
-        data = building.build(sources, robot, look, has_breakpoints)
+    with _show_build(robot, options, language) as on_progress:
+        data = building.build(sources, robot, on_progress, has_breakpoints)
         title = ready.title_of(robot, has_breakpoints)
         return ready.keep(title, robot.board.chip, sources.digest(robot, has_breakpoints), data)
 
@@ -83,8 +89,8 @@ def _ready(robot: Robot, sources: Sources | None, has_breakpoints: bool = False)
     if robot.name not in robots.names():
         return None
     files = {(file.title, file.board): file for file in ready.files()}
-    own = ready.title_of(robot, has_breakpoints)
-    for title in (own,) if has_breakpoints else (own, robot.name):
+    own_title = ready.title_of(robot, has_breakpoints)
+    for title in (own_title,) if has_breakpoints else (own_title, robot.name):
         if (title, robot.board.chip) in files:
             return files[title, robot.board.chip]
     return None
@@ -111,22 +117,22 @@ def _show_build(
     progress = Progress(language, 100)
     fetched = ""
 
-    def look(seen: StepProgress) -> None:
+    def show_progress(build_progress: StepProgress) -> None:
         nonlocal fetched
-        if seen.phase in (LESS_TASKS, LESS_REMOTE):
+        if build_progress.phase in (WITHOUT_TASKS, WITHOUT_REMOTE):
             progress.end()
-            say_aside(f"flash_{seen.phase}", language, **values)
+            say_aside(f"flash_{build_progress.phase}", language, **values)
             return
-        progress.label = text(f"flash_{seen.phase}", language)
-        if seen.what and seen.what != fetched:
+        progress.label = text(f"flash_{build_progress.phase}", language)
+        if build_progress.file_name and build_progress.file_name != fetched:
             progress.end()
-            what = printable_name(seen.what)
-            say_aside("flash_fetches", language, what=what)
-            fetched = seen.what
-        progress.draw(seen.percent)
+            file_name = printable_name(build_progress.file_name)
+            say_aside("flash_fetches", language, what=file_name)
+            fetched = build_progress.file_name
+        progress.draw(build_progress.percent)
 
     try:
-        yield look
+        yield show_progress
     except building.CannotBuild as why:
         raise _failure(why, values) from None
     except OSError as why:
@@ -149,7 +155,7 @@ def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: s
     parts = [*([] if has_platformio else [platformio]), *([compiler] if compiler.mb else [])]
     if not parts:
         return
-    minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
+    minutes = ESP32_BUILD_MINUTES if robot.board.chip in ESP32S else BUILD_MINUTES
     missing = text("flash_missing", language).format(**values)
     fetching.ask_to_fetch(missing, parts, minutes, options, language)
     if not has_platformio:
@@ -161,9 +167,13 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     log = ready.cache() / LOG_FILE
     if why.log:
         files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
-    how = install_advice.command(install_advice.FIRMWARE)
-    said = {"why": printable_name(why.said), "log": printable_name(str(log)), "how": how}
-    return CommandError(2, f"flash_{why.why}", **said, **values)
+    install_command = install_advice.command(install_advice.FIRMWARE)
+    texts = {
+        "why": printable_name(why.last_output),
+        "log": printable_name(str(log)),
+        "how": install_command,
+    }
+    return CommandError(2, f"flash_{why.why}", **texts, **values)
 
 
 def print_list(language: str) -> None:
@@ -174,8 +184,8 @@ def print_list(language: str) -> None:
             print(row(robot, _ready(robot, sources), language))
 
 
-def row(robot: Robot, found: Ready | None, language: str) -> str:
+def row(robot: Robot, firmware: Ready | None, language: str) -> str:
     values = {"robot": robot.name, "board": robot.board.chip}
-    if found is None:
+    if firmware is None:
         return text("flash_row_none", language).format(**values)
-    return text("flash_row", language).format(bytes=f"{found.bytes:,}", **values)
+    return text("flash_row", language).format(bytes=f"{firmware.bytes:,}", **values)

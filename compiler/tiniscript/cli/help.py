@@ -75,10 +75,10 @@ def full_help(language: str, width: int = WIDTH) -> str:
     """Return what `tsc help all` says: every verb, in groups."""
     parts = [_paragraphs(verb_text("title", language), width)]
     commands = groups(language)
-    left = _left_width([row for _, rows in commands for row in rows], width * 4 // 10)
+    left_width = _left_width([row for _, rows in commands for row in rows], width * 4 // 10)
     for heading, rows in commands:
         parts.append(_paragraphs(heading, width))
-        parts.append("\n".join(_columns(rows, left, width)))
+        parts.append("\n".join(_columns(rows, left_width, width)))
     parts.append("\n".join(_options(shown_of("tsc"), language, width)))
     parts.append("\n".join(_paragraphs(verb_text(note, language), width) for note in NOTES))
     return "\n\n".join(parts) + "\n"
@@ -86,12 +86,14 @@ def full_help(language: str, width: int = WIDTH) -> str:
 
 def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
-    found: dict[str, list[Row]] = {}
+    rows_by_heading: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
-        own = [] if verb == SET_COMMAND else [verb]  # which does nothing without a word after it
-        rows = [_row(command, language) for command in (*own, *steps_of(verb))]
-        found.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
-    return list(found.items())
+        commands_alone = (
+            [] if verb == SET_COMMAND else [verb]
+        )  # which does nothing without a word after it
+        rows = [_row(command, language) for command in (*commands_alone, *steps_of(verb))]
+        rows_by_heading.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
+    return list(rows_by_heading.items())
 
 
 def _row(command: str, language: str) -> Row:
@@ -138,38 +140,38 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     """Yield the rows of options; those for a virtual robot only have a heading of their own."""
     rows: dict[bool, list[Row]] = {False: [], True: []}
     last: list[Row] = []
-    is_apart = any(option.name == "virtual" for option in table)
+    has_virtual_section = any(option.name == "virtual" for option in table)
     for option in table:
         row = signature(option, language), option.help(language)
         if option.verbs in ("*", "tsc"):
             last.append(row)
         else:
-            rows[option.virtual and is_apart].append(row)
-    together = [*rows[False], *rows[True], *last]
-    left = _left_width(together, width * 3 // 10)
-    yield from _columns(rows[False], left, width)
+            rows[option.virtual and has_virtual_section].append(row)
+    all_rows = [*rows[False], *rows[True], *last]
+    left_width = _left_width(all_rows, width * 3 // 10)
+    yield from _columns(rows[False], left_width, width)
     if rows[True]:
         yield ""
         yield verb_text("virtual", language)
-        yield from _columns(rows[True], left, width)
+        yield from _columns(rows[True], left_width, width)
         yield ""
-    yield from _columns(last, left, width)
+    yield from _columns(last, left_width, width)
 
 
-def _left_width(rows: Iterable[Row], most: int) -> int:
-    """Return the width of the left column, at most `most`."""
-    return max((len(row[0]) for row in rows if len(row[0]) <= most), default=most)
+def _left_width(rows: Iterable[Row], most_width: int) -> int:
+    """Return the width of the left column, at most `most_width`."""
+    return max((len(row[0]) for row in rows if len(row[0]) <= most_width), default=most_width)
 
 
-def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
+def _columns(rows: Iterable[Row], left_width: int, width: int) -> Iterator[str]:
     """Yield two columns; what is too long for the first one has a line of its own."""
-    indent = " " * (left + 4)
-    for command, does in rows:
-        lines = _wrap(does, width - len(indent))
-        if len(command) > left:
+    indent = " " * (left_width + 4)
+    for command, summary in rows:
+        lines = _wrap(summary, width - len(indent))
+        if len(command) > left_width:
             yield f"  {command}"
         else:
-            yield f"  {command:{left}}  {lines.pop(0)}"
+            yield f"  {command:{left_width}}  {lines.pop(0)}"
         for line in lines:
             yield indent + line
 
@@ -184,8 +186,8 @@ def _wrap(text: str, width: int) -> list[str]:
     def keep_spaces(match: re.Match[str]) -> str:
         return match[1].replace(" ", "\0") if len(match[1]) <= width else match[1]
 
-    whole = re.sub("`([^`]*)`", keep_spaces, text)
-    lines = wrap(whole, width, break_long_words=False, break_on_hyphens=False)
+    unbroken_text = re.sub("`([^`]*)`", keep_spaces, text)
+    lines = wrap(unbroken_text, width, break_long_words=False, break_on_hyphens=False)
     return [line.replace("\0", " ") for line in lines]
 
 

@@ -16,7 +16,7 @@ from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
 
 
-class Ready(NamedTuple):
+class ReadyProgram(NamedTuple):
     """`places` is None if the text is unknown."""
 
     image: Image
@@ -27,61 +27,63 @@ class Ready(NamedTuple):
 class OtherRobot(Exception):
     """A program has words of another robot; its mistakes have not been printed."""
 
-    def __init__(self, compiled: Compiled) -> None:
+    def __init__(self, compilation: Compiled) -> None:
         super().__init__()
-        self.compiled = compiled
+        self.compiled = compilation
 
 
-def ready(
-    given: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
-    is_open: bool = False,
-) -> Ready | None:  # fmt: skip
+def ready_program(
+    program_input: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
+    may_choose_robot: bool = False,
+) -> ReadyProgram | None:  # fmt: skip
     """Return the program of an input, or None if it has mistakes, which are printed.
 
     `is_strict`: a program that is too large for the robot, or has what the robot lacks,
-    is a mistake. `is_open`: a program for another robot raises OtherRobot. Raises CommandError if
-    an image is refused.
+    is a mistake. `may_choose_robot`: a program for another robot raises OtherRobot. Raises
+    CommandError if an image is refused.
     """
-    if given.is_image:
-        image = _read(given)
-        _check(given, image, robot)
+    if program_input.is_image:
+        image = _read(program_input)
+        _check(program_input, image, robot)
         if is_strict and (lacks := missing_need(image.needs, robot)):
-            raise CommandError(1, lacks, robot=robot.name, file=inputs.printable_name(given.name))
-        return Ready(image, len(given.data), source_map.recall(image.checksum))
-    compiled = compiling.compile_input(given, robot, is_strict)
-    if is_open and not compiled.is_right:
-        if is_other_robots(compiled.diagnostics):
-            raise OtherRobot(compiled)
+            raise CommandError(
+                1, lacks, robot=robot.name, file=inputs.printable_name(program_input.name)
+            )
+        return ReadyProgram(image, len(program_input.data), source_map.recall(image.checksum))
+    compilation = compiling.compile_input(program_input, robot, is_strict)
+    if may_choose_robot and not compilation.is_right:
+        if is_other_robots(compilation.diagnostics):
+            raise OtherRobot(compilation)
     if is_strict:
-        compiled = fit_to_robot(compiled, robot)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+        compilation = fit_to_robot(compilation, robot)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return None
-    image = image_of(compiled, robot)
-    places = source_map.map_of_compiled(compiled)
-    return Ready(image, len(compiled.image), places)
+    image = image_of(compilation, robot)
+    places = source_map.map_of_compiled(compilation)
+    return ReadyProgram(image, len(compilation.image), places)
 
 
-def _read(given: inputs.Input) -> Image:
+def _read(program_input: inputs.Input) -> Image:
     try:
-        return unpack(given.data)
+        return unpack(program_input.data)
     except ImageRefused as refused:
-        values = {"file": inputs.printable_name(given.name), **refused.values}
+        values = {"file": inputs.printable_name(program_input.name), **refused.values}
         raise CommandError(1, f"image_{refused.name}", **values) from None
 
 
-def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
+def _check(program_input: inputs.Input, image: Image, robot: Robot) -> None:
     """Raise CommandError where the robot may not run an image, and say which known one may."""
-    file = inputs.printable_name(given.name)
+    file = inputs.printable_name(program_input.name)
     try:
         check(image, robot.kit)
     except (ImageRefused, Refused) as refused:
-        is_other = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
-        if refused.name == "OTHER_KIT" or is_other:
+        lacks_devices = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
+        if refused.name == "OTHER_KIT" or lacks_devices:
             other = find_robot_for(image, robot)
-            theirs = "FILE" if other is None else other.name
+            other_name = "FILE" if other is None else other.name
             raise CommandError(
-                1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=theirs
+                1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=other_name
             ) from None
         assert isinstance(refused, Refused)
         values = {"name": refused.name, "number": str(refused.number)}
@@ -89,14 +91,14 @@ def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
         raise CommandError(1, "image_code", file=file, offset=where, **values) from None
 
 
-def robot_for(given: inputs.Input, robot: Robot) -> Robot:
+def robot_for(program_input: inputs.Input, robot: Robot) -> Robot:
     """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
-    return find_robot_for(_read(given), robot) or robot
+    return find_robot_for(_read(program_input), robot) or robot
 
 
-def keep_map(ready: Ready) -> None:
+def keep_map(program: ReadyProgram) -> None:
     """Keep a program's source map for other commands, if it has one."""
-    if ready.places is not None:
-        image = ready.image
-        packed = pack(image.start, image.devices, image.code, needs=image.needs)
-        source_map.remember(packed, ready.places)
+    if program.places is not None:
+        image = program.image
+        image_data = pack(image.start, image.devices, image.code, needs=image.needs)
+        source_map.remember(image_data, program.places)

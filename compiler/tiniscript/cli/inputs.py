@@ -65,26 +65,26 @@ def _program(options: Namespace) -> Input:
 
 def file(name: str, typed: str | None = None) -> Input:
     """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
-    path, said = Path(name), printable_name(name if typed is None else typed)
+    path, shown_name = Path(name), printable_name(name if typed is None else typed)
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import is_device
 
         if is_device(name):
-            raise CommandError(2, "file_missing", file=said)
+            raise CommandError(2, "file_missing", file=shown_name)
     if is_pipe(name):
-        raise CommandError(2, "file_no_file", file=said)
+        raise CommandError(2, "file_no_file", file=shown_name)
     try:
-        with path.open("rb") as opened:
-            return Input(name, opened.read(LARGEST_SOURCE_BYTES + 1), path)
+        with path.open("rb") as stream:
+            return Input(name, stream.read(LARGEST_SOURCE_BYTES + 1), path)
     except FileNotFoundError:
-        raise CommandError(2, "file_missing", file=said) from None
+        raise CommandError(2, "file_missing", file=shown_name) from None
     except IsADirectoryError:
-        raise CommandError(2, "file_directory", file=said) from None
+        raise CommandError(2, "file_directory", file=shown_name) from None
     except PermissionError:
         key = "file_directory" if path.is_dir() and os.access(path, os.R_OK) else "file_forbidden"
-        raise CommandError(2, key, file=said) from None
+        raise CommandError(2, key, file=shown_name) from None
     except (OSError, ValueError) as why:  # ValueError: a name that no file can have
-        raise CommandError(2, "file_unreadable", file=said, why=why) from None
+        raise CommandError(2, "file_unreadable", file=shown_name, why=why) from None
 
 
 def port(name: str) -> str:
@@ -120,44 +120,44 @@ def wired_robot(options: Namespace, language: str) -> Robot:
     return result
 
 
-def robot_for(given: Input, options: Namespace, language: str) -> Robot:
+def robot_for(program_input: Input, options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, else the one that the program names, else the default.
 
     What the program names counts from now on as if `--robot` had named it.
     """
-    named = named_robot.shipped_name_in(given.data)
+    robot_name = named_robot.shipped_name_in(program_input.data)
     if options.robot is None:
-        options.robot = named
+        options.robot = robot_name
     result = robot(options, language)
-    if given.has_robot:
-        tell_other(given, result, language)
+    if program_input.has_robot:
+        tell_other(program_input, result, language)
     return result
 
 
-def tell_other(given: Input, chosen: Robot, language: str) -> None:
+def tell_other(program_input: Input, chosen_robot: Robot, language: str) -> None:
     """Say on standard error that `--robot` wins, where the program names another robot."""
-    named = named_robot.robot_name(given.data)
-    if named is not None and named.lower() != chosen.name.lower():
+    robot_name = named_robot.robot_name(program_input.data)
+    if robot_name is not None and robot_name.lower() != chosen_robot.name.lower():
         values = {
-            "file": printable_name(given.name),
-            "robot": printable_name(chosen.name),
-            "named": printable_name(named),
+            "file": printable_name(program_input.name),
+            "robot": printable_name(chosen_robot.name),
+            "named": printable_name(robot_name),
         }
         say_aside("robot_chosen", language, **values)
 
 
 def refusal(
     why: ProfileRefused, language: str, key: str,
-    alone: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
+    full_reasons: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
 ) -> CommandError:  # fmt: skip
     """Return why a profile, a world or a lesson is refused: the sentence `key`, with all reasons.
 
-    A single reason that begins with one of `alone` says it all.
+    A single reason that begins with one of `full_reasons` says it all.
     """
     from tiniscript.robots.refusals import describe
 
     lines = describe(why, language)
-    if len(lines) == 1 and why.reasons[0][0].startswith(alone):
+    if len(lines) == 1 and why.reasons[0][0].startswith(full_reasons):
         return CommandError(2, "plain", said=lines[0])
     return CommandError(
         2, key, reasons=Sentence("\n".join("  " + line for line in lines)), **values

@@ -58,13 +58,13 @@ NO_PROGRAM = "no_program"  # notes beside the programs; they count for nothing
 class Mark(NamedTuple):
     """What came of a program. `seed` is that of the world where it failed, 0 for none.
 
-    `said` are pairs of a criterion's kind and a sentence; `run` is the last run.
+    `sentences` are pairs of a criterion's kind and a sentence; `run` is the last run.
     """
 
     name: str
     verdict: str
     seed: int
-    said: tuple[tuple[str, str], ...]
+    sentences: tuple[tuple[str, str], ...]
     run: Run | None = None
 
 
@@ -79,16 +79,16 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if _is_folder(options):
         if options.plot is not None:
             raise CommandError(2, "lesson_one_picture", file=inputs.printable_name(options.program))
-        marks = [marker.mark_file(found, name) for name, found in _programs(options)]
+        marks = [marker.mark_file(program_file, name) for name, program_file in _programs(options)]
         _name_notes(marks, options, language)
     else:
         if options.plot is not None:
             check_picture(options)
-        given = inputs.program(options)
-        compiled = marker.compile(given)
+        program_input = inputs.program(options)
+        compilation = marker.compile(program_input)
         if not options.json:
-            outputs.print_diagnostics(compiled, language)
-        marks = [marker.mark(given, compiled)]
+            outputs.print_diagnostics(compilation, language)
+        marks = [marker.mark(program_input, compilation)]
     if options.csv is not None:
         outputs.write(Path(options.csv), _rows(marks, language), "unwritable_more --csv")
     if options.plot is not None and marks[0].run is not None:
@@ -115,32 +115,36 @@ class _Marker:
         """Mark a file of a folder; one that cannot be read, and notes, get a row, too."""
         if _is_note(file):
             return Mark(name, NO_PROGRAM, 0, ())
-        given = inputs.Input(name, file.data, Path(file.name))
+        program_input = inputs.Input(name, file.data, Path(file.name))
         try:
             if file.problem is not None:
                 raise file.problem
-            compiled = self.compile(given)
+            compilation = self.compile(program_input)
         except CommandError as failure:
             text = failure.plain(self.language)
             text = text.replace(inputs.printable_name(file.name), inputs.printable_name(name))
             return Mark(name, UNREADABLE, 0, (("", text),))
-        return self.mark(given, compiled)
+        return self.mark(program_input, compilation)
 
-    def compile(self, given: inputs.Input) -> Compiled:
-        if given.is_image:
+    def compile(self, program_input: inputs.Input) -> Compiled:
+        if program_input.is_image:
             raise CommandError(
-                2, "needs_text", file=inputs.printable_name(given.name), verb="lesson check"
+                2, "needs_text", file=inputs.printable_name(program_input.name), verb="lesson check"
             )
-        robot = robot_of(given.data, self.robot)
-        compiled = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
-        return fit_to_robot(compiled, robot)
+        robot = robot_of(program_input.data, self.robot)
+        compilation = compiling.compile_input(
+            program_input, robot, is_strict=True, names_robots=False
+        )
+        return fit_to_robot(compilation, robot)
 
-    def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
-        if not compiled.is_right:
-            return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
-        robot = robot_of(given.data, self.robot)
-        lesson = self.lesson._replace(robot=shipped_name_in(given.data) or self.lesson.robot)
-        marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
+    def mark(self, program_input: inputs.Input, compilation: Compiled) -> Mark:
+        if not compilation.is_right:
+            return Mark(program_input.name, MISTAKES, 0, tuple(self._mistakes(compilation)))
+        robot = robot_of(program_input.data, self.robot)
+        lesson = self.lesson._replace(
+            robot=shipped_name_in(program_input.data) or self.lesson.robot
+        )
+        marking = Marking(compilation.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
             outcome = marking.run_to_end()
         except WorldRefused as refused:
@@ -149,7 +153,7 @@ class _Marker:
         except NoWebAssembly as why:
             raise missing_package_error("virtual_needs_wasmtime", why) from None
         return Mark(
-            given.name,
+            program_input.name,
             outcome.verdict,
             outcome.seed,
             self._finding_rows(outcome.findings),
@@ -159,10 +163,10 @@ class _Marker:
     def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
-    def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
-        for diagnostic in compiled.diagnostics:
+    def _mistakes(self, compilation: Compiled) -> Iterable[tuple[str, str]]:
+        for diagnostic in compilation.diagnostics:
             if diagnostic.is_mistake:
-                sentence = message(diagnostic, compiled.source, self.language)
+                sentence = message(diagnostic, compilation.source, self.language)
                 values = {"line": sentence.line, "task": "", "shown": sentence.message}
                 line = text("fault_line", self.language).format(**values)
                 fix = (
@@ -242,7 +246,7 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
     else:
         key = "lesson_failed_world" if len(seeds) > 1 and mark.seed else "lesson_failed"
         say(key, language, file=file, seed=mark.seed)
-        for _, sentence in mark.said:
+        for _, sentence in mark.sentences:
             say("lesson_finding", language, said=sentence)
         if len(seeds) > 1 and mark.seed and not options.texts and mark.name != "-":
             say("lesson_again", language, number=number, file=file, seed=mark.seed)
@@ -260,34 +264,34 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
         )
         for mark in marks
     ]
-    wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
+    widths = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
     columns = get_terminal_size().columns if sys.stdout.isatty() else 0
-    for name, verdict, said in rows:
-        cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  "
+    for name, verdict, shown_sentence in rows:
+        cells = f"{set_cell_size(name, widths[0])}  {set_cell_size(verdict, widths[1])}  "
         room = columns - cell_len(cells) - 1
-        if not columns or cell_len(said) <= room:
-            print(f"{cells}{said}".rstrip())
+        if not columns or cell_len(shown_sentence) <= room:
+            print(f"{cells}{shown_sentence}".rstrip())
             continue
         if room < LEAST_COLUMNS:  # the sentence has lines of its own
             print(cells.rstrip())
             cells, room = "    ", columns - 5
-        for part in textwrap.wrap(said, max(room, LEAST_COLUMNS)):
+        for part in textwrap.wrap(shown_sentence, max(room, LEAST_COLUMNS)):
             print(f"{cells}{part}")
             cells = " " * cell_len(cells)
-    passed = sum(mark.verdict == PASSED for mark in marks)
+    passed_count = sum(mark.verdict == PASSED for mark in marks)
     count = text("lesson_count", language)
     number = inputs.printable_name(options.number)
     programs = sum(mark.verdict != NO_PROGRAM for mark in marks)
-    print(count.format(passed=passed, all=programs, number=number))
+    print(count.format(passed=passed_count, all=programs, number=number))
 
 
 def _first_error(mark: Mark) -> str:
-    sentence = printable(mark.said[0][1], 300) if mark.said else ""
+    sentence = printable(mark.sentences[0][1], 300) if mark.sentences else ""
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 
 
 def _data(mark: Mark) -> dict[str, object]:
-    findings = [{"kind": kind, "sentence": sentence} for kind, sentence in mark.said]
+    findings = [{"kind": kind, "sentence": sentence} for kind, sentence in mark.sentences]
     seed = mark.seed or None
     return {"file": mark.name, "verdict": mark.verdict, "seed": seed, "findings": findings}
 
@@ -295,7 +299,7 @@ def _data(mark: Mark) -> dict[str, object]:
 def _rows(marks: Sequence[Mark], language: str) -> bytes:
     def cells(mark: Mark) -> tuple[object, ...]:
         verdict = text(f"csv_verdict_{mark.verdict}", language)
-        return mark.name, verdict, mark.seed or "", mark.said[0][1] if mark.said else ""
+        return mark.name, verdict, mark.seed or "", mark.sentences[0][1] if mark.sentences else ""
 
     return as_csv("lesson", language, map(cells, marks))
 

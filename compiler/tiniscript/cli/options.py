@@ -63,18 +63,18 @@ class Options(ArgumentParser):
 
     def read(self, arguments: list[str]) -> Namespace | None:
         """Return the options, or None after printing the help that the user has asked for."""
-        own = arguments[: arguments.index("--")] if "--" in arguments else arguments
-        if "-h" in own or "--help" in own:
+        own_words = arguments[: arguments.index("--")] if "--" in arguments else arguments
+        if "-h" in own_words or "--help" in own_words:
             from tiniscript.cli.help import help_of, show
 
             show(partial(help_of, self.command), self.language)
             return None
-        begun = Namespace(verb=self.verb, language=self.language)
-        options, more = self.parse_known_args(arguments, begun)
+        initial = Namespace(verb=self.verb, language=self.language)
+        options, unknown_words = self.parse_known_args(arguments, initial)
         for option in self.table:
             self._refuse_other(option, getattr(options, option.name))
-        if more:  # told of after a wrong value: `tsc set nme TINI`
-            self.error(f"unrecognized arguments: {' '.join(more)}")
+        if unknown_words:  # told of after a wrong value: `tsc set nme TINI`
+            self.error(f"unrecognized arguments: {' '.join(unknown_words)}")
         if sys.platform == "win32" and getattr(options, "programs", None):
             from tiniscript.cli.windows_names import matching_files
 
@@ -84,7 +84,7 @@ class Options(ArgumentParser):
         paths.check(options, self.language)
         return options
 
-    def fits(self, words: list[str]) -> bool:
+    def accepts(self, words: list[str]) -> bool:
         """Whether these words may stand after the command, as far as the table of options says."""
         try:
             self.parse_args(words)
@@ -92,114 +92,120 @@ class Options(ArgumentParser):
             return False
         return True
 
-    def _refuse_other(self, option: Option, found: str | None) -> None:
+    def _refuse_other(self, option: Option, typed: str | None) -> None:
         """Refuse a value that is not among the option's choices, or that goes with another one.
 
         Whatever stands beside it: `--board nano --port P` is no board too many, but a chip.
         """
-        if option.flags == "--board" and found is not None:
+        if option.flags == "--board" and typed is not None:
             from tiniscript.flash.bootloaders import BOARDS
 
-            if found.lower() in BOARDS:
-                raise CommandError(2, "board_is_chip", chip=found.lower())
-        known = option.kind.choices if option.kind is not None else ()
-        if known and found is not None and found not in known:
+            if typed.lower() in BOARDS:
+                raise CommandError(2, "board_is_chip", chip=typed.lower())
+        choices = option.kind.choices if option.kind is not None else ()
+        if choices and typed is not None and typed not in choices:
             label = option.shown_value(self.language) if option.is_argument else option.flags
-            raise bad_choice(label, known, found, self.language)
+            raise bad_choice(label, choices, typed, self.language)
 
     def error(self, message: str) -> NoReturn:
-        unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
-        was = FORMER_OPTIONS.get((self.verb, unknown.partition("=")[0]))
-        if was:
-            raise CommandError(2, "was_option", was=unknown.partition("=")[0], now=was)
+        unknown_option = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
+        present_option = FORMER_OPTIONS.get((self.verb, unknown_option.partition("=")[0]))
+        if present_option:
+            raise CommandError(
+                2, "was_option", was=unknown_option.partition("=")[0], now=present_option
+            )
         other = OTHER_RUN_VERB.get(self.verb)
-        if other and _has(other, unknown):
-            raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)
-        self._refuse_option_of_step(unknown.partition("=")[0])
-        suggestion = self._suggestion(unknown)
+        if other and _has(other, unknown_option):
+            raise CommandError(
+                2, "option_of_other", option=unknown_option, verb=self.verb, other=other
+            )
+        self._refuse_option_of_step(unknown_option.partition("=")[0])
+        suggestion = self._suggestion(unknown_option)
         for key, pattern in _MESSAGES.items():
             if match := re.fullmatch(pattern, message):
                 message = verb_text(f"wrong/{key}", self.language).format(*match.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=suggestion)
 
-    def _refuse_option_of_step(self, unknown: str) -> None:
+    def _refuse_option_of_step(self, unknown_option: str) -> None:
         """Say with which step of the verb an option goes that is unknown here."""
         verb = self.verb.split()[0]
-        others = [name for name in (verb, *steps_of(verb)) if _has(name, unknown)]
-        if not others or not unknown.startswith("-"):
+        steps = [name for name in (verb, *steps_of(verb)) if _has(name, unknown_option)]
+        if not steps or not unknown_option.startswith("-"):
             return
-        other = command_words(others[0])
+        other = command_words(steps[0])
         choosers = {name: step.choosers for name, step in STEPS.items()}
         if choosers.get(self.command) and all(
-            unknown in choosers.get(chooser, ()) for chooser in others
+            unknown_option in choosers.get(chooser, ()) for chooser in steps
         ):
             raise CommandError(2, "one_step", first=self.verb, second=other)
-        raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
+        raise CommandError(2, "option_of_step", option=unknown_option, verb=self.verb, other=other)
 
-    def _suggestion(self, found: str) -> str:
+    def _suggestion(self, typed: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
         table = [*self.table, *choosers_of(self.command)]
         flags = [flag for option in table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
-        if "--robot" in flags and found.lower() in robots.names():
-            return f"--robot {found.lower()}"
-        return _suggestion(found, flags) if found.startswith("--") else ""
+        if "--robot" in flags and typed.lower() in robots.names():
+            return f"--robot {typed.lower()}"
+        return _suggestion(typed, flags) if typed.startswith("--") else ""
 
 
 def _has(command: str, flag: str) -> bool:
     return any(flag in option.flags.split() for option in options_of(command))
 
 
-def _suggestion(found: str, known: Sequence[str]) -> str:
+def _suggestion(typed: str, known_words: Sequence[str]) -> str:
     from tiniscript.base.spelling import nearest
 
-    return nearest(found, known) or ""
+    return nearest(typed, known_words) or ""
 
 
-def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
+def bad_choice(option: str, choices: Sequence[str], typed: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
-    allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
-    shown = printable_name(found) or "''"
-    near = _suggestion(found, known)
-    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown, near=near)
+    choices_text = f"{', '.join(choices[:-1])} {text('or', language)} {choices[-1]}"
+    shown_value = printable_name(typed) or "''"
+    suggestion = _suggestion(typed, choices)
+    return CommandError(
+        2, "bad_choice", option=option, known=choices_text, found=shown_value, near=suggestion
+    )
 
 
-def whole_number(option: str, found: str | None, default: int, low: int, high: int,
+def whole_number(option: str, typed: str | None, default: int, low: int, high: int,
                  language: str) -> int:  # fmt: skip
     """Return an option's whole number, from `low` to `high`."""
-    if found is None:
+    if typed is None:
         return default
-    digits = found[1:] if found[:1] == "-" else found
+    digits = typed[1:] if typed[:1] == "-" else typed
     if not (digits.isascii() and digits.isdigit() and len(digits) < 20):
         value = low - 1
     else:
-        value = int(found)
+        value = int(typed)
     if not low <= value <= high:
-        allowed = text("range_whole", language).format(low=low, high=high)
-        raise CommandError(2, "bad_number", option=option, range=allowed, found=found)
+        range_text = text("range_whole", language).format(low=low, high=high)
+        raise CommandError(2, "bad_number", option=option, range=range_text, found=typed)
     return value
 
 
-def decimal(found: str) -> int | None:
+def decimal(typed: str) -> int | None:
     """Return the thousandths of a decimal, rounded; None where it is none or far too large."""
-    digits = found[1:] if found[:1] == "-" else found
+    digits = typed[1:] if typed[:1] == "-" else typed
     if not re.fullmatch(r"[0-9]+(\.[0-9]+)?|\.[0-9]+", digits, re.ASCII):
         return None
     value, _ = read_literal(digits)
-    return -value if found[:1] == "-" else value
+    return -value if typed[:1] == "-" else value
 
 
 def thousandths(
-    option: str, found: str | None, default: int, low: int, high: int, language: str
+    option: str, typed: str | None, default: int, low: int, high: int, language: str
 ) -> int:
     """Return an option's decimal number in thousandths, from `low` to `high`."""
-    if found is None:
+    if typed is None:
         return default
-    value = decimal(found)
+    value = decimal(typed)
     if value is None or not low <= value <= high:
-        allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
+        range_text = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise CommandError(
-            2, "bad_number", option=option, range=allowed, found=printable_name(found) or "''"
+            2, "bad_number", option=option, range=range_text, found=printable_name(typed) or "''"
         )
     return value
 
@@ -208,40 +214,42 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
     """Return the readings that `--sensor NAME=1,2,3` say, by the sensor's number."""
     sensors = robot.kit.readings
     names = [device.name for device in sensors]
-    lists: dict[int, list[int]] = {}
+    lists_by_sensor: dict[int, list[int]] = {}
     for sentence in texts:
         name, equals, values = sentence.partition("=")
         name = name.strip().upper()
         if not name or name not in names:
-            known = ", ".join(sensor.name for sensor in robot.kit.sensors) or text(
+            sensors_text = ", ".join(sensor.name for sensor in robot.kit.sensors) or text(
                 "no_sensors", language
             )
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or sentence,
-                known=known,
+                               known=sensors_text,
                           near=_suggestion(name, [*filter(None, names)]))  # fmt: skip
         number = names.index(name)
         device = sensors[number]
         if not equals or not values.strip():
             example = f"{name}={device.text(device.low)},{device.text(device.high)}"
             raise CommandError(2, "sensor_form", example=example)
-        if number in lists:
+        if number in lists_by_sensor:
             raise CommandError(2, "sensor_twice", name=name)
-        lists[number] = [
+        lists_by_sensor[number] = [
             _parse_reading(device, value.strip(), language) for value in values.split(",")
         ]
-    return lists
+    return lists_by_sensor
 
 
-def _parse_reading(device: Device, found: str, language: str) -> int:
+def _parse_reading(device: Device, typed: str, language: str) -> int:
     if device.is_yes_no:
-        value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(found.upper())
-        allowed = text("range_yes_no", language)
+        value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(typed.upper())
+        range_text = text("range_yes_no", language)
     else:
-        value = decimal(found)
+        value = decimal(typed)
         low, high = device.text(device.low), device.text(device.high)
-        allowed = text("range_number", language).format(low=low, high=high)
+        range_text = text("range_number", language).format(low=low, high=high)
     if value is None or not device.low <= value <= device.high:
-        raise CommandError(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
+        raise CommandError(
+            2, "sensor_value", found=typed or "''", name=device.name, range=range_text
+        )
     return value
 
 

@@ -9,17 +9,17 @@ from tiniscript.cli.errors import unwritable_error
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Sentence, say_aside, text
-from tiniscript.diagnostics.codes import ENOUGH
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 from tiniscript.library.compiling import Compiled
 
-MOST_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
+MOST_PRINTED = 20  # diagnostics that are printed; a person mends the first ones first
 
 
-def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
+def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> None:
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
-    `mode` is what its permissions become. Raises CommandError, which says `how`, where that is
-    not possible.
+    `mode` is what its permissions become. Raises CommandError with the sentence of `error_key`
+    where that is not possible.
     """
     from tiniscript.base import files
 
@@ -28,7 +28,7 @@ def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        raise unwritable_error(how, printable_name(str(path)), why) from None
+        raise unwritable_error(error_key, printable_name(str(path)), why) from None
 
 
 def write_output(name: str | None, data: bytes) -> bool:
@@ -45,31 +45,34 @@ def write_output(name: str | None, data: bytes) -> bool:
     return False
 
 
-def print_diagnostics(compiled: Compiled, language: str) -> None:
+def print_diagnostics(compilation: Compiled, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
-    if not compiled.diagnostics:
+    if not compilation.diagnostics:
         return
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)
-    for diagnostic in compiled.diagnostics[:MOST_DIAGNOSTICS]:
-        text = message(diagnostic, compiled.source, language)
-        rows = as_text(text, compiled.source, language, color).split("\n")
-        frame = rows[: 2 * bool(compiled.source.text)]
+    for diagnostic in compilation.diagnostics[:MOST_PRINTED]:
+        text = message(diagnostic, compilation.source, language)
+        rows = as_text(text, compilation.source, language, color).split("\n")
+        frame = rows[: 2 * bool(compilation.source.text)]
         print(*frame, *map(Sentence, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
-    count = len(compiled.diagnostics)
-    if count > MOST_DIAGNOSTICS:
-        key = "and_more" if count <= ENOUGH else "and_many_more"
-        say_aside(key, language, n=min(count, ENOUGH) - MOST_DIAGNOSTICS)
-    if 1 < count <= ENOUGH:
-        print(_count(compiled, language), file=sys.stderr)
+    count = len(compilation.diagnostics)
+    if count > MOST_PRINTED:
+        key = "and_more" if count <= MOST_DIAGNOSTICS else "and_many_more"
+        say_aside(key, language, n=min(count, MOST_DIAGNOSTICS) - MOST_PRINTED)
+    if 1 < count <= MOST_PRINTED:
+        print(_count(compilation, language), file=sys.stderr)
 
 
-def _count(compiled: Compiled, language: str) -> str:
-    mistakes = sum(diagnostic.is_mistake for diagnostic in compiled.diagnostics)
-    counted = []
-    for n, word in ((mistakes, "mistake"), (len(compiled.diagnostics) - mistakes, "warning")):
+def _count(compilation: Compiled, language: str) -> str:
+    mistake_count = sum(diagnostic.is_mistake for diagnostic in compilation.diagnostics)
+    counts_texts = []
+    for n, word in (
+        (mistake_count, "mistake"),
+        (len(compilation.diagnostics) - mistake_count, "warning"),
+    ):
         if n:
             key = f"count_{word}" if n == 1 else f"count_{word}s"
-            counted.append(text(key, language).format(n=n))
-    return ", ".join(counted) + "."
+            counts_texts.append(text(key, language).format(n=n))
+    return ", ".join(counts_texts) + "."

@@ -36,16 +36,18 @@ def build(options: Namespace, language: str) -> None:
     parts = missing_parts()
     has_node = NODE not in parts
     if not has_node and install_advice.install_command(install_advice.STUDIO) is None:
-        how = install_advice.command(install_advice.STUDIO)
-        raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
+        install_command = install_advice.command(install_advice.STUDIO)
+        raise CommandError(
+            2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=install_command
+        )
     missing = text("studio_missing", language)
     fetching.ask_to_fetch(missing, parts, building.MINUTES, options, language)
     if not has_node:
         fetching.install(install_advice.STUDIO, NODE, language)
     growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
-    def read_step(said: str) -> Step:
-        step = max(building.step(said), 0 if NPM in parts else 1)
+    def read_step(output: str) -> Step:
+        step = max(building.step(output), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
         return Step(STEPS[step], growing.percent() if is_fetching else STEP_PERCENT[step])
 

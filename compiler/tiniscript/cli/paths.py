@@ -54,22 +54,22 @@ def check(options: Namespace, language: str) -> None:
     outputs = list(_output_paths(options))
     if not outputs:
         return
-    matches = [_identity(output) for output in outputs]
-    for number, (output, identity) in enumerate(zip(outputs, matches, strict=True)):
-        for other, its_own in zip(outputs[:number], matches, strict=False):
-            if identity is not None and identity == its_own:
+    identities = [_identity(output) for output in outputs]
+    for number, (output, identity) in enumerate(zip(outputs, identities, strict=True)):
+        for other, output_identity in zip(outputs[:number], identities, strict=False):
+            if identity is not None and identity == output_identity:
                 raise CommandError(2, "same_outputs", option=other.label, file=other.path,
                               second=output.label, other=output.path)  # fmt: skip
-    for read in _read(options, language):
-        identity = _identity(read, may_be_device=read.dest in ("port", "ports"))
-        for output, its_own in zip(outputs, matches, strict=True):
-            if output.dest == read.dest:
+    for input_path in _read(options, language):
+        identity = _identity(input_path, may_be_device=input_path.dest in ("port", "ports"))
+        for output, output_identity in zip(outputs, identities, strict=True):
+            if output.dest == input_path.dest:
                 continue  # in place
-            if read.dest in ("port", "ports"):
-                its_own = _identity(output, may_be_device=True)
-            if identity is not None and identity == its_own:
+            if input_path.dest in ("port", "ports"):
+                output_identity = _identity(output, may_be_device=True)
+            if identity is not None and identity == output_identity:
                 raise CommandError(2, "over_input", option=output.label, file=output.path,
-                              what=read.label, other=read.path)  # fmt: skip
+                                   what=input_path.label, other=input_path.path)  # fmt: skip
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITE_OPTIONS:
             _refuse_unwritable(output.path, WRITE_OPTIONS[output.dest][1], language)
@@ -148,18 +148,18 @@ def _is_shipped(dest: str, name: str) -> bool:
     return False
 
 
-def _identity(named: NamedPath, may_be_device: bool = False) -> tuple[object, ...] | None:
+def _identity(named_path: NamedPath, may_be_device: bool = False) -> tuple[object, ...] | None:
     """Return a key that is the same for all names of a file, or None for a device such as a tty.
 
     The key of a missing file is its folder and its name without regard to capitals, because its
     file system may ignore them.
     """
     try:
-        stat_result = os.fstat(0) if named.dest == "stdin" else os.stat(named.path)  # noqa: PTH116
+        stat_result = os.fstat(0) if named_path.dest == "stdin" else os.stat(named_path.path)  # noqa: PTH116
         is_device = stat.S_ISCHR(stat_result.st_mode)
         return None if is_device and not may_be_device else (stat_result.st_dev, stat_result.st_ino)
     except (FileNotFoundError, NotADirectoryError):
-        folder, name = os.path.split(os.path.realpath(named.path))
+        folder, name = os.path.split(os.path.realpath(named_path.path))
         with suppress(OSError):
             stat_result = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
             return stat_result.st_dev, stat_result.st_ino, _path_key(name)
@@ -184,14 +184,14 @@ def _refuse_foreign(output: NamedPath) -> None:
             raise CommandError(2, "over_foreign", option=output.label, file=output.path)
 
 
-def _refuse_unwritable(path: str, how: str, language: str) -> None:
+def _refuse_unwritable(path: str, error_key: str, language: str) -> None:
     """Report early that a file cannot be written. Raises CommandError."""
     number = 0
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import has_no_file
 
         if path and has_no_file(path):
-            raise unwritable_error(how, path, text("no_windows_name", language))
+            raise unwritable_error(error_key, path, text("no_windows_name", language))
     try:
         try:
             stat_result = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
@@ -199,7 +199,7 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
                 number = errno.EISDIR
             elif not os.access(path, os.W_OK):
                 number = errno.EACCES
-            is_replaced = stat.S_ISREG(stat_result.st_mode) and not how.endswith("--csv")
+            is_replaced = stat.S_ISREG(stat_result.st_mode) and not error_key.endswith("--csv")
         except FileNotFoundError:
             is_replaced = True
         folder = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
@@ -208,9 +208,9 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
                 number = errno.EACCES
     except (OSError, ValueError) as why:
-        raise unwritable_error(how, path, why) from None
+        raise unwritable_error(error_key, path, why) from None
     if number or not path:
-        raise unwritable_error(how, path or "''", os.strerror(number or errno.ENOENT))
+        raise unwritable_error(error_key, path or "''", os.strerror(number or errno.ENOENT))
 
 
 HEAD_BYTES = 4096  # of a file, which tell what it is

@@ -32,15 +32,15 @@ def are_several(names: Sequence[str]) -> bool:
 
 def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
-    seen: set[str] = set()
+    paths_seen: set[str] = set()
     for name in names:
         result = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
         if not result:
             raise CommandError(2, "no_programs", file=inputs.printable_name(name))
         for item in result:
             real = os.path.realpath(item)
-            if real not in seen:
-                seen.add(real)
+            if real not in paths_seen:
+                paths_seen.add(real)
                 yield read(item)
 
 
@@ -48,28 +48,28 @@ def _is_folder(name: str) -> bool:
     return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
 
 
-def in_folder(top: str, ends: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
+def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
     """Yield the names of programs in a folder and those below, in order; none that is hidden.
 
-    `ends` are the ends of their names. A folder that cannot be read is yielded itself.
+    `endings` are the ends of their names. A folder that cannot be read is yielded itself.
     """
-    waiting = [top]
-    while waiting:
-        folder = waiting.pop()
+    pending_folders = [top]
+    while pending_folders:
+        folder = pending_folders.pop()
         try:
             with os.scandir(folder) as entries:
-                inside = sorted(entries, key=lambda entry: entry.name)
+                sorted_entries = sorted(entries, key=lambda entry: entry.name)
         except OSError:
             yield folder  # reading it says why
             continue
-        for entry in inside:
-            if not entry.name.startswith(".") and entry.name.lower().endswith(ends):
+        for entry in sorted_entries:
+            if not entry.name.startswith(".") and entry.name.lower().endswith(endings):
                 if not entry.is_dir(follow_symlinks=False):
                     yield entry.path
-        below = (entry for entry in inside if entry.is_dir(follow_symlinks=False))
-        waiting += [
+        subfolders = (entry for entry in sorted_entries if entry.is_dir(follow_symlinks=False))
+        pending_folders += [
             dir_entry.path
-            for dir_entry in reversed(list(below))
+            for dir_entry in reversed(list(subfolders))
             if not dir_entry.name.startswith(".")
         ]
 

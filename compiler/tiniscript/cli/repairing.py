@@ -27,24 +27,24 @@ class Repaired(NamedTuple):
     """A program with its sure repairs: the bytes of its file, how many, and what is left."""
 
     data: bytes
-    repairs: int
-    compiled: Compiled
+    repair_count: int
+    compilation: Compiled
 
 
-def repair(given: Input, robot: Robot) -> Repaired:
+def repair(program_input: Input, robot: Robot) -> Repaired:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
-    text = text_of(given.data, given.name)
+    text = text_of(program_input.data, program_input.name)
     if not isinstance(text, str):
-        return Repaired(given.data, 0, text)
+        return Repaired(program_input.data, 0, text)
 
     def compile_data(data: bytes) -> Compiled:
-        return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
+        return compiling.compile_input(program_input._replace(data=data), robot, is_strict=False)
 
     result = repair_program(text, lambda changed: compile_data(changed.encode()).diagnostics)
     new = result.text.encode()
-    if given.data.startswith(_BOM):
+    if program_input.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, result.repairs, compile_data(new))
+    return Repaired(new, result.repair_count, compile_data(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

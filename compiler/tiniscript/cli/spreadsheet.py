@@ -16,7 +16,7 @@ from tiniscript.base.languages import languages
 from tiniscript.base.source import printable
 from tiniscript.cli.texts import text
 
-LONGEST = 2000  # characters of a cell
+MOST_CELL_CHARACTERS = 2000  # characters of a cell
 TABLES = ("check", "lesson")
 # What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
 # whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
@@ -40,8 +40,8 @@ def beginnings() -> tuple[bytes, ...]:
 
     A spreadsheet that has kept such a file may have given it other line ends.
     """
-    empty = [as_csv(table, language, ()) for table in TABLES for language in languages()]
-    return (*empty, *(item.replace(b"\n", b"\r\n") for item in empty))
+    empty_tables = [as_csv(table, language, ()) for table in TABLES for language in languages()]
+    return (*empty_tables, *(item.replace(b"\n", b"\r\n") for item in empty_tables))
 
 
 def escape_formula(text: str) -> str:
@@ -53,11 +53,13 @@ def escape_formula(text: str) -> str:
 
 
 def _name(value: object) -> str:
-    return _AFTER_ANY.sub(r"\1\2'", printable(str(value), LONGEST))
+    return _AFTER_ANY.sub(r"\1\2'", printable(str(value), MOST_CELL_CHARACTERS))
 
 
 def _cell(value: object) -> object:
     """Return a number, or a sentence, of which nothing but a first sign can be a formula."""
     return (
-        _FORMULA_START.sub(r"\1\2'", printable(value, LONGEST)) if isinstance(value, str) else value
+        _FORMULA_START.sub(r"\1\2'", printable(value, MOST_CELL_CHARACTERS))
+        if isinstance(value, str)
+        else value
     )

@@ -21,7 +21,7 @@ from typing import Any, TextIO
 
 from tiniscript.cli.texts import Sentence
 
-UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
+READER_LIMIT_S = 1.0  # timeout for a reader when a command is interrupted
 ERROR_HANDLER = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
@@ -128,7 +128,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
         return False
     import select  # of an interrupted command
 
-    end_s = monotonic() + UNREAD_S
+    end_s = monotonic() + READER_LIMIT_S
     os.set_blocking(pipe, False)
     try:
         while True:
@@ -169,7 +169,7 @@ class Wrapping:
 _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
-def wrap(said: str, columns: int) -> str:
+def wrap(sentence: str, columns: int) -> str:
     """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 
@@ -178,7 +178,7 @@ def wrap(said: str, columns: int) -> str:
         return command[0].replace(" ", "\0") if is_kept else command[0]
 
     rows = []
-    for row in _COMMAND.sub(keep_spaces, said).split("\n"):
+    for row in _COMMAND.sub(keep_spaces, sentence).split("\n"):
         indent = row[: len(row) - len(row.lstrip(" "))]
         filled = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
                       break_long_words=False, break_on_hyphens=False)  # fmt: skip

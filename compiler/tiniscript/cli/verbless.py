@@ -20,7 +20,7 @@ from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import chosen, options_of
+from tiniscript.cli.texts.options import command_of, options_of
 from tiniscript.cli.texts.verbs import (
     COMMANDS,
     FORMER_COMMANDS,
@@ -46,10 +46,10 @@ def _present_command(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
     for item in (head, command_words(command)):
-        verb, *more = [*item.split(), *words]
-        found, rest = chosen(verb, more)
-        if found == command and Options(command, language).fits(rest):
-            return shlex.join([verb, *more])
+        verb, *all_words = [*item.split(), *words]
+        present, rest = command_of(verb, all_words)
+        if present == command and Options(command, language).accepts(rest):
+            return shlex.join([verb, *all_words])
     from tiniscript.cli.help import begins
 
     return begins(command, language)
@@ -107,7 +107,7 @@ LEAST_LETTERS = 3  # letters of a word that says something
 STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 
 
-def verbs_for(said: str) -> list[str]:
+def verbs_for(question: str) -> list[str]:
     """Return the commands whose texts have the words of a question, best first; most have none.
 
     A word counts more where fewer commands have it, and more in a command's name and summary than
@@ -115,22 +115,24 @@ def verbs_for(said: str) -> list[str]:
     """
     texts = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
-    for stem in _stems(said):
-        having = [command for command in COMMANDS if stem in texts[command]]
-        for command in having:
-            scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
+    for stem in _stems(question):
+        commands_with_stem = [command for command in COMMANDS if stem in texts[command]]
+        for command in commands_with_stem:
+            scores[command] += texts[command][stem] * log(
+                1 + len(COMMANDS) / len(commands_with_stem)
+            )
     best = max(scores.values())
-    matches = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
-    return sorted(matches, key=lambda verb: -scores[verb])[:MOST_VERBS]
+    commands = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
+    return sorted(commands, key=lambda verb: -scores[verb])[:MOST_VERBS]
 
 
 def _weights(verb: str) -> dict[str, int]:
     """Return what each stem of a command's texts counts."""
     options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
-    def stems_of(what: str) -> set[str]:
+    def stems_of(part: str) -> set[str]:
         return {
-            stem for language in languages() for stem in _stems(verb_sentence(verb, what, language))
+            stem for language in languages() for stem in _stems(verb_sentence(verb, part, language))
         }
 
     helps = (option.help(language) for option in options for language in languages())

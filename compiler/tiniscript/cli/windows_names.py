@@ -17,8 +17,8 @@ FORBIDDEN_CHARACTERS = set('<>"|?*') | {chr(code) for code in range(32)}
 
 def has_no_file(path: str) -> bool:
     """Return whether Windows would make no file of this name, or one of another name."""
-    rest = ntpath.splitdrive(path)[1].replace("/", "\\")
-    parts = [part for part in rest.split("\\") if part not in ("", ".", "..")]
+    path_without_drive = ntpath.splitdrive(path)[1].replace("/", "\\")
+    parts = [part for part in path_without_drive.split("\\") if part not in ("", ".", "..")]
     return any(_is_impossible(part) for part in parts)
 
 

@@ -50,19 +50,19 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
     """
     lowering = _Lowering(plain, len(program.procedures))
     called = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
-    waiting: list[tuple[ir.Procedure | ir.Task, int | None]] = [
+    pending_routines: list[tuple[ir.Procedure | ir.Task, int | None]] = [
         *((program.procedures[k], k) for k in called),
         *((task, None) for task in program.tasks),
     ]
     if plain:
-        waiting.sort(key=lambda each: each[0].span)
-    waiting.reverse()
+        pending_routines.sort(key=lambda each: each[0].span)
+    pending_routines.reverse()
     for statement in program.body:
-        while waiting and (not plain or waiting[-1][0].span < statement.span):
-            lowering.routine(*waiting.pop())
+        while pending_routines and (not plain or pending_routines[-1][0].span < statement.span):
+            lowering.routine(*pending_routines.pop())
         lowering.statement(statement)
-    while waiting:
-        lowering.routine(*waiting.pop())
+    while pending_routines:
+        lowering.routine(*pending_routines.pop())
     return _assemble(lowering.out)
 
 
@@ -72,37 +72,37 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self, plain: bool, procedures: int) -> None:
+    def __init__(self, plain: bool, procedure_count: int) -> None:
         self.plain = plain
         self.out = Emitter(plain)
         # the label of each DEF's first instruction
-        self.entries = [self.out.new_label() for _ in range(procedures)]
+        self.entries = [self.out.new_label() for _ in range(procedure_count)]
         self.loops: list[_LoopEnd] = []
 
     def routine(self, routine: ir.Procedure | ir.Task, number: int | None) -> None:
         """Add a task, or the DEF of this number."""
-        out = self.out
-        out.span = routine.span
-        end = out.new_label()
+        emitter = self.out
+        emitter.span = routine.span
+        end = emitter.new_label()
         if isinstance(routine, ir.Procedure):
             assert number is not None
-            out.add("DEF", to=end)
-            out.mark(self.entries[number])
+            emitter.add("DEF", label=end)
+            emitter.mark(self.entries[number])
             last = "RETURN"
-        elif routine.look is None:
-            out.add("TASK", to=end)
+        elif routine.until is None:
+            emitter.add("TASK", label=end)
             last = "END_TASK"
         else:
-            out.add("WHEN", to=end)
-            self.reads(routine.look.reads)
-            add_value(out, routine.look.condition)
-            out.add("LOOK")
+            emitter.add("WHEN", label=end)
+            self.add_readings(routine.until.reads)
+            add_value(emitter, routine.until.condition)
+            emitter.add("LOOK")
             last = "END_WHEN"
         self.body(routine.body)
-        out.add(last)
-        out.mark(end)
+        emitter.add(last)
+        emitter.mark(end)
 
-    def reads(self, sensors: tuple[int, ...]) -> None:
+    def add_readings(self, sensors: tuple[int, ...]) -> None:
         for sensor in sensors:
             self.out.add("READ", sensor)
 
@@ -128,7 +128,7 @@ class _Lowering:
     # -- moves --------------------------------------------------------------------------------
 
     def move(self, move: ir.Move) -> None:
-        out = self.out
+        emitter = self.out
         time = None if move.time is None else self.clamp_time(move.time)
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
@@ -141,19 +141,19 @@ class _Lowering:
             value = None if power is None else self.constant_of(power)
             if byte is not None and (power is None or value is not None):
                 short = "WAIT8" if value is None else f"MOVE8_{name}"
-                out.add(short, byte, *(() if value is None else (value // 1000,)))
+                emitter.add(short, byte, *(() if value is None else (value // 1000,)))
                 return
         if time is not None:
-            add_value(out, time)
+            add_value(emitter, time)
         if power is not None:
-            add_value(out, power)
+            add_value(emitter, power)
         if until is None:
-            out.add("WAIT" if power is None else f"{'GO' if move.unit else 'MOVE'}_{name}")
+            emitter.add("WAIT" if power is None else f"{'GO' if move.unit else 'MOVE'}_{name}")
             return
         kind = "_FOREVER" if time is None else "_GO" if move.unit else ""
-        out.add(f"WATCH{kind}_{name}")
-        self.reads(until.reads)
-        emit_until(out, until.condition)
+        emitter.add(f"WATCH{kind}_{name}")
+        self.add_readings(until.reads)
+        emit_until(emitter, until.condition)
 
     def beep(self, beep: ir.Beep) -> None:
         time_ms, hertz = self.constant_of(self.clamp_time(beep.time)), self.constant_of(beep.hertz)
@@ -182,19 +182,19 @@ class _Lowering:
 
     def assign(self, assign: ir.Assign) -> None:
         """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
-        out, variable, value = self.out, assign.variable, assign.value
+        emitter, variable, value = self.out, assign.variable, assign.value
         if not self.plain and self.add_short_assignment(variable, value):
             return
-        add_value(out, value)
-        out.add("SET_VAR", variable)
+        add_value(emitter, value)
+        emitter.add("SET_VAR", variable)
 
     def add_short_assignment(self, variable: int, value: ir.Expression) -> bool:
         """Add the one instruction that does it; return whether there is one."""
-        out = self.out
+        emitter = self.out
         if len(value) == 1 and value[0].op == "NUMBER":
             number = number_of(value[0], -128, 127)
             if number is not None and not pushes_in_one_byte(value[0], variable):
-                out.add("SET_VAR8", variable, number)
+                emitter.add("SET_VAR8", variable, number)
                 return True
         if len(value) == 3 and value[2].op in ("ADD", "SUB"):
             left, right, operator = value
@@ -205,80 +205,80 @@ class _Lowering:
                     sign = 1 if operator.op == "ADD" else -1
                     number = number_of(right._replace(value=sign * right.value), -128, 127)
                     if number in (1, -1):
-                        out.add("INC_VAR" if number == 1 else "DEC_VAR", variable)
+                        emitter.add("INC_VAR" if number == 1 else "DEC_VAR", variable)
                         return True
                     if number is not None:
-                        out.add("ADD_VAR8", variable, number)
+                        emitter.add("ADD_VAR8", variable, number)
                         return True
                 elif right.op == "VARIABLE" and operator.op == "ADD":
-                    out.add("ADD_VAR", variable, right.value)
+                    emitter.add("ADD_VAR", variable, right.value)
                     return True
         return False
 
     # -- blocks -------------------------------------------------------------------------------
 
     def if_(self, statement: ir.If) -> None:
-        out = self.out
-        end = out.new_label()
+        emitter = self.out
+        end = emitter.new_label()
         for k, arm in enumerate(statement.arms):
             has_else = statement.has_else if self.plain else bool(statement.otherwise)
             is_last = k == len(statement.arms) - 1 and not has_else
-            following = end if is_last else out.new_label()
-            out.span = arm.span
-            self.reads(arm.reads)
-            emit_unless(out, arm.condition, following)
+            following = end if is_last else emitter.new_label()
+            emitter.span = arm.span
+            self.add_readings(arm.reads)
+            emit_unless(emitter, arm.condition, following)
             self.body(arm.body)
             if not is_last:
                 if self.plain or ir.falls_through(arm.body):
-                    out.add("ELSE", to=end)
-                out.mark(following)
+                    emitter.add("ELSE", label=end)
+                emitter.mark(following)
         self.body(statement.otherwise)
-        out.mark(end)
+        emitter.mark(end)
 
     def loop(self, loop: ir.Loop) -> None:
-        out = self.out
-        end = out.new_label()
+        emitter = self.out
+        end = emitter.new_label()
         if loop.times is None:
-            out.add("FOREVER")
+            emitter.add("FOREVER")
         else:
             value = self.constant_of(loop.times)
             count = None if value is None else whole(value)
             if count is not None and 1 <= count <= 255:
-                out.add("LOOP8", count)
+                emitter.add("LOOP8", count)
             else:
-                add_value(out, loop.times)
-                out.add("LOOP", to=end)
+                add_value(emitter, loop.times)
+                emitter.add("LOOP", label=end)
         self.add_loop(loop.body, end, loop.times is not None, loop.span)
 
     def while_(self, loop: ir.While) -> None:
-        out = self.out
-        end = out.new_label()
-        out.add("WHILE", to=end)
-        start = out.mark_here()
-        self.reads(loop.reads)
-        emit_unless(out, loop.condition, end)
+        emitter = self.out
+        end = emitter.new_label()
+        emitter.add("WHILE", label=end)
+        start = emitter.mark_here()
+        self.add_readings(loop.reads)
+        emit_unless(emitter, loop.condition, end)
         self.add_loop(loop.body, end, False, loop.span, start)
 
     def add_loop(
         self, body: ir.Body, end: int, is_counted: bool, span: Span, start: int | None = None
     ) -> None:
         """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
-        out = self.out
+        emitter = self.out
         if start is None:
-            start = out.mark_here()
+            start = emitter.mark_here()
         self.loops.append(_LoopEnd(end, is_counted))
         self.body(body)
         self.loops.pop()
-        out.span = span
-        out.add("NEXT" if is_counted else "AGAIN", to=start)
-        out.mark(end)
+        emitter.span = span
+        emitter.add("NEXT" if is_counted else "AGAIN", label=start)
+        emitter.mark(end)
 
     def break_(self, _: ir.Break) -> None:
         loop = self.loops[-1]
-        self.out.add("BREAK_LOOP" if loop.is_counted else "BREAK", to=loop.label)
+        self.out.add("BREAK_LOOP" if loop.is_counted else "BREAK", label=loop.label)
 
     def call(self, call: ir.Call) -> None:
-        self.out.add("CALL", to=self.entries[call.procedure])
+        self.out.add("CALL", label=self.entries[call.procedure])
 
     # -- numbers that the text says -----------------------------------------------------------
 
@@ -318,7 +318,7 @@ _STATEMENTS: dict[type, Callable[..., None]] = {
 # -- layout -----------------------------------------------------------------------------------
 
 
-def _assemble(out: Emitter) -> Lowered:
+def _assemble(emitter: Emitter) -> Lowered:
     """Choose for each jump the form that reaches its target, and write the bytes.
 
     A jump only ever gets longer, so this ends. Comparing branches have no far form: one that
@@ -326,25 +326,25 @@ def _assemble(out: Emitter) -> Lowered:
     """
     while True:
         starts, offset = [], 0
-        for item in out.items:
+        for item in emitter.items:
             starts.append(offset)
             offset += item.op.size
         starts.append(offset)
-        targets = [starts[index] for index in out.labels]
+        targets = [starts[index] for index in emitter.labels]
         short = {
             k
-            for k, item in enumerate(out.items)
-            if item.to is not None and not _is_in_reach(item, starts[k], targets[item.to])
+            for k, item in enumerate(emitter.items)
+            if item.label is not None and not _is_in_reach(item, starts[k], targets[item.label])
         }
         if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
             break
-        out.widen(short)
+        emitter.widen(short)
     code = bytearray()
     places: list[SourceLocation] = []
-    for item, start in zip(out.items, starts, strict=False):
+    for item, start in zip(emitter.items, starts, strict=False):
         if not places or places[-1].span != item.span:
             places.append(SourceLocation(start, item.span))
-        _write(code, item, None if item.to is None else targets[item.to])
+        _write(code, item, None if item.label is None else targets[item.label])
     return Lowered(bytes(code), tuple(places))
 
 

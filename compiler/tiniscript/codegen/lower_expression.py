@@ -22,11 +22,11 @@ _MAX_EAGER_TERMS = 6  # terms up to which evaluating a needless side costs less 
 
 
 class Item(NamedTuple):
-    """An instruction that is not yet laid out; `to` is a label and stands for the last operand."""
+    """An instruction that is not yet laid out; `label` stands for the last operand."""
 
     op: Op
     operands: tuple[int, ...]
-    to: int | None
+    label: int | None
     span: Span
 
 
@@ -40,9 +40,9 @@ class Emitter:
         self.span = Span(0, 0)
         self._last_mark = -1
 
-    def add(self, name: str, *operands: int, to: int | None = None) -> None:
+    def add(self, name: str, *operands: int, label: int | None = None) -> None:
         op, operands = _shortest_op(name, *operands)
-        self.items.append(Item(op, operands, to, self.span))
+        self.items.append(Item(op, operands, label, self.span))
 
     def new_label(self) -> int:
         self.labels.append(-1)
@@ -67,15 +67,15 @@ class Emitter:
         del self.items[-1]
         return True
 
-    def widen(self, which: set[int]) -> None:
-        """Give the jumps at the indexes `which` their far forms."""
+    def widen(self, positions: set[int]) -> None:
+        """Give the jumps at the indexes `positions` their far forms."""
         items: list[Item] = []
-        moved = []
+        new_positions = []
         for k, item in enumerate(self.items):
-            moved.append(len(items))
-            items += _far_form(item) if k in which else (item,)
-        moved.append(len(items))
-        self.labels = [moved[index] for index in self.labels]
+            new_positions.append(len(items))
+            items += _far_form(item) if k in positions else (item,)
+        new_positions.append(len(items))
+        self.labels = [new_positions[index] for index in self.labels]
         self.items = items
 
 
@@ -91,14 +91,14 @@ def _far_form(item: Item) -> tuple[Item, ...]:
     if far is not None:
         return (item._replace(op=far),)
     *variable, number = item.operands
-    says = [
+    parts = [
         *(_shortest_op("PUSH_VAR", each) for each in variable),
         _push(number * 1000),
         (BY_NAME[item.op.name.rpartition("_")[2]], ()),
     ]
     return (
-        *(Item(*each, None, item.span) for each in says),
-        Item(BY_NAME["IF_FAR"], (), item.to, item.span),
+        *(Item(*each, None, item.span) for each in parts),
+        Item(BY_NAME["IF_FAR"], (), item.label, item.span),
     )
 
 
@@ -133,99 +133,99 @@ def pushes_in_one_byte(term: Term, variable: int) -> bool:
     return variable < SHORTS and _push(term.value)[0].size == 1
 
 
-def push(out: Emitter, term: Term) -> None:
+def push(emitter: Emitter, term: Term) -> None:
     """Add the instruction for a term that is not a binary operator."""
     op, value = term
     if op == "NUMBER":
         instruction, operands = _push(value)
-        out.items.append(Item(instruction, operands, None, out.span))
+        emitter.items.append(Item(instruction, operands, None, emitter.span))
     elif op == "YES_NO":
-        out.add("PUSH_TRUE" if value else "PUSH_FALSE")
+        emitter.add("PUSH_TRUE" if value else "PUSH_FALSE")
     elif op == "VARIABLE":
-        out.add("PUSH_VAR", value)
+        emitter.add("PUSH_VAR", value)
     elif op == "SENSOR":
-        span = out.span
-        out.add("PUSH_READ" if out.take_back_read(value) else "PUSH_SENSOR", value)
-        out.span = span
+        span = emitter.span
+        emitter.add("PUSH_READ" if emitter.take_back_read(value) else "PUSH_SENSOR", value)
+        emitter.span = span
     else:
-        out.add(op)
+        emitter.add(op)
 
 
-def add_value(out: Emitter, expression: Expression) -> None:
+def add_value(emitter: Emitter, expression: Expression) -> None:
     """Add instructions that leave the value of `expression` on the stack."""
     joins: list[int | None] = []
     for k, term in enumerate(expression):
         if term.op in _LEFT_OPS:
             end = _matching_index(expression, range(k + 1, len(expression)), _LEFT_OPS, _JOIN_OPS)
             right = expression[k + 1 : end]
-            if not out.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
+            if not emitter.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
-                joins.append(out.new_label())
-                out.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
+                joins.append(emitter.new_label())
+                emitter.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", label=joins[-1])
         elif term.op in _JOIN_OPS:
             join = joins.pop()
             if join is None:
-                out.add(term.op)
+                emitter.add(term.op)
             else:
-                out.mark(join)
+                emitter.mark(join)
         else:
-            push(out, term)
+            push(emitter, term)
 
 
-def emit_unless(out: Emitter, condition: Expression, otherwise: int) -> None:
-    """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
-    if out.plain:
-        add_value(out, condition)
-        out.add("IF", to=otherwise)
+def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
+    """Add branches to the label `target` that are taken where `condition` is FALSE."""
+    if emitter.plain:
+        add_value(emitter, condition)
+        emitter.add("IF", label=target)
         return
     # where a part of it begins and ends, and whether its being TRUE branches
-    pending = [(0, len(condition), False)]
-    while pending:
-        start, end, when = pending.pop()
+    pending_branches = [(0, len(condition), False)]
+    while pending_branches:
+        start, end, wanted_answer = pending_branches.pop()
         operator = condition[end - 1].op
         if operator == "NOT":
-            pending.append((start, end - 1, not when))
-        elif operator == ("OR" if when else "AND"):
+            pending_branches.append((start, end - 1, not wanted_answer))
+        elif operator == ("OR" if wanted_answer else "AND"):
             split = _matching_index(condition, range(end - 2, -1, -1), _JOIN_OPS, _LEFT_OPS)
-            pending.append((split + 1, end - 1, when))
-            pending.append((start, split, when))
+            pending_branches.append((split + 1, end - 1, wanted_answer))
+            pending_branches.append((start, split, wanted_answer))
         else:
-            _emit_branch(out, condition[start:end], when, otherwise)
+            _emit_branch(emitter, condition[start:end], wanted_answer, target)
 
 
-def emit_until(out: Emitter, condition: Expression) -> None:
+def emit_until(emitter: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
-    compared = None if out.plain else _comparison_to_constant(condition)
-    if compared is None:
-        add_value(out, condition)
-        out.add("UNTIL")
+    comparison = None if emitter.plain else _comparison_to_constant(condition)
+    if comparison is None:
+        add_value(emitter, condition)
+        emitter.add("UNTIL")
     else:
-        add_value(out, compared.value)
-        out.add(f"UNTIL{compared.bits}_{compared.comparator}", compared.number)
+        add_value(emitter, comparison.value)
+        emitter.add(f"UNTIL{comparison.bit_count}_{comparison.comparator}", comparison.number)
 
 
-def _emit_branch(out: Emitter, expression: Expression, when: bool, to: int) -> None:
-    compared = _comparison_to_constant(expression)
-    if compared is None:
-        add_value(out, expression)
-        out.add("IF_NOT" if when else "IF", to=to)
+def _emit_branch(emitter: Emitter, expression: Expression, wanted_answer: bool, label: int) -> None:
+    comparison = _comparison_to_constant(expression)
+    if comparison is None:
+        add_value(emitter, expression)
+        emitter.add("IF_NOT" if wanted_answer else "IF", label=label)
         return
-    value, bits, comparator, number = compared
-    if when:
+    value, bits, comparator, number = comparison
+    if wanted_answer:
         comparator = NEGATED[comparator]
     if len(value) == 1 and value[0].op == "VARIABLE":
-        out.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)
+        emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, label=label)
     else:
-        add_value(out, value)
-        out.add(f"IF{bits}_{comparator}", number, to=to)
+        add_value(emitter, value)
+        emitter.add(f"IF{bits}_{comparator}", number, label=label)
 
 
 class _Compared(NamedTuple):
     """`value` is compared to a whole number of so many bits."""
 
     value: Expression
-    bits: int
+    bit_count: int
     comparator: str
     number: int
 

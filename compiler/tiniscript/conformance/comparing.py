@@ -32,10 +32,10 @@ class Verdict(NamedTuple):
     detail: str = ""
 
 
-def compare(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
+def compare(name: str, wanted_rows: Sequence[str], rows_got: Sequence[str]) -> Verdict:
     """Return the first line that differs."""
-    for number in range(max(len(want), len(got))):
-        pair = [rows[number] if number < len(rows) else None for rows in (want, got)]
+    for number in range(max(len(wanted_rows), len(rows_got))):
+        pair = [rows[number] if number < len(rows) else None for rows in (wanted_rows, rows_got)]
         if pair[0] != pair[1]:
             return Verdict(name, DIFFERS, number + 1, pair[0], pair[1])
     return Verdict(name, AGREES)
@@ -44,7 +44,7 @@ def compare(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
 Ask = Callable[[str, int], Sequence[str]]
 
 
-def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
+def verdicts(cases: Iterable[MachineCase], answer_of: Ask) -> Iterator[Verdict]:
     """Yield the verdict of each case, up to where nobody waits for more.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
@@ -57,20 +57,20 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
             yield Verdict(case.name, LACKS)
             continue
         try:
-            got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
+            answer = answer_of(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
             verdict = compare(case.name, case.answer, problem.rows)
-            yield verdict._replace(what=problem.what, detail=problem.detail)
-            endless += problem.what in ("hang", "flood")
+            yield verdict._replace(what=problem.kind, detail=problem.detail)
+            endless += problem.kind in ("hang", "flood")
             silent += not answers
             if endless == MOST_ENDLESS or silent == MOST_SILENT:
                 return
         else:
             answers += 1
             if case.needs and case.needs not in lacks:
-                refuses = list(got) in LACKING_ANSWERS and list(got) != list(case.answer)
+                refuses = list(answer) in LACKING_ANSWERS and list(answer) != list(case.answer)
                 lacks[case.needs] = refuses
                 if refuses:
                     yield Verdict(case.name, LACKS)
                     continue
-            yield compare(case.name, case.answer, got)
+            yield compare(case.name, case.answer, answer)

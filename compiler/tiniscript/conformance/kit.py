@@ -36,15 +36,17 @@ class MachineCase(NamedTuple):
 
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
-        lists = [
+        reading_rows = [
             " ".join(("readings", str(number), *map(str, values)))
             for number, values in sorted(self.readings.items())
         ]
-        slow = [f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow]
+        slow_rows = [
+            f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow
+        ]
         rows = (
             *self.devices,
-            *lists,
-            *slow,
+            *reading_rows,
+            *slow_rows,
             f"seed {self.seed}",
             f"begin {self.begin_ms}",
             f"every {' '.join(map(str, self.every_ms))}",
@@ -59,7 +61,7 @@ class NotMade(Exception):
     """This installation has no file of cases."""
 
 
-def _read(name: str) -> Any:
+def _read_json(name: str) -> Any:
     """Return what a file of cases says. Raises NotMade."""
     try:
         return json.loads((FOLDER / name).read_text(encoding="utf-8"))
@@ -69,13 +71,13 @@ def _read(name: str) -> Any:
 
 def machine_cases() -> list[MachineCase]:
     """Return all cases, in the order of the file. Raises NotMade."""
-    return cases_in(_read("machine.json"))
+    return cases_in(_read_json("machine.json"))
 
 
-def cases_in(found: Any) -> list[MachineCase]:
+def cases_in(kit_file: Any) -> list[MachineCase]:
     """Return the cases of a file of this version, as JSON has it."""
-    assert (found["form"], found["version"]) == (MACHINE_FORM, MACHINE_VERSION)
-    kits = [tuple(lines) for lines in found["kits"]]
+    assert (kit_file["form"], kit_file["version"]) == (MACHINE_FORM, MACHINE_VERSION)
+    kits = [tuple(lines) for lines in kit_file["kits"]]
     return [
         MachineCase(
             row["name"],
@@ -90,7 +92,7 @@ def cases_in(found: Any) -> list[MachineCase]:
             tuple(row["answer"]),
             {int(number): tuple(times) for number, times in row.get("slow", {}).items()},
         )
-        for row in found["cases"]
+        for row in kit_file["cases"]
     ]
 
 
@@ -125,12 +127,12 @@ class LinkRefused(NamedTuple):
 
 class LinkTestSuite(NamedTuple):
     programs: tuple[LinkProgram, ...]
-    refused: tuple[LinkRefused, ...]
+    refusals: tuple[LinkRefused, ...]
 
 
 def link_test_suite() -> LinkTestSuite:
     """Return what a robot on a port must do. Raises NotMade."""
-    result = _read("link.json")
+    result = _read_json("link.json")
     assert (result["form"], result["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkTestSuite(
         tuple(

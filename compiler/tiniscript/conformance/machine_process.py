@@ -27,16 +27,16 @@ ENDING_WORDS = (
 CHUNK_BYTES = 1 << 16
 SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
 TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
-LEAVE_S = 0.5  # for a process whose output has ended, to end with its code
+EXIT_LIMIT_S = 0.5  # for a process whose output has ended, to end with its code
 
 
 class Problem(Exception):
-    """No answer. `what` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
+    """No answer. `kind` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
     `rows` are the lines that came before."""
 
-    def __init__(self, what: str, detail: str, rows: tuple[str, ...]) -> None:
-        super().__init__(what)
-        self.what = what
+    def __init__(self, kind: str, detail: str, rows: tuple[str, ...]) -> None:
+        super().__init__(kind)
+        self.kind = kind
         self.detail = detail
         self.rows = rows
 
@@ -67,16 +67,16 @@ class MachineProcess:
 
         A process that has answered before may have ended since: then a new one is asked.
         """
-        most = expected_bytes + SPARE_BYTES
+        most_bytes = expected_bytes + SPARE_BYTES
         if self._answers:
             with contextlib.suppress(_ProcessEnded):
-                return self._query(request, most)
+                return self._query(request, most_bytes)
             self.close()
         try:
-            return self._query(request, most)
+            return self._query(request, most_bytes)
         except _ProcessEnded as ended:
-            code = ended.code
-        self._fail("crash", str(code), [])
+            exit_code = ended.code
+        self._fail("crash", str(exit_code), [])
 
     def close(self) -> str:
         """End the process and all that it has started; return the end of its standard error."""
@@ -89,11 +89,11 @@ class MachineProcess:
         process.kill()
         process.wait()
         self._requests.put(b"")
-        leaves_by = time.monotonic() + LEAVE_S
+        leaves_by = time.monotonic() + EXIT_LIMIT_S
         while self._reader.is_alive() and time.monotonic() < leaves_by:
             with contextlib.suppress(queue.Empty):  # it waits where the queue is full
                 self._chunks.get(timeout=0.01)
-        self._errors.join(LEAVE_S)
+        self._errors.join(EXIT_LIMIT_S)
         lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
         return lines[-1] if lines else ""
 
@@ -153,7 +153,7 @@ class MachineProcess:
                 pipe.write(request)
                 pipe.flush()
 
-    def _query(self, request: str, most: int) -> tuple[str, ...]:
+    def _query(self, request: str, most_bytes: int) -> tuple[str, ...]:
         if self._process is None:
             self._process = self._start()
         self._requests.put(request.encode())
@@ -165,9 +165,9 @@ class MachineProcess:
             for number, line in enumerate(lines, 1):
                 rows.append(line.decode("utf-8", "replace").removesuffix("\r"))
                 if is_last(rows[-1]):
-                    more = b"\n".join([*lines[number:], self._rest])
-                    if more:
-                        self._fail("more", more.decode("utf-8", "replace"), rows)
+                    extra = b"\n".join([*lines[number:], self._rest])
+                    if extra:
+                        self._fail("more", extra.decode("utf-8", "replace"), rows)
                     self._answers += 1
                     return tuple(rows)
             try:
@@ -175,36 +175,36 @@ class MachineProcess:
             except queue.Empty:
                 self._fail("hang", self._rest.decode("utf-8", "replace"), rows)
             if not data:
-                code = self._exit_code()
+                exit_code = self._exit_code()
                 if rows or self._rest:
                     rows += [self._rest.decode("utf-8", "replace")] if self._rest else []
-                    self._fail("crash", str(code), rows)
-                raise _ProcessEnded(code)
+                    self._fail("crash", str(exit_code), rows)
+                raise _ProcessEnded(exit_code)
             count += len(data)
             self._rest += data
-            if count > most:
+            if count > most_bytes:
                 self._fail("flood", "", rows)
 
     def _exit_code(self) -> int | None:
         assert self._process is not None
         try:
-            return self._process.wait(LEAVE_S)
+            return self._process.wait(EXIT_LIMIT_S)
         except subprocess.TimeoutExpired:
             return None
 
-    def _fail(self, what: str, detail: str, rows: list[str]) -> NoReturn:
+    def _fail(self, kind: str, detail: str, rows: list[str]) -> NoReturn:
         tail = self.close()
-        if what == "crash" and tail:
+        if kind == "crash" and tail:
             detail = f"{detail}: {tail}"
-        raise Problem(what, detail, tuple(rows))
+        raise Problem(kind, detail, tuple(rows))
 
 
 class _ProcessEnded(Exception):
     """The process has ended without a byte of an answer."""
 
-    def __init__(self, code: int | None) -> None:
-        super().__init__(code)
-        self.code = code
+    def __init__(self, exit_code: int | None) -> None:
+        super().__init__(exit_code)
+        self.code = exit_code
 
 
 def _thread(work: object, *arguments: object) -> threading.Thread:

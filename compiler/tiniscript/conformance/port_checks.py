@@ -34,17 +34,17 @@ SHOW_7 = bytes.fromhex("b739")
 WAIT_20 = bytes.fromhex("bb50")  # no motor turns
 STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
-EVENT_S = 3.0  # for an event after what has caused it
+EVENT_LIMIT_S = 3.0  # for an event after what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
 HEADER_BYTES = 10  # bytes of an image before its checksum
-SILENCE_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
-ATTENDED_S = 3.0
+SILENCE_LIMIT_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
+ATTENDED_LIMIT_S = 3.0
 
 
 class Check(NamedTuple):
     name: str
-    wanted: tuple[str, ...]
-    found: Callable[[WireRobot], tuple[str, ...]]
+    wanted_rows: tuple[str, ...]
+    find_rows: Callable[[WireRobot], tuple[str, ...]]
 
 
 def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
@@ -56,8 +56,8 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
     silent = 0
     for check in checks:
         try:
-            ready(robot)
-            yield compare(check.name, check.wanted, check.found(robot))
+            make_ready(robot)
+            yield compare(check.name, check.wanted_rows, check.find_rows(robot))
             silent = 0
         except Silent as why:
             yield Verdict(check.name, "silent", detail=why.message)
@@ -66,7 +66,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
                 return
 
 
-def ready(robot: WireRobot) -> None:
+def make_ready(robot: WireRobot) -> None:
     """Leave nothing of the check before: no run, no latch, no event."""
     state = robot.ask("PING").values.get("state")
     if state == STATES.index("RUNNING"):
@@ -95,7 +95,7 @@ def all_checks(kit: LinkTestSuite) -> list[Check]:
                 (f"{link_refused.rule} {link_refused.at}",),
                 _refusal_check(link_refused.code),
             )
-            for link_refused in kit.refused
+            for link_refused in kit.refusals
         ),
         *IMAGE_CHECKS,
         *STOP_CHECKS,
@@ -139,11 +139,11 @@ def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
     """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
     rest = image[HEADER_BYTES + 4 :]
     answer = announce(robot, image, mode)
-    most = PAYLOAD_BYTES - 2
-    for offset in range(0, len(rest), most):
+    most_bytes = PAYLOAD_BYTES - 2
+    for offset in range(0, len(rest), most_bytes):
         if answer.status:
             return answer
-        piece = rest[offset : offset + most]
+        piece = rest[offset : offset + most_bytes]
         answer = robot.ask("DATA", {"offset": offset, "bytes": piece})
     if answer.status:
         return answer
@@ -160,7 +160,7 @@ def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...
             answer = send_image(robot, pack("SI", 0, program.code), RUN)
         if answer.status:
             return (answer_text(answer),)
-        return _run_events(robot, program.takes_s + EVENT_S)
+        return _run_events(robot, program.takes_s + EVENT_LIMIT_S)
 
     return observe
 
@@ -204,9 +204,9 @@ def _check_hello(robot: WireRobot) -> tuple[str, ...]:
     isa = f"isa {number('isa_major')}.{number('isa_minor')}"
     epoch = robot.epoch
     robot.hello()
-    again = "the same session" if robot.epoch == epoch else "another session"
+    session_text = "the same session" if robot.epoch == epoch else "another session"
     frames = "frames of 63 bytes" if large else "smaller frames"
-    return (f"link {number('major')}", isa, frames, f"the same nonce again: {again}")
+    return (f"link {number('major')}", isa, frames, f"the same nonce again: {session_text}")
 
 
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
@@ -224,11 +224,15 @@ def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
     first = robot.ask_frame(number, payload)
-    robot.wait(EVENT_S, "DONE")
-    second = robot.again(number, payload, epoch=epoch)
+    robot.wait(EVENT_LIMIT_S, "DONE")
+    second = robot.repeat(number, payload, epoch=epoch)
     robot.wait(0.4)
-    same = "the same answer" if first.payload == second.payload else answer_text(second)
-    return (answer_text(first), same, f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW")
+    second_answer = "the same answer" if first.payload == second.payload else answer_text(second)
+    return (
+        answer_text(first),
+        second_answer,
+        f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW",
+    )
 
 
 def _check_noise(robot: WireRobot) -> tuple[str, ...]:
@@ -344,7 +348,7 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
         run_live(robot, WAIT_20)
         robot.events.clear()
         stop(robot)
-        event = robot.wait(EVENT_S, "STOPPED")
+        event = robot.wait(EVENT_LIMIT_S, "STOPPED")
         cause = "no STOPPED" if event is None else f"STOPPED {event.number('cause')}"
         state = _state(robot.ask("PING"))
         latched = answer_text(run_live(robot, SHOW_7))
@@ -361,14 +365,14 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
 
 def _check_silence(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(SILENCE_S, "FAULT", heartbeats=False)
+    robot.wait(SILENCE_LIMIT_S, "FAULT", heartbeats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 
 
 def _check_attended(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(ATTENDED_S)
+    robot.wait(ATTENDED_LIMIT_S)
     return (_state(robot.ask("PING")),)
 
 

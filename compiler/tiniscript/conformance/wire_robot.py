@@ -24,9 +24,9 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.wire import Wire
 
-TRIES = 6
-HEARTBEAT_S = 0.2
-LOOK_MS = 20
+MOST_TRIES = 6
+HEARTBEAT_INTERVAL_S = 0.2
+LOOK_INTERVAL_MS = 20
 HELLO_TRIES = 8  # HELLOs: a board may have been reset, or be in its bootloader
 
 
@@ -77,34 +77,37 @@ class WireRobot:
         self._rest = b""
         self._heartbeat_s = 0.0
 
-    def hello(self, tries: int = TRIES) -> Answer:
+    def hello(self, try_count: int = MOST_TRIES) -> Answer:
         values = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
                   "isa_minor": ISA_MINOR, "kit": 0, "nonce": self.nonce}  # fmt: skip
-        return self.ask("HELLO", values, tries)
+        return self.ask("HELLO", values, try_count)
 
     def ask(
-        self, name: str, values: Mapping[str, int | bytes] | None = None, tries: int = TRIES
+        self,
+        name: str,
+        values: Mapping[str, int | bytes] | None = None,
+        try_count: int = MOST_TRIES,
     ) -> Answer:
         """Return the answer to a request with a new number; send it again where none comes."""
         message = BY_NAME[name]
         payload = encode_payload(message.request, values or {})
-        return self.ask_frame(message.number, payload, tries, message=name)
+        return self.ask_frame(message.number, payload, try_count, message=name)
 
     def ask_frame(
-        self, number: int, payload: bytes, tries: int = TRIES, message: str = "",
+        self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
         """The same of any message; `epoch` is another one than the robot's."""
         self._seq = (self._seq + 1) & 0xFF
-        return self.again(number, payload, tries, message, epoch)
+        return self.repeat(number, payload, try_count, message, epoch)
 
-    def again(
-        self, number: int, payload: bytes, tries: int = TRIES, message: str = "",
+    def repeat(
+        self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
         """The same with the number of the request before."""
         frame = Frame(number, self._seq, self.epoch if epoch is None else epoch, payload)
-        for _ in range(tries):
+        for _ in range(try_count):
             self.send(b"\0" + encode_frame(frame))
             until_s = monotonic() + self.answer_ms / 1000
             while monotonic() < until_s:
@@ -126,7 +129,7 @@ class WireRobot:
                     return event
             if monotonic() >= until_s:
                 return None
-            if heartbeats and monotonic() - self._heartbeat_s > HEARTBEAT_S:
+            if heartbeats and monotonic() - self._heartbeat_s > HEARTBEAT_INTERVAL_S:
                 self.ask("PING")
             else:
                 self._replies()
@@ -141,7 +144,7 @@ class WireRobot:
 
     def _replies(self) -> list[Frame]:
         """Take what has arrived: keep events and the epoch, and return the replies."""
-        *packets, self._rest = (self._rest + self.wire.receive(LOOK_MS, 1)).split(b"\0")
+        *packets, self._rest = (self._rest + self.wire.receive(LOOK_INTERVAL_MS, 1)).split(b"\0")
         self._rest = self._rest[-1024:]
         frames = [frame for frame in map(decode_frame, filter(None, packets)) if frame]
         replies = []

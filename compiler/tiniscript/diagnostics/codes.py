@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
 
-ENOUGH = 100  # diagnostics of one text, after which more help nobody: it is read no further
+# Diagnostics of one text, after which more help nobody: it is read no further.
+MOST_DIAGNOSTICS = 100
 
 
 class Code(NamedTuple):
@@ -157,7 +158,7 @@ VARIABLE_ALONE = _mistake("TS116")
 NOT_CALLABLE = _mistake("TS118")
 OTHER_ROBOT = _mistake("TS119")
 NO_BUTTON = _mistake("TS120")
-WHICH_WAY = _mistake("TS121")
+TURN_WITHOUT_DIRECTION = _mistake("TS121")
 SWITCH_WHAT = _mistake("TS122")
 UNTAUGHT = _mistake("TS129")
 SAME_AGAIN = _mistake("TS130")
@@ -239,22 +240,22 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
     What begins where another mistake begins is most often its consequence.
     """
-    kept = []
+    result = []
     mistaken = set()
-    seen = set()
-    meant = {
+    keys_seen = set()
+    named_starts = {
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code is UNKNOWN_WORD or (
         diagnostic.code is UNKNOWN_NAME and diagnostic.values.get("near")
     )}  # fmt: skip
     for diagnostic in diagnostics:
         key = (diagnostic.code, diagnostic.span)
         start = diagnostic.span.start
-        if diagnostic.code is BAD_NAME and start in meant:
+        if diagnostic.code is BAD_NAME and start in named_starts:
             continue  # `Bebé(1, 440)`: the word goes, with its accent
-        if key in seen or (diagnostic.is_mistake and start in mistaken):
+        if key in keys_seen or (diagnostic.is_mistake and start in mistaken):
             continue
-        seen.add(key)
-        kept.append(diagnostic)
+        keys_seen.add(key)
+        result.append(diagnostic)
         if diagnostic.is_mistake:
             mistaken.add(start)
-    return sorted(kept, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))
+    return sorted(result, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))

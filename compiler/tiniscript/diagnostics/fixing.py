@@ -50,11 +50,11 @@ MOST_OFFERS = 20  # repairs of one text that are tried
 
 
 class Fixed(NamedTuple):
-    """`text` is the program with its sure repairs, `left` what it still has."""
+    """`text` is the program with its sure repairs, `diagnostics_left` what it still has."""
 
     text: str
-    repairs: int
-    left: list[Diagnostic]
+    repair_count: int
+    diagnostics_left: list[Diagnostic]
 
 
 Check = Callable[[str], list[Diagnostic]]
@@ -65,17 +65,22 @@ def repair_program(text: str, check: Check) -> Fixed:
 
     A long program takes long, and has many mistakes: it is not checked so often.
     """
-    left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
+    checks_left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)
     count = 0
     steps = _steps(diagnostics)
-    while left > 0 and (repairs := next(steps, None)):
+    while checks_left > 0 and (repairs := next(steps, None)):
         edits = [_tidied(edit, text) for repair in repairs for edit in repair]
-        changed = apply_edits(text, edits)
-        after = check(changed)
-        left -= 1
-        if is_better(after, diagnostics, edits):
-            text, diagnostics, count, steps = changed, after, count + len(repairs), _steps(after)
+        changed_text = apply_edits(text, edits)
+        diagnostics_after = check(changed_text)
+        checks_left -= 1
+        if is_better(diagnostics_after, diagnostics, edits):
+            text, diagnostics, count, steps = (
+                changed_text,
+                diagnostics_after,
+                count + len(repairs),
+                _steps(diagnostics_after),
+            )
     return Fixed(text, count, diagnostics)
 
 
@@ -92,8 +97,8 @@ def _tidied(edit: Edit, text: str) -> Edit:
     stop = len(text) if stop < 0 else stop
     before, after = text[begin:start], text[end:stop]
     if not (before + after).strip():
-        is_only = stop == len(text) and not begin
-        return Edit(Span(begin, stop if is_only else min(stop + 1, len(text))), "")
+        ends_text = stop == len(text) and not begin
+        return Edit(Span(begin, stop if ends_text else min(stop + 1, len(text))), "")
     if not before.strip() or before[-1] in "|; ":
         end += len(after) - len(after.lstrip(" \t"))
     return Edit(Span(start, end), "")
@@ -101,29 +106,29 @@ def _tidied(edit: Edit, text: str) -> Edit:
 
 def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
-    sure = [
+    sure_repairs = [
         item.repair.edits
-        for item in diagnostics[: codes.ENOUGH]
+        for item in diagnostics[: codes.MOST_DIAGNOSTICS]
         if item.repair and item.repair.is_sure
     ]
-    together: list[tuple[Edit, ...]] = []
-    for edits in sure:
-        if not any(overlap(edits, other) for other in together):
-            together.append(edits)
-    if len(together) > 1:
-        yield together
-    yield from ([edits] for edits in sure)
+    separate_repairs: list[tuple[Edit, ...]] = []
+    for edits in sure_repairs:
+        if not any(overlap(edits, other) for other in separate_repairs):
+            separate_repairs.append(edits)
+    if len(separate_repairs) > 1:
+        yield separate_repairs
+    yield from ([edits] for edits in sure_repairs)
 
 
 def edits_offered(
-    text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check
+    text: str, diagnostics: Sequence[Diagnostic], position: int, check: Check
 ) -> list[Edit]:
     """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
     gone. They may be a guess, and change what the program does: somebody looks at them.
     """
-    source, diagnostic = Source(text), diagnostics[which]
+    source, diagnostic = Source(text), diagnostics[position]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
     if not edits or any("~" in line for line in lines):  # else it is copied again
@@ -138,10 +143,10 @@ def _removes_warning(
     after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
 ) -> bool:
     """Whether there is one warning fewer of this kind, and no mistake more."""
-    before, left = (
+    before, checks_left = (
         sum(diagnostic.code is code for diagnostic in every) for every in (diagnostics, after)
     )
-    return left < before and _mistakes(after) <= _mistakes(diagnostics)
+    return checks_left < before and _mistakes(after) <= _mistakes(diagnostics)
 
 
 def drop_wrong_offers(
@@ -152,54 +157,57 @@ def drop_wrong_offers(
     It may be right only together with what others offer, as the header of a block and its end, and
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
-    left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
-    told = list(diagnostics)
+    checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
+    result = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [
-            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in told
+            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in result
         ]
-        joined: list[Edit] = []
+        joined_edits: list[Edit] = []
         for edits in offers:
-            joined += edits if not overlap(edits, joined) else []
-        in_all = _InPlace(text, joined, check)
+            joined_edits += edits if not overlap(edits, joined_edits) else []
+        in_all = _InPlace(text, joined_edits, check)
+        joined_set = set(joined_edits)
         suspects = [
             k for k, edits in enumerate(offers)
-            if told[k].is_mistake and (edits or told[k].values.get("fix"))
-            and not (edits and set(edits) <= set(joined) and in_all.is_right(told[k], edits))
+            if result[k].is_mistake and (edits or result[k].values.get("fix"))
+            and not (edits and set(edits) <= joined_set and in_all.is_right(result[k], edits))
         ]  # fmt: skip
         lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
-        for k in suspects[:left]:
-            others = _covered_by_offer(told, offers, k, text)
-            line = told[k].code, told[k].values.get("fix", "")
+        for k in suspects[:checks_left]:
+            codes_and_words = _covered_by_offer(result, offers, k, text)
+            line = result[k].code, result[k].values.get("fix", "")
             if offers[k] or line not in lines:
                 lines[line] = any(
-                    _InPlace(text, edits, check).is_right(told[k], edits, others)
-                    for edits in ([offers[k]] if offers[k] else _shown_edits(told[k], text))
+                    _InPlace(text, edits, check).is_right(result[k], edits, codes_and_words)
+                    for edits in ([offers[k]] if offers[k] else _shown_edits(result[k], text))
                 )
             if not lines[line]:
-                told[k] = _without_offer(told[k])
-        left -= len(suspects)
+                result[k] = _without_offer(result[k])
+        checks_left -= len(suspects)
         if not suspects:
             break
-    return told
+    return result
 
 
 def _covered_by_offer(
     diagnostics: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
 ) -> set[str]:
     """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
-    others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
+    codes_and_words = (
+        set() if offers[k] else {codes.NEVER_ENDS.number}
+    )  # a header is shown without its end
     if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
-        others.add(codes.USED_BEFORE_SET.number)
+        codes_and_words.add(codes.USED_BEFORE_SET.number)
     for item, edits in zip(diagnostics, offers, strict=True):
         if item is not diagnostics[k]:
-            others |= {text[slice(*item.span)].upper()} - {""}
+            codes_and_words |= {text[slice(*item.span)].upper()} - {""}
             if overlap(edits, offers[k]):
                 # their ends are in one place
-                others |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
+                codes_and_words |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
             elif item.is_mistake and not edits and item.span.start < diagnostics[k].span.start:
-                others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
-    return others
+                codes_and_words.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
+    return codes_and_words
 
 
 def _shown_edits(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
@@ -224,22 +232,26 @@ class _InPlace:
         self.mistakes = [diagnostic for diagnostic in check(self.text) if diagnostic.is_mistake]
 
     def is_right(
-        self, diagnostic: Diagnostic, own_edits: Sequence[Edit], others: Set[str] = frozenset()
+        self,
+        diagnostic: Diagnostic,
+        own_edits: Sequence[Edit],
+        codes_and_words: Set[str] = frozenset(),
     ) -> bool:
-        """Whether no mistake begins in what is offered, but of a code or a word of `others`."""
-        shift, shown = 0, []
+        """Whether no mistake begins in what is offered, but one of `codes_and_words`."""
+        shift, spans = 0, []
         for edit in self.edits:
             start = edit.span.start + shift
-            shown += [Span(start, start + len(edit.text))] if edit in own_edits else []
+            spans += [Span(start, start + len(edit.text))] if edit in own_edits else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
         text = next(filter(None, map(diagnostic.values.get, _SHOWN_GAPS)), "")
-        begin = self.text.find(text, max(0, shown[0].start - len(text)))
-        if begin in range(shown[-1].end):
-            shown.append(Span(begin, begin + len(text)))
+        begin = self.text.find(text, max(0, spans[0].start - len(text)))
+        if begin in range(spans[-1].end):
+            spans.append(Span(begin, begin + len(text)))
         return all(
-            mistake.code.number in others or self._is_in_words(others, mistake.span.start)
+            mistake.code.number in codes_and_words
+            or self._is_in_words(codes_and_words, mistake.span.start)
             for mistake in self.mistakes
-            if any(start <= mistake.span.start < end for start, end in shown)
+            if any(start <= mistake.span.start < end for start, end in spans)
         )
 
     def _is_in_words(self, words: Set[str], place: int) -> bool:
@@ -252,10 +264,10 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS_BY_CODE.get(diagnostic.code, ("fix",))
     text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    gone = [text, "whole", "lines", "times"]
-    gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
-    gone += ["right"] if diagnostic.code is codes.BRACES else []
-    values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
+    emptied_gaps = [text, "whole", "lines", "times"]
+    emptied_gaps += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
+    emptied_gaps += ["right"] if diagnostic.code is codes.BRACES else []
+    values = {gap: "" if gap in emptied_gaps else value for gap, value in diagnostic.values.items()}
     if text == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)

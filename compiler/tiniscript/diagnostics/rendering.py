@@ -78,8 +78,8 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     message = _format_text(f"{number}/message", diagnostic.values, lang)
     for gap in _SAID_OF_IT:
         if diagnostic.values.get(gap):
-            said = message if message[-1:] in (".", "?", "!") else message + "."
-            values = {**diagnostic.values, "said": said}
+            sentence = message if message[-1:] in (".", "?", "!") else message + "."
+            values = {**diagnostic.values, "said": sentence}
             message = _format_text(f"label/{gap}", values, lang)
     return Message(
         number,
@@ -107,16 +107,16 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
         label = f"{_label('line', lang)} {message.line}:  "
         line = source.line_text(message.line)
         end = message.end_column - 1 if message.end_line == message.line else len(line)
-        shown, blanks, carets = _line_window(line, message.column - 1, end)
-        rows.append((label + shown).rstrip())
+        line_shown, blanks, carets = _line_window(line, message.column - 1, end)
+        rows.append((label + line_shown).rstrip())
         rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
     text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
     code = f"   {dim}[{message.code}]{plain}"
     if not message.fix:
         return "\n".join((*rows, text + code))
     fix = f"{_label('try', lang)}  {message.fix}"
-    fits = len(text) + len(fix) + len(message.code) <= ROW_CHARACTERS
-    rows += [f"{text}   {fix}{code}"] if fits else [text, fix + code]
+    fits_in_row = len(text) + len(fix) + len(message.code) <= ROW_CHARACTERS
+    rows += [f"{text}   {fix}{code}"] if fits_in_row else [text, fix + code]
     return "\n".join(rows)
 
 
@@ -172,21 +172,21 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
-    return ("", "found") in _GAP.findall(chosen)
+    filled_text = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
+    return ("", "found") in _GAP.findall(filled_text)
 
 
 def _first_filled_text(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
-    chosen = ""
-    for chosen in _texts(key, lang):
-        if all(values.get(name) for _, name in _GAP.findall(chosen)):
+    filled_text = ""
+    for filled_text in _texts(key, lang):
+        if all(values.get(name) for _, name in _GAP.findall(filled_text)):
             break
-    return chosen
+    return filled_text
 
 
 def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
-    chosen = _first_filled_text(key, values, lang)
+    filled_text = _first_filled_text(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in _COPIED else VALUE_CHARACTERS
@@ -194,7 +194,7 @@ def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
             return values["said"]  # a message, which is short as it is
         return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
 
-    return _GAP.sub(gap, chosen)
+    return _GAP.sub(gap, filled_text)
 
 
 def _value_text(value: str, should_translate: bool, lang: str, longest: int) -> str:
@@ -239,20 +239,20 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     at = start - offset
     left, right = 0, len(cells)
     if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
-        left, used = at, 0
-        while left and used + cells[left - 1][1] <= COLUMNS_BEFORE:
+        left, columns_used = at, 0
+        while left and columns_used + cells[left - 1][1] <= COLUMNS_BEFORE:
             left -= 1
-            used += cells[left][1]
+            columns_used += cells[left][1]
         right = at
-        while right < len(cells) and used + cells[right][1] <= LINE_COLUMNS:
-            used += cells[right][1]
+        while right < len(cells) and columns_used + cells[right][1] <= LINE_COLUMNS:
+            columns_used += cells[right][1]
             right += 1
     before = "…" if offset + left > 0 else ""
     after = "…" if offset + right < len(line) else ""
-    shown = before + "".join(shown for shown, _ in cells[left:right]) + after
+    line_shown = before + "".join(line_shown for line_shown, _ in cells[left:right]) + after
     blanks = len(before) + sum(width for _, width in cells[left:at])
-    carets = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
-    return shown, blanks, max(1, carets)
+    caret_count = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
+    return line_shown, blanks, max(1, caret_count)
 
 
 def _cell(character: str) -> tuple[str, int]:

@@ -115,9 +115,9 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     finally:
         if client is not None:
             client.close()
-    held = _port_in_use(doors.system, computer, port)
-    if held is not None:
-        return Diagnosis(port, (held,), computer, False)
+    busy_port = _port_in_use(doors.system, computer, port)
+    if busy_port is not None:
+        return Diagnosis(port, (busy_port,), computer, False)
     is_radio = doors.is_radio(port) or port.startswith(PSEUDO_TERMINALS)
     if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
         return Diagnosis(port, (sure("not_opened"),), computer, False)
@@ -134,22 +134,24 @@ def _diagnose_open_port(
             port, (_open_failure(failure, computer, port, doors.system),), computer, False
         )
     is_radio = is_radio and not port.startswith(PSEUDO_TERMINALS)
-    asked = Line(question.baud, is_radio, question.nonce)
-    expected, heard = question.expected, list[RobotAnswers]()
+    line_asked = Line(question.baud, is_radio, question.nonce)
+    expected, answers = question.expected, list[RobotAnswers]()
 
     def hear(each: RobotAnswers) -> None:
-        heard.append(each)
+        answers.append(each)
         expected.hear(each)
 
     try:
-        findings = line.diagnose_line(wire, asked, expected._replace(hear=hear), doors.on_step)
+        findings = line.diagnose_line(wire, line_asked, expected._replace(hear=hear), doors.on_step)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
     finally:
         wire.close()
     # a key is shown by the connection alone, and a robot with an owner tells more then
-    has_key = any(each.hello.features & OWNED and expected.has_key(each.hello.id) for each in heard)
+    has_key = any(
+        each.hello.features & OWNED and expected.has_key(each.hello.id) for each in answers
+    )
     if (question.watch_ms or has_key) and not any(finding.is_wrong for finding in findings):
         with doors.share(port) as shared:
             findings = list(_diagnose_shared(shared, doors, question))
@@ -172,10 +174,10 @@ def _missing_port_findings(computer: Computer, virtual: tuple[str, ...]) -> tupl
     listed = ", ".join([*(port.port for port in computer.ports), *virtual])
     if len(computer.ports) > 1:
         return (sure("which_port", ports=listed),)
-    absent = _no_port_finding(computer)
-    if listed and absent.cause in ("no_port", "charging_cable"):
-        return (absent._replace(values={**absent.values, "ports": listed}),)
-    return (absent,)
+    no_port_finding = _no_port_finding(computer)
+    if listed and no_port_finding.cause in ("no_port", "charging_cable"):
+        return (no_port_finding._replace(values={**no_port_finding.values, "ports": listed}),)
+    return (no_port_finding,)
 
 
 def _no_port_finding(computer: Computer) -> Finding:
@@ -197,9 +199,13 @@ def _diagnose_shared(
     try:
         reply = robot.hello()
         if reply is None:
-            found = stranger(client)
-            if found is not None:
-                return (Finding(found.name, found.is_sure, {"said": found.said}),)
+            foreign_board = stranger(client)
+            if foreign_board is not None:
+                return (
+                    Finding(
+                        foreign_board.name, foreign_board.is_sure, {"said": foreign_board.said}
+                    ),
+                )
             return (probably("falls_silent"),)
         return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:

@@ -33,11 +33,11 @@ from tiniscript.link.payloads import HelloReply, SentReply, StatusReply, TrimRep
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.robot_state import line_error_count
 
-PINGS = 20
+PING_COUNT = 20
 PING_PAUSE_MS = 50  # between two of them
 MOST_LOST = 2  # of 20 that were not answered at once, or that the robot heard damaged
-LOOKS = 6  # whether it is still the same robot, and was not restarted meanwhile
-LOOK_MS = 250
+LOOK_COUNT = 6  # whether it is still the same robot, and was not restarted meanwhile
+LOOK_INTERVAL_MS = 250
 _STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 _BROWN_OUT = "BROWN_OUT"
 _WATCHDOG = "WATCHDOG"
@@ -69,7 +69,7 @@ class Expectations(NamedTuple):
     port: str = ""
     note: Callable[[Mapping[str, str]], None] = lambda told: None
     hear: Callable[[RobotAnswers], None] = lambda heard: None
-    pings: int = PINGS
+    pings: int = PING_COUNT
 
 
 class Restart(NamedTuple):
@@ -109,8 +109,8 @@ def examine(
     restarts: list[Restart] = []
     if before is not None:
         findings += _status_findings(before)
-        lost, trips_ms = _link_findings(robot, before, expected, on_step)
-        findings += lost
+        loss_findings, trips_ms = _link_findings(robot, before, expected, on_step)
+        findings += loss_findings
         expected.hear(RobotAnswers(hello, before, _trim(robot, hello), trips_ms))
         on_step("watch")
         restarts = _watch_restarts(robot, hello, watch_ms)
@@ -158,13 +158,13 @@ def _other_link(reply: Reply[SentReply]) -> Finding:
 
 def _version_findings(hello: HelloReply) -> list[Finding]:
     """Compare versions: what a newer robot has more does no harm."""
-    theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
+    robot_isa, own_isa = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
     is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
-    if not is_newer and theirs >= ours and (hello.major, hello.minor) >= (MAJOR, MINOR):
+    if not is_newer and robot_isa >= own_isa and (hello.major, hello.minor) >= (MAJOR, MINOR):
         return []
     values = {
-        "theirs": f"{hello.major}.{hello.minor} / {theirs[0]}.{theirs[1]}",
-        "ours": f"{MAJOR}.{MINOR} / {ours[0]}.{ours[1]}",
+        "theirs": f"{hello.major}.{hello.minor} / {robot_isa[0]}.{robot_isa[1]}",
+        "ours": f"{MAJOR}.{MINOR} / {own_isa[0]}.{own_isa[1]}",
     }
     return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
 
@@ -211,15 +211,15 @@ def _link_findings(
     damaged_count = 0
     if after is not None:
         pairs = zip(_error_counts(before), _error_counts(after), strict=True)
-        damaged_count = sum((now - then) & 0xFF for then, now in pairs)
+        damaged_count = sum((count_now - count_before) & 0xFF for count_before, count_now in pairs)
     values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
-    lost = []
-    if max(missed, damaged_count) * PINGS >= MOST_LOST * expected.pings:
-        lost = [sure("lossy", **values)] if after is not None else []
+    loss_findings = []
+    if max(missed, damaged_count) * PING_COUNT >= MOST_LOST * expected.pings:
+        loss_findings = [sure("lossy", **values)] if after is not None else []
     elif after is not None and line_error_count(before) >= 10 * MOST_LOST:
-        lost = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
-    return lost, trips_ms
+        loss_findings = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
+    return loss_findings, trips_ms
 
 
 def trips_of(
@@ -240,7 +240,7 @@ def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:
     """Return the robot's trim, where whoever asks may know it; None where nothing is known."""
     if hello.features & (OWNED | YOURS) == OWNED:
         return None
-    reply = robot.ask("TRIM", tries=1)
+    reply = robot.ask("TRIM", try_count=1)
     values = reply.values if reply is not None and reply.status == OK else None
     return values if isinstance(values, TrimReply) else None
 
@@ -253,25 +253,31 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
     """Look for a while whether the robot restarts: then its nonce is another one."""
     restarts = []
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING
-    for _ in range(max(LOOKS, watch_ms // LOOK_MS)):
-        robot.pause(LOOK_MS)
-        now = values_of(robot.hello())
-        if now is None:
+    for _ in range(max(LOOK_COUNT, watch_ms // LOOK_INTERVAL_MS)):
+        robot.pause(LOOK_INTERVAL_MS)
+        hello_now = values_of(robot.hello())
+        if hello_now is None:
             continue
-        if now.nonce != nonce:
-            restarts.append(Restart(is_running, row_name(RESETS, now.reset)))
-            nonce = now.nonce
-        is_running = now.state == STATE_RUNNING
+        if hello_now.nonce != nonce:
+            restarts.append(Restart(is_running, row_name(RESETS, hello_now.reset)))
+            nonce = hello_now.nonce
+        is_running = hello_now.state == STATE_RUNNING
     return restarts
 
 
 def _restart_findings(restarts: list[Restart]) -> list[Finding]:
     """Return what restarts mean: it was the voltage for sure only where the chip tells it."""
     count = str(len(restarts))
-    driving = [restart for restart in restarts if restart.was_running]
-    if driving:
-        is_told = any(restart.cause == _BROWN_OUT for restart in driving)
-        return [Finding("motors_restart", is_told, {"count": count, "reset": driving[-1].cause})]
+    restarts_while_driving = [restart for restart in restarts if restart.was_running]
+    if restarts_while_driving:
+        is_cause_known = any(restart.cause == _BROWN_OUT for restart in restarts_while_driving)
+        return [
+            Finding(
+                "motors_restart",
+                is_cause_known,
+                {"count": count, "reset": restarts_while_driving[-1].cause},
+            )
+        ]
     if restarts[-1].cause == _WATCHDOG:
         return [sure("hung")]
     return [sure("restarts", count=count, reset=restarts[-1].cause)]

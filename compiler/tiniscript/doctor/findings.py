@@ -94,13 +94,13 @@ CAUSES = dict((
 class Finding(NamedTuple):
     """A cause, whether it is sure or only probable, and what was seen: it fills the sentences.
 
-    `of` is the part that it is about, if that is another one than the table says: `left`.
+    `part_name` is the part that it is about, if that is another one than the table says: `left`.
     """
 
     cause: str
     is_sure: bool
     values: Mapping[str, str] = {}
-    of: str = ""
+    part_name: str = ""
 
     @property
     def verdict(self) -> str:
@@ -112,7 +112,7 @@ class Finding(NamedTuple):
 
     @property
     def part(self) -> str:
-        return self.of or CAUSES[self.cause].part
+        return self.part_name or CAUSES[self.cause].part
 
 
 def sure(cause: str, **values: str) -> Finding:

@@ -26,9 +26,9 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
     (NANO_OLD, b"\x30\x20", b"\x14\x10"),
     (MEGA, b"\x1b\x01\x00\x01\x0e\x01\x14", b"\x1b\x01\x00"),
 )
-BLINK_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
-TRIES = 4
-ANSWER_MS = 200
+BLINK_WAIT_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
+BOOTLOADER_TRIES = 4
+ANSWER_LIMIT_MS = 200
 BOOTLOADER_MS = (
     5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
 )
@@ -43,32 +43,33 @@ def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootload
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.reset_board()
-        said = wire.receive(BLINK_MS, BLINK_MS)
-        is_there = False
-        for _ in range(TRIES):
+        answer_bytes = wire.receive(BLINK_WAIT_MS, BLINK_WAIT_MS)
+        has_answered = False
+        for _ in range(BOOTLOADER_TRIES):
             wire.send(greeting)
-            said += wire.receive(ANSWER_MS)
-            if is_there := answer in said:
+            answer_bytes += wire.receive(ANSWER_LIMIT_MS)
+            if has_answered := answer in answer_bytes:
                 break
-        if is_there:
+        if has_answered:
             wire.receive(BOOTLOADER_MS, BOOTLOADER_MS)
             return line, _greet(wire, greeting, answer)
-        hear(said)
+        hear(answer_bytes)
     return None
 
 
 def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
-    for _ in range(TRIES):
+    for _ in range(BOOTLOADER_TRIES):
         wire.send(greeting)
-        if answer in wire.receive(ANSWER_MS):
+        if answer in wire.receive(ANSWER_LIMIT_MS):
             return True
     return False
 
 
-BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+# An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
+BOOT_WAIT_MS = 1700
 HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
-LISTEN_MS = 400  # at a speed, to what a sketch prints
+LISTEN_LIMIT_MS = 400  # at a speed, to what a sketch prints
 PROBE_MS, RADIO_PROBE_MS = 200, 500  # for an answer of a board that is not ours
 LEAST_BYTES = 4  # bytes: fewer say nothing
 
@@ -87,22 +88,22 @@ def diagnose_line(
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
-    before = wire.receive(LISTEN_MS if line.is_radio else BOOT_MS)
+    before = wire.receive(LISTEN_LIMIT_MS if line.is_radio else BOOT_WAIT_MS)
     robot = _wire_robot(wire, line, expected)
     on_step("hello")
     reply = robot.hello(HELLO_TRIES)
     if reply is not None:
         return examine(robot, reply, expected, on_step=on_step)
-    heard = before + robot.heard
-    if _is_error(heard):
+    received = before + robot.heard
+    if _is_error(received):
         return [sure("module_set_up", baud=str(line.baud))]
-    others = _Others(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
-    found = others.find(heard, robot.spoken, partial(_identify_echo, wire, line, expected))
-    if found is not None:
-        return [found]
+    strangers = _Strangers(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
+    finding = strangers.find(received, robot.spoken, partial(_identify_echo, wire, line, expected))
+    if finding is not None:
+        return [finding]
     if line.is_radio:
-        return [others.best_finding() or _diagnose_radio(heard)]
-    return _diagnose_cable(wire, line, expected, heard, others, on_step)
+        return [strangers.best_finding() or _diagnose_radio(received)]
+    return _diagnose_cable(wire, line, expected, received, strangers, on_step)
 
 
 def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
@@ -110,18 +111,18 @@ def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
     return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
 
 
-def _is_echo(heard: bytes, spoken: bytes) -> bool:
+def _is_echo(received: bytes, sent: bytes) -> bool:
     """Whether at least one whole frame that was sent came back."""
-    frames = [part for part in spoken.split(b"\0") if part]
-    return any(frame in heard for frame in frames)
+    frames = [part for part in sent.split(b"\0") if part]
+    return any(frame in received for frame in frames)
 
 
-def _is_error(heard: bytes) -> bool:
+def _is_error(received: bytes) -> bool:
     """Whether a module in its set-up mode complains."""
-    return b"ERROR:(" in heard or b"ERROR=" in heard
+    return b"ERROR:(" in received or b"ERROR=" in received
 
 
-class _Others:
+class _Strangers:
     """Looks for boards that are not ours in what is heard. What is sure is told at once; of the
     rest the best is kept until nothing else is found."""
 
@@ -129,28 +130,28 @@ class _Others:
         self._wire, self._wait_ms = wire, wait_ms
         self._kept: list[Finding] = []
 
-    def find(self, heard: bytes, spoken: bytes, echo: Callable[[], Finding]) -> Finding | None:
+    def find(self, received: bytes, sent: bytes, echo: Callable[[], Finding]) -> Finding | None:
         """Return what is surely there. `echo` returns what it is that sends back what is sent, and
         says nothing else."""
-        found = self.look(heard)
-        is_echo = _is_echo(heard, spoken)
-        if found is None and not (is_echo and self.best_finding() is None):
-            found = self.ask(heard, not is_echo)
-        if found is None and is_echo:
-            said = _text_beside(heard, spoken)
-            found = sure(ECHO_SKETCH, said=said) if said else echo()
-        return found
+        finding = self.look(received)
+        is_echo = _is_echo(received, sent)
+        if finding is None and not (is_echo and self.best_finding() is None):
+            finding = self.ask(received, not is_echo)
+        if finding is None and is_echo:
+            text = _text_beside(received, sent)
+            finding = sure(ECHO_SKETCH, said=text) if text else echo()
+        return finding
 
-    def look(self, heard: bytes) -> Finding | None:
+    def look(self, received: bytes) -> Finding | None:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
-        if foreign.is_robot(heard):
+        if foreign.is_robot(received):
             return probably("one_way")
-        found = foreign.identify_board(heard)
+        board = foreign.identify_board(received)
         return (
-            None if found is not None and found.name in foreign.GENERAL_ROWS else self._judge(found)
+            None if board is not None and board.name in foreign.GENERAL_ROWS else self._judge(board)
         )
 
-    def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
+    def ask(self, received: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
 
         Each answer is looked at by itself: one who says again what it gets must not be taken for a
@@ -159,34 +160,34 @@ class _Others:
         for row in foreign.ROWS:
             if row.probe:
                 self._wire.send(row.probe)
-                found = self._judge(
-                    foreign.identify_board(heard + self._wire.receive(self._wait_ms))
+                finding = self._judge(
+                    foreign.identify_board(received + self._wire.receive(self._wait_ms))
                 )
-                if found is not None:
-                    return found
+                if finding is not None:
+                    return finding
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.AT_VERSION_QUESTION)
-            found = self._judge(
-                foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
+            finding = self._judge(
+                foreign.identify_board(received + self._wire.receive(dialects.ANSWER_MS))
             )
-            if found is not None:
-                return found
-        return self._judge(foreign.identify_stranger(heard)) if may_be_text else None
+            if finding is not None:
+                return finding
+        return self._judge(foreign.identify_stranger(received)) if may_be_text else None
 
-    def settle(self, heard: bytes) -> Finding | None:
+    def settle(self, received: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
-        found = foreign.identify_board(heard)
-        return None if found is None else self._judge(found)
+        board = foreign.identify_board(received)
+        return None if board is None else self._judge(board)
 
     def best_finding(self) -> Finding | None:
         """Return what is probably there."""
         return self._kept[0] if self._kept else None
 
-    def _judge(self, found: Foreign | None) -> Finding | None:
-        if found is None:
+    def _judge(self, board: Foreign | None) -> Finding | None:
+        if board is None:
             return None
-        finding = Finding(found.name, found.is_sure, {"said": found.said})
-        if found.is_sure:
+        finding = Finding(board.name, board.is_sure, {"said": board.said})
+        if board.is_sure:
             return finding
         self._kept.append(finding)
         return None
@@ -209,11 +210,11 @@ def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     return _find_module(wire, (baud,)) or sure(ECHO_SKETCH, said="")
 
 
-def _text_beside(heard: bytes, spoken: bytes) -> str:
+def _text_beside(received: bytes, sent: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
-    for frame in spoken.split(b"\0"):
-        heard = heard.replace(frame, b"") if frame else heard
-    return foreign.readable_line(heard.replace(b"\0", b""))
+    for frame in sent.split(b"\0"):
+        received = received.replace(frame, b"") if frame else received
+    return foreign.readable_line(received.replace(b"\0", b""))
 
 
 def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
@@ -223,60 +224,64 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         return None
     if not module.version:  # no module has told which one it is
         wire.send(foreign.AT_VERSION_QUESTION)
-        found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
-        if found is not None:
-            return Finding(found.name, found.is_sure, {"said": found.said})
+        board = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
+        if board is not None:
+            return Finding(board.name, board.is_sure, {"said": board.said})
     cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
     return sure(cause, baud=str(module.baud), module=module.dialect.name)
 
 
-def _diagnose_radio(heard: bytes) -> Finding:
+def _diagnose_radio(received: bytes) -> Finding:
     """The module has answered, for its port is open: what is behind it?"""
-    if len(heard) >= LEAST_BYTES:
-        return probably("module_baud", n=str(len(heard)))
+    if len(received) >= LEAST_BYTES:
+        return probably("module_baud", n=str(len(received)))
     return probably("crossed")
 
 
 def _diagnose_cable(
-    wire: Wire, line: Line, expected: Expectations, heard: bytes, others: _Others,
+    wire: Wire, line: Line, expected: Expectations, received: bytes, strangers: _Strangers,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
-    garbage = len(heard)
+    garbage_bytes = len(received)
     for baud in BAUDS:
         if baud == line.baud:
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        more = wire.receive(LISTEN_MS)
+        received_later = wire.receive(LISTEN_LIMIT_MS)
         robot = _wire_robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examine(robot, reply, expected, on_step=on_step)
-            return [finding, *(finding for finding in rest if finding.cause != "fine")]
-        more += robot.heard
-        alone = partial(_identify_echo_of_one_speed, wire, baud)
-        found = others.find(more, robot.spoken, alone)
-        if found is not None:
-            return [found]
-        garbage = max(garbage, len(more))
+            findings = examine(robot, reply, expected, on_step=on_step)
+            return [finding, *(finding for finding in findings if finding.cause != "fine")]
+        received_later += robot.heard
+        identify_echo = partial(_identify_echo_of_one_speed, wire, baud)
+        other_finding = strangers.find(received_later, robot.spoken, identify_echo)
+        if other_finding is not None:
+            return [other_finding]
+        garbage_bytes = max(garbage_bytes, len(received_later))
     on_step("module")
-    found = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
-    if found is not None:
-        return [found]
+    other_finding = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
+    if other_finding is not None:
+        return [other_finding]
     on_step("bootloader")
     booted: list[bytes] = []
     found_bootloader = find_bootloader(wire, booted.append)
-    for said in booted:
-        found = others.look(said) or others.settle(said)
-        if found is not None:
-            return [found]
+    for boot_text in booted:
+        other_finding = strangers.look(boot_text) or strangers.settle(boot_text)
+        if other_finding is not None:
+            return [other_finding]
     if found_bootloader is not None:
-        board, is_alone = found_bootloader
-        return [sure("bootloader_only", board=board.name) if is_alone
-                else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
-    kept = others.best_finding()
+        board, has_only_bootloader = found_bootloader
+        return [sure("bootloader_only", board=board.name) if has_only_bootloader
+                else strangers.best_finding() or probably("other_sketch", said="")]  # fmt: skip
+    best_finding = strangers.best_finding()
     return [
-        kept
-        or (probably("garbled", n=str(garbage)) if garbage >= LEAST_BYTES else probably("silent"))
+        best_finding
+        or (
+            probably("garbled", n=str(garbage_bytes))
+            if garbage_bytes >= LEAST_BYTES
+            else probably("silent")
+        )
     ]

@@ -87,14 +87,14 @@ def _users(system: System, port: str) -> list[str]:
 
     Those of other users are known by their lock files alone.
     """
-    matches = []
+    users = []
     programs = _programs(system)
     for number, name in programs.items():
         folder = f"/proc/{number}/fd"
         if any(system.target(f"{folder}/{name}") == port for name in system.names(folder)):
-            matches.append(name)
+            users.append(name)
     for folder in LOCKS:
         number = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()
         if number in programs:
-            matches.append(programs[number])
-    return list(dict.fromkeys(name for name in matches if name))
+            users.append(programs[number])
+    return list(dict.fromkeys(name for name in users if name))

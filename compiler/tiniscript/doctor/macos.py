@@ -19,10 +19,10 @@ def inspect_macos(system: System) -> Computer:
     return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
 
 
-def _query(system: System, what: str) -> list[dict[str, Any]] | None:
-    text = system.output("system_profiler", what, "-json")
+def _query(system: System, data_type: str) -> list[dict[str, Any]] | None:
+    text = system.output("system_profiler", data_type, "-json")
     try:
-        result = json.loads(text or "")[what]
+        result = json.loads(text or "")[data_type]
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
     return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else None
@@ -30,12 +30,12 @@ def _query(system: System, what: str) -> list[dict[str, Any]] | None:
 
 def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
     """Yield the adapters. Which port is whose is not told: a USB port is taken for all of them."""
-    waiting = list(devices)
-    while waiting:
-        device = waiting.pop()
-        inside = device.get("_items")
-        if isinstance(inside, list):
-            waiting += [item for item in inside if isinstance(item, dict)]
+    pending_devices = list(devices)
+    while pending_devices:
+        device = pending_devices.pop()
+        inner_devices = device.get("_items")
+        if isinstance(inner_devices, list):
+            pending_devices += [item for item in inner_devices if isinstance(item, dict)]
         vendor, product = (
             str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
             for key in ("vendor_id", "product_id")
@@ -45,17 +45,17 @@ def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter
             yield Adapter(chip[0], "", "", has_port)
 
 
-def _bluetooth(found: list[dict[str, Any]] | None) -> tuple[str, tuple[str, ...] | None]:
-    if found is None:
+def _bluetooth(reports: list[dict[str, Any]] | None) -> tuple[str, tuple[str, ...] | None]:
+    if reports is None:
         return UNKNOWN, None
-    if not found:
+    if not reports:
         return NONE, ()
-    about = found[0]
-    controller = about.get("controller_properties")
+    report = reports[0]
+    controller = report.get("controller_properties")
     state = controller.get("controller_state") if isinstance(controller, dict) else None
     names: list[str] = []
     for key in ("device_connected", "device_not_connected"):
-        rows = about.get(key)
+        rows = report.get(key)
         for row in rows if isinstance(rows, list) else []:
             names += list(row) if isinstance(row, dict) else []
     if state is None:

@@ -30,9 +30,9 @@ def is_ours(data: bytes) -> bool:
     return data.split(b"\n", 1)[0].strip() in (REPORT_MARK.encode(), SELFTEST_MARK.encode())
 
 
-def head(mark: str, about: str, facts: Iterable[tuple[str, str]], port: str | None) -> list[str]:
+def head(mark: str, title: str, facts: Iterable[tuple[str, str]], port: str | None) -> list[str]:
     """Return how every report begins: what it is, by which tsc, of which computer and port."""
-    rows = [mark, about, "", f"tsc: {__version__}, Python {platform.python_version()}"]
+    rows = [mark, title, "", f"tsc: {__version__}, Python {platform.python_version()}"]
     rows += [f"{name}: {value}" for name, value in facts]
     return [*rows, "", f"port: {shown_port(port) if port else '-'}"]
 

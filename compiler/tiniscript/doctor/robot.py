@@ -19,10 +19,10 @@ from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import OK, Reply, reply_of
 from tiniscript.link.wire import Wire
 
-TRIES = 3
+MOST_TRIES = 3
 MOST_READS = 4  # of the wire in one try: what the robot tells by itself may come in between
 CABLE_MS, RADIO_MS = 300, 700  # for an answer
-SHARED_MS = 4000  # for one through another tsc, with its own retries
+SHARED_LIMIT_MS = 4000  # for one through another tsc, with its own retries
 MOST_UNANSWERED = 3  # of these without an answer, one after another: the robot is asked no more
 
 
@@ -34,14 +34,14 @@ class Robot(ABC):
     has_shown_keys = False
 
     @abstractmethod
-    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
         """Return the reply to HELLO, STATUS, PING or TRIM; None where none came."""
 
     @abstractmethod
     def pause(self, wait_ms: int) -> None: ...
 
-    def hello(self, tries: int = TRIES) -> Reply[SentReply] | None:
-        return self.ask("HELLO", tries)
+    def hello(self, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
+        return self.ask("HELLO", try_count)
 
     def status(self) -> StatusReply | None:
         reply = self.ask("STATUS")
@@ -67,7 +67,7 @@ class WireRobot(Robot):
     def pause(self, wait_ms: int) -> None:
         self.heard += self.wire.receive(wait_ms, wait_ms)
 
-    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
         """Ask until an answer comes; 0x00 goes before each try, as `docs/develop/link.md` says."""
         values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
@@ -76,7 +76,7 @@ class WireRobot(Robot):
             message.number, self._seq, self._epoch, encode_payload(message.request, values)
         )
         data = b"\0" + encode_frame(frame)
-        for number in range(tries):
+        for number in range(try_count):
             self.wire.send(data)
             self.spoken += data
             reply = self._answer(name, message.number)
@@ -88,11 +88,11 @@ class WireRobot(Robot):
     def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
         result = b""
         for _ in range(MOST_READS):
-            more = self.wire.receive(self.answer_ms)
-            if not more:
+            new_bytes = self.wire.receive(self.answer_ms)
+            if not new_bytes:
                 break
-            result += more
-            self.heard += more
+            result += new_bytes
+            self.heard += new_bytes
             for packet in result.split(b"\0"):
                 frame = decode_frame(packet) if packet else None
                 if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
@@ -121,10 +121,10 @@ class SharedRobot(Robot):
     def pause(self, wait_ms: int) -> None:
         self.line.event(wait_ms / 1000)
 
-    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
         def with_limit(session: Requester) -> PendingRequest[Any]:
             request: PendingRequest[Any] = getattr(session, name.lower())()
-            request.limit_ms = SHARED_MS
+            request.limit_ms = SHARED_LIMIT_MS
             return request
 
         if self._unanswered < MOST_UNANSWERED:

@@ -16,7 +16,7 @@ from tiniscript.link import ports
 from tiniscript.link.ports import ListedPort
 
 FILE_BYTES = 65_536
-OUTPUT_S = 8.0  # timeout of a program
+OUTPUT_LIMIT_S = 8.0  # timeout of a program
 
 
 class Owner(NamedTuple):
@@ -88,7 +88,11 @@ class System:
         """Return what a program prints, or None where there is no such program."""
         try:
             completed = subprocess.run(
-                words, stdin=subprocess.DEVNULL, capture_output=True, timeout=OUTPUT_S, check=False
+                words,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=OUTPUT_LIMIT_S,
+                check=False,
             )
         except (OSError, ValueError, subprocess.TimeoutExpired):
             return None

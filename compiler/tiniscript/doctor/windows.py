@@ -39,15 +39,15 @@ def _query(system: System, *words: str) -> str | None:
     return system.output("pnputil", "/enum-devices", "/connected", *words)
 
 
-def _chips(said: str) -> list[str]:
-    result = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(said))
+def _chips(output: str) -> list[str]:
+    result = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(output))
     return list(dict.fromkeys(chip[0] for chip in result if chip is not None))
 
 
-def _names(said: str) -> list[str]:
+def _names(output: str) -> list[str]:
     """Return the names of paired devices: the row after their number."""
     names = []
-    rows = said.splitlines()
+    rows = output.splitlines()
     for number, row in enumerate(rows[:-1]):
         name = _NAME.search(rows[number + 1])
         if _PAIRED.search(row) and name:

@@ -19,9 +19,9 @@ from tiniscript.flash import children
 from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
-NOBODY_S, SILENCE_S = 15.0, 30.0
-LEAVE_S = 5.0  # that it has after its last output
-WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
+NOBODY_LIMIT_S, SILENCE_LIMIT_S = 15.0, 30.0
+EXIT_LIMIT_S = 5.0  # that it has after its last output
+RUN_LIMIT_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 BAR_MARKS = 50  # of a whole bar
@@ -46,8 +46,8 @@ _CAUSES = (
 class WriteResult(NamedTuple):
     """The outcome, a name from above, and the last lines of output if they help."""
 
-    how: str
-    said: str = ""
+    outcome: str
+    output: str = ""
 
 
 class StepProgress(NamedTuple):
@@ -92,63 +92,74 @@ def _bundled_avrdudes(home: Path) -> list[Path]:
 
 def write(
     command: list[str],
-    to: Bootloader,
+    bootloader: Bootloader,
     port: str,
     firmware: Path,
-    look: Callable[[StepProgress | None], None],
+    on_progress: Callable[[StepProgress | None], None],
 ) -> WriteResult:
-    """Write a firmware, read it back, and compare. `look` is called periodically."""
-    words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
+    """Write a firmware, read it back, and compare. `on_progress` is called periodically."""
+    words = [
+        *command,
+        "-c",
+        bootloader.programmer,
+        "-p",
+        bootloader.part,
+        "-P",
+        port,
+        "-b",
+        str(bootloader.baud),
+        "-D",
+    ]
     words += ["-U", f"flash:w:{firmware}:i"]
     try:
-        code, said = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
+        exit_code, output = children.run(words, None, _Watch(on_progress), leave_s=EXIT_LIMIT_S)
     except _Ended as over:
-        return over.ended
+        return over.result
     except subprocess.TimeoutExpired:
         return WriteResult(ENDLESS)
     except children.CannotStart as why:
         return WriteResult(FAILED, str(why.strerror or why))
-    return outcome(code, said)
+    return outcome(exit_code, output)
 
 
 class _Ended(Exception):
     """It is not waited for any longer."""
 
-    def __init__(self, how: str) -> None:
-        super().__init__(how)
-        self.ended = WriteResult(how)
+    def __init__(self, outcome: str) -> None:
+        super().__init__(outcome)
+        self.result = WriteResult(outcome)
 
 
 class _Watch:
     """Looks at its whole output again and again. Raises _Over."""
 
-    def __init__(self, look: Callable[[StepProgress | None], None]) -> None:
-        self._look = look
+    def __init__(self, on_progress: Callable[[StepProgress | None], None]) -> None:
+        self._on_progress = on_progress
         self._said = ""
         self._began_s = self._heard_s = monotonic()
 
-    def __call__(self, said: str) -> None:
-        now_s, found = monotonic(), parse_progress(said)
-        self._look(found)
-        if said != self._said:
-            self._said, self._heard_s = said, now_s
-        if now_s - self._began_s >= WHOLE_S or len(said) > MOST_BYTES:
+    def __call__(self, output: str) -> None:
+        now_s, progress = monotonic(), parse_progress(output)
+        self._on_progress(progress)
+        if output != self._said:
+            self._said, self._heard_s = output, now_s
+        if now_s - self._began_s >= RUN_LIMIT_S or len(output) > MOST_BYTES:
             raise _Ended(ENDLESS)
-        if found is not None:
-            if now_s - self._heard_s >= SILENCE_S:
+        if progress is not None:
+            if now_s - self._heard_s >= SILENCE_LIMIT_S:
                 raise _Ended(BROKEN_OFF)
-        elif now_s - self._heard_s >= NOBODY_S or _attempt(said) >= MOST_ATTEMPTS:
+        elif now_s - self._heard_s >= NOBODY_LIMIT_S or _attempt(output) >= MOST_ATTEMPTS:
             raise _Ended(NOBODY)
 
 
-def _attempt(said: str) -> int:
+def _attempt(output: str) -> int:
     """Return the number of its last attempt."""
-    return max(map(int, _ATTEMPT.findall(said)), default=0)
+    return max(map(int, _ATTEMPT.findall(output)), default=0)
 
 
-def parse_progress(said: str) -> StepProgress | None:
+def parse_progress(output: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
-    bars = _PROGRESS_BAR.findall(said)
+    bars = _PROGRESS_BAR.findall(output)
     names = [name for name, _ in bars]
     if "Writing" not in names:
         return None  # the bar before that is for the signature
@@ -157,17 +168,19 @@ def parse_progress(said: str) -> StepProgress | None:
     return StepProgress(phase, min(100, 100 * len(marks) // BAR_MARKS))
 
 
-def outcome(code: int, said: str) -> WriteResult:
+def outcome(exit_code: int, output: str) -> WriteResult:
     """Return the outcome, from its exit code and its whole output."""
-    if code == 0:
+    if exit_code == 0:
         return WriteResult(DONE)
-    began_to_write = parse_progress(said) is not None
-    for how, pattern in _CAUSES:
-        if re.search(pattern, said, re.IGNORECASE):
-            if began_to_write and how != DIFFERS:
+    began_to_write = parse_progress(output) is not None
+    for outcome_name, pattern in _CAUSES:
+        if re.search(pattern, output, re.IGNORECASE):
+            if began_to_write and outcome_name != DIFFERS:
                 return WriteResult(BROKEN_OFF)
-            return WriteResult(how)
-    rows = [row.strip() for row in said.splitlines() if row.strip() and "done." not in row]
+            return WriteResult(outcome_name)
+    rows = [row.strip() for row in output.splitlines() if row.strip() and "done." not in row]
     if began_to_write:
         return WriteResult(BROKEN_OFF)
-    return WriteResult(FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {code}")
+    return WriteResult(
+        FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {exit_code}"
+    )

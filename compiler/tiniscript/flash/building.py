@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.flash import children
-from tiniscript.flash.ready import is_whole
+from tiniscript.flash.ready import is_complete_hex
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -33,12 +33,12 @@ MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 # It is too large, and is built once more, without tasks or without a remote control.
-LESS_TASKS, LESS_REMOTE = "less_tasks", "less_remote"
+WITHOUT_TASKS, WITHOUT_REMOTE = "less_tasks", "less_remote"
 CORE_FILES = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with all of it: one of more devices than tinibot.
 SMALLER_FIRMWARE = {
-    "uno": ("uno_without_tasks", LESS_TASKS),
-    "nano": ("nano_without_remote", LESS_REMOTE),
+    "uno": ("uno_without_tasks", WITHOUT_TASKS),
+    "nano": ("nano_without_remote", WITHOUT_REMOTE),
 }
 # For a robot with discs on its wheels, which have the place of the reader of text.
 ENVIRONMENT_WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
@@ -68,7 +68,7 @@ class StepProgress(NamedTuple):
 
     phase: str
     percent: int
-    what: str = ""
+    file_name: str = ""
 
 
 class CannotBuild(Exception):
@@ -78,10 +78,10 @@ class CannotBuild(Exception):
     UNREACHABLE, FAILED, TOO_LARGE = "unreachable", "build_failed", "too_large"
     NOT_WRITTEN = "not_written"
 
-    def __init__(self, why: str, said: str = "", log: str = "") -> None:
-        super().__init__(said or why)
+    def __init__(self, why: str, last_output: str = "", log: str = "") -> None:
+        super().__init__(last_output or why)
         self.why = why
-        self.said = said
+        self.last_output = last_output
         self.log = log
 
 
@@ -171,24 +171,24 @@ class _Project:
     def hex_file(self) -> Path:
         return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
-    def run(self, look: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
+    def run(self, on_progress: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
         """Run PlatformIO; return its exit code, and what it has said.
 
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
         """
 
-        def look_at(said: str) -> None:
-            if found := parse_progress(said, self.files):
-                look(found)
+        def look_at(output: str) -> None:
+            if progress := parse_progress(output, self.files):
+                on_progress(progress)
 
         command = [*self.command, self.environment, *words]
         return children.run(command, self.folder, look_at, _environment())
 
-    def build(self, look: Callable[[StepProgress], None], is_hex: bool) -> None:
-        code, log = self.run(look)
+    def build(self, on_progress: Callable[[StepProgress], None], is_hex: bool) -> None:
+        code, log = self.run(on_progress)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
-        if code != 0 or (is_hex and not is_whole(self.hex_file)):
+        if code != 0 or (is_hex and not is_complete_hex(self.hex_file)):
             has_begun = _COMPILING.search(log) or not _NETWORK_MESSAGE.search(log)
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
@@ -201,28 +201,28 @@ def can_have_breakpoints(robot: Robot) -> bool:
 
 
 def build(
-    made_from: Sources, robot: Robot, look: Callable[[StepProgress], None],
+    made_from: Sources, robot: Robot, on_progress: Callable[[StepProgress], None],
     has_breakpoints: bool = False,
 ) -> bytes:  # fmt: skip
-    """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
+    """Return the firmware of a robot for its board, an Intel HEX file.
 
-    Raises CannotBuild, and OSError where there is no room to build.
+    `on_progress` is called often. Raises CannotBuild, and OSError where there is no room to build.
     """
     with _folder() as folder:
         project = _Project(made_from, robot, folder, has_breakpoints)
         try:
-            project.build(look, is_hex=True)
+            project.build(on_progress, is_hex=True)
         except CannotBuild as why:
             if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
                 raise
-            project.environment, less = SMALLER_FIRMWARE[project.environment]
-            look(StepProgress(less, 0))
-            project.build(look, is_hex=True)
+            project.environment, lack = SMALLER_FIRMWARE[project.environment]
+            on_progress(StepProgress(lack, 0))
+            project.build(on_progress, is_hex=True)
         return project.hex_file.read_bytes()
 
 
 def upload(
-    made_from: Sources, robot: Robot, port: str | None, look: Callable[[StepProgress], None]
+    made_from: Sources, robot: Robot, port: str | None, on_progress: Callable[[StepProgress], None]
 ) -> None:
     """Build the firmware of a robot with an ESP32, and write it to the board on a port, if any.
 
@@ -230,10 +230,10 @@ def upload(
     """
     with _folder() as folder:
         project = _Project(made_from, robot, folder)
-        project.build(look, is_hex=False)
+        project.build(on_progress, is_hex=False)
         if port is None:
             return
-        code, log = project.run(look, "-t", "upload", "--upload-port", port)
+        code, log = project.run(on_progress, "-t", "upload", "--upload-port", port)
         if code != 0:
             why = children.reason(log) or f"exit code {code}"
             raise CannotBuild(CannotBuild.NOT_WRITTEN, why, log)
@@ -246,21 +246,23 @@ def _folder() -> Iterator[Path]:
 
 
 def _environment() -> dict[str, str]:
-    own = {name: value for name, value in os.environ.items() if not _UNWANTED_LINE.fullmatch(name)}
-    return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
+    environment = {
+        name: value for name, value in os.environ.items() if not _UNWANTED_LINE.fullmatch(name)
+    }
+    return {**environment, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 
-def parse_progress(said: str, files: int) -> StepProgress | None:
-    """Return the progress, from its whole output; `files` is the total number of files."""
-    text = _WRITING.findall(said)
+def parse_progress(output: str, file_count: int) -> StepProgress | None:
+    """Return the progress, from its whole output; `file_count` is the total number of files."""
+    text = _WRITING.findall(output)
     if text:
         return StepProgress(WRITING, min(100, int(text[-1])))
-    compiled = len(_COMPILING.findall(said))
-    if compiled:
-        return StepProgress(COMPILING, min(99, 100 * compiled // files))
-    installing = list(_INSTALLING.finditer(said))
+    compiled_count = len(_COMPILING.findall(output))
+    if compiled_count:
+        return StepProgress(COMPILING, min(99, 100 * compiled_count // file_count))
+    installing = list(_INSTALLING.finditer(output))
     if installing:
-        percents = _PERCENT.findall(said, installing[-1].end())
+        percents = _PERCENT.findall(output, installing[-1].end())
         percent = min(100, int(percents[-1])) if percents else 0
         return StepProgress(FETCHING, percent, installing[-1][1])
     return None

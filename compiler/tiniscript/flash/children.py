@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Thread, current_thread, main_thread
 
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
-LOOK_S = 0.1
+LOOK_INTERVAL_S = 0.1
 KILLED_AFTER_S = 5.0  # that a program has to end by itself
 
 
@@ -27,14 +27,14 @@ class CannotStart(OSError):
 def run(
     command: list[str],
     folder: Path | None,
-    look: Callable[[str], None],
+    on_output: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
-    may_end: Callable[[str], bool] = lambda said: True,
+    may_end: Callable[[str], bool] = lambda output: True,
     leave_s: float | None = None,
 ) -> tuple[int, str]:
     """Run a program in a folder, or here; return its exit code, and what it has said.
 
-    `look` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
+    `on_output` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
     ends the program and its children; where it may not end after what it has said, it is waited for
     first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
     output.
@@ -53,26 +53,26 @@ def run(
         except OSError as why:
             raise CannotStart(*why.args) from why
         assert running.stdout
-        pipe, said = running.stdout, bytearray()
+        pipe, output = running.stdout, bytearray()
 
         def read() -> None:
             with pipe:
                 while data := os.read(pipe.fileno(), 1 << 16):
-                    said.extend(data)
-                    del said[:-LOG_BYTES]
+                    output.extend(data)
+                    del output[:-LOG_BYTES]
 
         reader = Thread(target=read, daemon=True)
         try:
             let_through()
             reader.start()
             while True:  # one look at least, also at what has ended meanwhile
-                reader.join(LOOK_S)
-                look(said.decode(errors="replace"))
+                reader.join(LOOK_INTERVAL_S)
+                on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
                     break
-            code = running.wait(leave_s)
+            exit_code = running.wait(leave_s)
         except BaseException:
-            if may_end(said.decode(errors="replace")):
+            if may_end(output.decode(errors="replace")):
                 _end(running)
             else:
                 running.wait()
@@ -81,7 +81,7 @@ def run(
                 reader.join(KILLED_AFTER_S)
             raise
     _kill(running)  # what it has started may go on, and hold a port
-    return code, said.decode(errors="replace")
+    return exit_code, output.decode(errors="replace")
 
 
 @contextmanager
@@ -93,13 +93,13 @@ def _hold_interrupt() -> Iterator[Callable[[], None]]:
     if current_thread() is not main_thread():
         yield lambda: None
         return
-    pressed: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    interrupts: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
 
     def let_through() -> None:
         signal.signal(signal.SIGINT, before)
-        if pressed:
-            pressed.clear()
+        if interrupts:
+            interrupts.clear()
             signal.raise_signal(signal.SIGINT)
 
     try:
@@ -134,6 +134,6 @@ def reason(log: str) -> str:
     """Return the most useful line of what a program has said: the first error, else the last."""
     rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
     errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
-    others = [row for row in rows if "Error" in row]
-    chosen = (errors or others or rows[-1:] or [""])[0]
-    return chosen[-200:].rstrip(": ")
+    error_like_rows = [row for row in rows if "Error" in row]
+    best_row = (errors or error_like_rows or rows[-1:] or [""])[0]
+    return best_row[-200:].rstrip(": ")

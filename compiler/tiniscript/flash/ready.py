@@ -64,7 +64,7 @@ def files(folder: Path = FOLDER) -> list[Ready]:
     """Return the files of a folder, by title and board. An incomplete file is left out."""
     result = []
     for path in sorted(folder.glob("*-*-*.hex")):
-        if is_whole(path):
+        if is_complete_hex(path):
             title, board, digest = path.stem.rsplit("-", 2)
             result.append(Ready(title, board, digest, path))
     return result
@@ -85,12 +85,12 @@ def find(title: str, board: str, digest: str) -> Ready | None:
     """Return the file with this digest, from the package or the cache."""
     name = name_of(title, board, digest)
     for folder in (FOLDER, cache()):
-        if is_whole(folder / name):
+        if is_complete_hex(folder / name):
             return Ready(title, board, digest, folder / name)
     return None
 
 
-def is_whole(path: Path) -> bool:
+def is_complete_hex(path: Path) -> bool:
     """Return whether all rows of a HEX file have valid checksums and the last is an end record."""
     try:
         rows = path.read_text(encoding="ascii").split()
@@ -106,8 +106,8 @@ def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name_of(title, board, digest)
     replace(path, data)
-    kept = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
-    for old in kept[:-MOST_FILES]:
+    cached_files = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
+    for old in cached_files[:-MOST_FILES]:
         if old != path:
             old.unlink(missing_ok=True)
     return Ready(title, board, digest, path)

@@ -24,13 +24,15 @@ NAMED = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
 
 def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
     """Return a page with its numbers. Raises LessonRefused where the lesson has none of a name."""
-    known = dict(reversed([*_numbers(lesson)]))  # of two criteria of a kind the first one counts
+    number_of_name = dict(
+        reversed([*_numbers(lesson)])
+    )  # of two criteria of a kind the first one counts
 
     def number(match: re.Match[str]) -> str:
-        if match[1] not in known:
-            reason = {"file": file, "found": match[0], "known": ", ".join(sorted(known))}
+        if match[1] not in number_of_name:
+            reason = {"file": file, "found": match[0], "known": ", ".join(sorted(number_of_name))}
             raise LessonRefused(("no_such_number", reason))
-        return f"{known[match[1]]:.10g}"
+        return f"{number_of_name[match[1]]:.10g}"
 
     return NAMED.sub(number, page)
 

@@ -111,9 +111,9 @@ def _had_power(run: Run) -> bool:
 
 def _ends_at_rest(run: Run) -> bool:
     """Whether its motors were off at the end, and had been for REST_MS."""
-    driven = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
-    off = run.motors[driven[-1] + 1 :] if driven else ()
-    return not driven or bool(off and run.end_ms - off[0][0] >= REST_MS)
+    powered_rows = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
+    rows_at_rest = run.motors[powered_rows[-1] + 1 :] if powered_rows else ()
+    return not powered_rows or bool(rows_at_rest and run.end_ms - rows_at_rest[0][0] >= REST_MS)
 
 
 # -- ways -----------------------------------------------------------------------------------------
@@ -123,11 +123,11 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
     touches = task.run.touches
     if criterion.places:
         place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
-        there = (
+        arrivals_ms = (
             at.ms for at in points_between(task.run.track) if math.dist(place, at[1:3]) <= within_cm
         )
-        there_ms = next(there, math.inf)
-        touches = tuple(touch for touch in touches if touch.ms < there_ms)
+        arrival_ms = next(arrivals_ms, math.inf)
+        touches = tuple(touch for touch in touches if touch.ms < arrival_ms)
     if not touches:
         return None
     first = touches[0]
@@ -140,14 +140,14 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
     segments = [segment for line in run.world.lines for segment in join_points(list(line.points))]
-    left = {
+    points_left = {
         (segment.a.x + (segment.b.x - segment.a.x) * k / n,
          segment.a.y + (segment.b.y - segment.a.y) * k / n)
         for segment in segments
         for n in [max(1, round(math.dist(segment.a, segment.b) / SAMPLE_CM))]
         for k in range(n)
     }  # fmt: skip
-    there = len(left)
+    point_count = len(points_left)
     off_ms: int | None = None
     for ms, pose in run.track:
         along = math.radians(pose.heading)
@@ -156,9 +156,9 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
         if min((distance_to(segment, x, y) for segment in segments), default=math.inf) > within_cm:
             off_ms = ms
             break
-        left = {point for point in left if math.dist(point, (x, y)) > within_cm}
+        points_left = {point for point in points_left if math.dist(point, (x, y)) > within_cm}
     least_cm = criterion.numbers["at_least_cm"]
-    followed_cm = (there - len(left)) * SAMPLE_CM
+    followed_cm = (point_count - len(points_left)) * SAMPLE_CM
     values = {"cm": in_cm(followed_cm, least_cm), "least": f"{least_cm:g}"}
     if off_ms is not None:
         key = "early" if followed_cm < least_cm / 4 and off_ms < EARLY_MS else "off"
@@ -202,11 +202,11 @@ def _standstills(run: Run) -> list[tuple[int, int]]:
 def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
     stands = _standstills(task.run)
-    long = [item for item in stands if item[1] - item[0] >= least_s * 1000 - 1]
-    if len(long) >= times:
-        return _paused_at(criterion, task, long)
-    values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
-    if long:
+    long_pauses = [item for item in stands if item[1] - item[0] >= least_s * 1000 - 1]
+    if len(long_pauses) >= times:
+        return _paused_at(criterion, task, long_pauses)
+    values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long_pauses))}
+    if long_pauses:
         return Finding("pauses", "pauses/several", values)
     values["seconds"] = in_seconds(
         max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0)
@@ -286,13 +286,16 @@ def _motion_finding(from_ms: float, to_ms: float) -> Finding:
 def _key_effect(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool]:
     """Return what a key is for, and whether the robot did it."""
     ahead_cm, degrees = _displacement(run, from_ms, to_ms)
-    found = {
+    effect_of_key = {
         "KEY_UP": ("forward", ahead_cm > OBEYED_CM),
         "KEY_DOWN": ("back", ahead_cm < -OBEYED_CM),
         "KEY_LEFT": ("left", degrees > OBEYED_DEGREES),
         "KEY_RIGHT": ("right", degrees < -OBEYED_DEGREES),
     }
-    return found.get(key) or ("beep", any(from_ms <= beep.ms <= to_ms for beep in run.beeps))
+    return effect_of_key.get(key) or (
+        "beep",
+        any(from_ms <= beep.ms <= to_ms for beep in run.beeps),
+    )
 
 
 def _stood_still(run: Run, from_ms: float, to_ms: float) -> bool:
@@ -319,69 +322,71 @@ def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]
 
 def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     run, times = task.run, int(criterion.numbers["times"])
-    what = criterion.words[0] if criterion.words else ""
-    wanted, slack = criterion.numbers["value"], criterion.numbers["tolerance"] * ONE
-    values = {"times": str(times), "found": str(len(run.shown)), "what": what}
+    sensor_name = criterion.words[0] if criterion.words else ""
+    expected_number, tolerance = criterion.numbers["value"], criterion.numbers["tolerance"] * ONE
+    values = {"times": str(times), "found": str(len(run.shown)), "what": sensor_name}
     if not run.shown:
         return Finding("shows", "shows/nothing", values)
-    right = 0
+    right_count = 0
     for item in run.shown:
-        should = _expected_value(item, what, wanted, run)
-        right += should is None or abs(item.value - should) <= slack
-    if right >= times:
+        expected = _expected_value(item, sensor_name, expected_number, run)
+        right_count += expected is None or abs(item.value - expected) <= tolerance
+    if right_count >= times:
         return None
     last = run.shown[-1]
-    should = _expected_value(last, what, wanted, run)
-    if should is None or right == len(run.shown):
+    expected = _expected_value(last, sensor_name, expected_number, run)
+    if expected is None or right_count == len(run.shown):
         return Finding("shows", "shows/few", values)
-    values |= {"value": as_text(last.value), "wanted": as_text(round(should / 100) * 100)}
-    key = "time" if what == TIME else "sensor" if what else "value"
+    values |= {"value": as_text(last.value), "wanted": as_text(round(expected / 100) * 100)}
+    key = "time" if sensor_name == TIME else "sensor" if sensor_name else "value"
     return Finding("shows", f"shows/{key}", values)
 
 
-def _expected_value(shown: ShownValue, what: str, wanted: float, run: Run) -> float | None:
+def _expected_value(
+    shown_value: ShownValue, sensor_name: str, expected_number: float, run: Run
+) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
-    if what == TIME:  # that of the moment, or of any since it has stopped
-        return float(min(max(shown.value, _stopped_ms(shown, run)), shown.ms))
-    if what:
+    if sensor_name == TIME:  # that of the moment, or of any since it has stopped
+        return float(min(max(shown_value.value, _stopped_ms(shown_value, run)), shown_value.ms))
+    if sensor_name:
         names = [device.name for device in run.robot.profile.kit.sensors]
-        return run.robot.sensing.look(names.index(what), shown.pose)
-    return None if wanted == ANY_VALUE else wanted * ONE
+        return run.robot.sensing.look(names.index(sensor_name), shown_value.pose)
+    return None if expected_number == ANY_VALUE else expected_number * ONE
 
 
-def _stopped_ms(shown: ShownValue, run: Run) -> int:
+def _stopped_ms(shown_value: ShownValue, run: Run) -> int:
     """Return since when the robot stood as it showed a value, or that moment if it drove."""
-    since_ms = shown.ms
+    since_ms = shown_value.ms
     for ms, *powers in run.motors:
-        if ms > shown.ms:
+        if ms > shown_value.ms:
             break
-        since_ms = shown.ms if any(powers) else ms
+        since_ms = shown_value.ms if any(powers) else ms
     return since_ms
 
 
 def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     beeps = task.run.beeps
     times, pitches = int(criterion.numbers["times"]), int(criterion.numbers["pitches"])
-    different = len({beep.hertz for beep in beeps})
+    pitch_count = len({beep.hertz for beep in beeps})
     values = {"times": str(times), "found": str(len(beeps)), "pitches": str(pitches),
-              "different": str(different)}  # fmt: skip
+              "different": str(pitch_count)}  # fmt: skip
     if not beeps:
         return Finding("beeps", "beeps/none", values)
     if len(beeps) < times:
         return Finding("beeps", "beeps/few", values)
-    if different < pitches:
+    if pitch_count < pitches:
         return Finding("beeps", "beeps/pitches", values)
     seconds = [in_seconds(beep.ms) for beep in beeps]
     return _first_missed_place(criterion, task, [beep.pose for beep in beeps], values, seconds)
 
 
 def _blinks(criterion: Criterion, task: Task) -> Finding | None:
-    run, (what,), times = task.run, criterion.words, int(criterion.numbers["times"])
+    run, (actuator_name,), times = task.run, criterion.words, int(criterion.numbers["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
-    switches = [item for item in run.switched if names[item.actuator] == what]
-    moving = sum(switch.is_moving for switch in switches)
-    values = {"what": what, "times": str(times), "found": str(moving)}
-    if moving >= times:
+    switches = [item for item in run.switched if names[item.actuator] == actuator_name]
+    moving_count = sum(switch.is_moving for switch in switches)
+    values = {"what": actuator_name, "times": str(times), "found": str(moving_count)}
+    if moving_count >= times:
         return None
     return Finding("blinks", "blinks/few" if switches else "blinks/none", values)
 

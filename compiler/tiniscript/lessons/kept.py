@@ -88,9 +88,9 @@ def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
 def end_of_values(tokens: Sequence[Token], at: int) -> int:
     """Return where in the text the bracket after a word closes, or where the word ends."""
     values = [token for value in _values(tokens, at) for token in value]
-    after = [token for token in tokens[at + 1 :] if token.text == ")"]
+    closing_brackets = [token for token in tokens[at + 1 :] if token.text == ")"]
     last = values[-1].end if values else tokens[at].end
-    return next((token.end for token in after if token.start >= last), last)
+    return next((token.end for token in closing_brackets if token.start >= last), last)
 
 
 def count_ahead(tokens: Sequence[Token]) -> int:

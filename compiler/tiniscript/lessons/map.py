@@ -67,12 +67,12 @@ def plan(lesson: Lesson, title: str) -> str:
 
 def _grid(width: float, height: float) -> str:
     """Return lines every 20 cm, so that a pupil can measure."""
-    matches = []
+    path_steps = []
     for x in range(GRID_CM, math.ceil(width), GRID_CM):
-        matches.append(f"M{x} 0V{height:g}")
+        path_steps.append(f"M{x} 0V{height:g}")
     for y in range(GRID_CM, math.ceil(height), GRID_CM):
-        matches.append(f"M0 {height - y:g}H{width:g}")
-    return f'<path d="{"".join(matches)}" stroke="#ddd" stroke-width="0.6"/>'
+        path_steps.append(f"M0 {height - y:g}H{width:g}")
+    return f'<path d="{"".join(path_steps)}" stroke="#ddd" stroke-width="0.6"/>'
 
 
 def _goals(lesson: Lesson) -> list[str]:
@@ -120,11 +120,11 @@ def _robot(lesson: Lesson, dash: str) -> str:
     along = math.radians(start.heading)
     x, y = start.x_cm, height - start.y_cm
     tip_x, tip_y = x + 26 * math.cos(along), y - 26 * math.sin(along)
-    back = [(tip_x - 6 * math.cos(along + turn), tip_y + 6 * math.sin(along + turn))
-            for turn in (0.5, -0.5)]  # fmt: skip
-    head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [back[0], (tip_x, tip_y), back[1]])
+    barbs = [(tip_x - 6 * math.cos(along + turn), tip_y + 6 * math.sin(along + turn))
+             for turn in (0.5, -0.5)]  # fmt: skip
+    head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [barbs[0], (tip_x, tip_y), barbs[1]])
     return (
         f'<polygon points="{outline}" fill="#eee" stroke="#333" stroke-width="1.5"{dash}/>'
-        f'<path d="M{x:.1f} {y:.1f}L{tip_x:.1f} {tip_y:.1f}M{back[0][0]:.1f} {back[0][1]:.1f}'
+        f'<path d="M{x:.1f} {y:.1f}L{tip_x:.1f} {tip_y:.1f}M{barbs[0][0]:.1f} {barbs[0][1]:.1f}'
         f'{head}" fill="none" stroke="#333" stroke-width="1.5"/>'
     )

@@ -93,14 +93,14 @@ def studio_part(page: str) -> str:
 
 
 def _section(page: str, kept: dict[str, str]) -> str:
-    matches = []
+    kept_lines = []
     for line in page.split("\n"):
         mark = MARK.match(line)
         if mark is None:
-            matches.append(line)
+            kept_lines.append(line)
         elif mark[2] in kept:
-            matches.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
-    return "\n".join(matches)
+            kept_lines.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
+    return "\n".join(kept_lines)
 
 
 def as_text(page: str) -> str:

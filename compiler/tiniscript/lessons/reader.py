@@ -66,7 +66,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         titles = _labels(title)
         title.finish()
         robot = root.choice("robot", robots.names())
-        known = _known_words(robots.load(robot or robots.names()[0]))
+        known_words = _known_words(robots.load(robot or robots.names()[0]))
         lesson = Lesson(
             printable_value(name),
             robot,
@@ -77,7 +77,7 @@ def read(text: str, world: World, name: str) -> Lesson:
             root.yes_no("mirror", False),
             world,
             tuple(_variation(row, world) for row in _rows(root, "varies")),
-            tuple(_criterion(row, world, known) for row in _rows(root, "criteria")),
+            tuple(_criterion(row, world, known_words) for row in _rows(root, "criteria")),
             _presses(_rows(root, "presses")),
         )
         if not lesson.criteria and not root.reasons:
@@ -91,8 +91,8 @@ def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
     """Return the right answers of a lesson and the typical wrong ones. Raises LessonRefused."""
     with root_of(text, LessonRefused) as root:
         right = [_answer(row, False) for row in _rows(root, "right")]
-        wrong = [_answer(row, True) for row in _rows(root, "wrong")]
-    return right, wrong
+        wrong_answers = [_answer(row, True) for row in _rows(root, "wrong")]
+    return right, wrong_answers
 
 
 def _rows(root: Table, key: str) -> list[Table]:
@@ -176,14 +176,14 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
     return tuple(presses)
 
 
-def _span(table: Table, key: str, most: int) -> tuple[float, float]:
+def _span(table: Table, key: str, greatest: int) -> tuple[float, float]:
     """Return from and to; both are 0 if they are left out."""
     low, high = table.pair(key, "") if table.has(key) else (0, 0)
     if low > high:
         table.complain("range_empty", key)
-    if max(abs(low), abs(high)) > most * ONE:
+    if max(abs(low), abs(high)) > greatest * ONE:
         table.complain("out_of_range", key, found=f"[{low / ONE:g}, {high / ONE:g}]",
-                       low=str(-most), high=str(most))  # fmt: skip
+                       low=str(-greatest), high=str(greatest))  # fmt: skip
     return low / ONE, high / ONE
 
 
@@ -200,8 +200,8 @@ def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]]) -> Criterion:
-    """Return a row. `known` has what it may name, by `Kind.words`."""
+def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, ...]]) -> Criterion:
+    """Return a row. `known_words` has what it may name, by `Kind.words`."""
     name = table.text("kind", 'kind = "never_touches"')
     kind = KINDS.get(name or "")
     if name is None or kind is None:
@@ -233,9 +233,9 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
     words: tuple[str, ...] = ()
     if kind.words in DEVICE_KINDS:
         if kind.words == "switch" or table.has("what"):
-            words = _asked_device(table, known[kind.words])
+            words = _asked_device(table, known_words[kind.words])
     elif kind.words:
-        words = _words(table, known[kind.words])
+        words = _words(table, known_words[kind.words])
     table.finish()
     return Criterion(name, numbers, words, places, labels, area)
 
@@ -258,29 +258,29 @@ def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     return ()
 
 
-def _words(table: Table, known: tuple[str, ...]) -> tuple[str, ...]:
-    result = table.get("words", f'words = ["{known[0]}"]')
+def _words(table: Table, known_words: tuple[str, ...]) -> tuple[str, ...]:
+    result = table.get("words", f'words = ["{known_words[0]}"]')
     if result is None:
         return ()
     if not isinstance(result, list) or not all(type(item) is str for item in result) or not result:
-        table.complain("words_form", "words", example=f'["{known[0]}"]')
+        table.complain("words_form", "words", example=f'["{known_words[0]}"]')
         return ()
     for item in result:
-        if item not in known:
-            suggestion = nearest(item, known) or ""
+        if item not in known_words:
+            suggestion = nearest(item, known_words) or ""
             table.complain("unknown_word", "words", found=printable_value(item), near=suggestion)
     return tuple(result)
 
 
-def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
+def _places(table: Table, world: World, least_count: int) -> tuple[Place, ...]:
     """Return the places of `at`: a part of the world, a point, or a list of them."""
     value = table.get("at", 'at = "start"')
     if value is None:
         return ()
     is_point = isinstance(value, list) and len(value) == 2 and not isinstance(value[0], list | str)
-    several = value if isinstance(value, list) and not is_point else [value]
+    texts_or_points = value if isinstance(value, list) and not is_point else [value]
     places = []
-    for item in several:
+    for item in texts_or_points:
         if isinstance(item, str):
             places.append(_part(table, "at", item, world))
         elif isinstance(item, list) and len(item) == 2:
@@ -290,7 +290,7 @@ def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
                 places.append(Place("", 0, x_cm / ONE, y_cm / ONE))
         else:
             table.complain("place_form", "at")
-    if len(places) < least and not table.reasons:
+    if len(places) < least_count and not table.reasons:
         table.complain("place_form", "at")
     return tuple(places)
 

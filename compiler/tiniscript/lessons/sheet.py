@@ -57,12 +57,12 @@ def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     result = blocks(page)
     title = lesson.title(language)
     parts = [_html(block) for block in result]
-    caption = [text("plan")]
+    caption_lines = [text("plan")]
     if lesson.variations:
-        caption.append(text("moves"))
+        caption_lines.append(text("moves"))
     if lesson.is_mirrored:
-        caption.append(text("mirrored"))
-    drawing = f"{plan(lesson, title)}\n<p>{escape(' '.join(caption))}</p>"
+        caption_lines.append(text("mirrored"))
+    drawing = f"{plan(lesson, title)}\n<p>{escape(' '.join(caption_lines))}</p>"
     if not is_teachers:
         names = "".join(f"<span>{escape(name)}</span>" for name in map(text, BLANKS))
         parts.insert(1, f'<p class="names">{names}</p>\n{drawing}')

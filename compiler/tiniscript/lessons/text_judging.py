@@ -85,14 +85,14 @@ def _call_of(name: str, tokens: Sequence[Token]) -> str:
 
 def _tokens_with_def(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
     """Return each token with the word of the DEF that it belongs to, or ""."""
-    found, name = [], ""
+    result, name = [], ""
     for k, token in enumerate(tokens):
         if token.text == "DEF":
             name = tokens[k + 1].text
-        found.append((name, token))
+        result.append((name, token))
         if ALIASES.get(token.text, token.text) == BLOCK_ENDS["DEF"]:
             name = ""
-    return found
+    return result
 
 
 def _with_condition(
@@ -100,23 +100,23 @@ def _with_condition(
 ) -> Finding:
     """Return a finding of a robot that stays where it is; with a question that kept it, that."""
     uncalled = _uncalled_words(words)
-    called = [token for name, token in _tokens_with_def(tokens) if name not in uncalled]
+    called_tokens = [token for name, token in _tokens_with_def(tokens) if name not in uncalled]
     is_turned = finding.key.endswith("/turned")
     if finding.key == "still/brief":  # it had power, so no IF kept it
-        does = {token.text for token in called}
-        if "M" in does and "UNTIL" not in does:
+        words_called = {token.text for token in called_tokens}
+        if "M" in words_called and "UNTIL" not in words_called:
             return finding
         finding = finding._replace(key="still")
-    question = kept.question(called, is_turned, ending)
+    question = kept.question(called_tokens, is_turned, ending)
     if question is None:
         return finding
     kit = robots.load(lesson.robot).kit
     sensors = [device.name for device in kit.readings]
-    named = [word for word in [*question.inside, *words] if word in sensors]
+    sensors_named = [word for word in [*question.inside, *words] if word in sensors]
     key = f"{'turned' if is_turned else 'still'}/{'ever' if question.is_ever else 'question'}"
-    what = (*named, sensors[0])[0]
+    sensor = (*sensors_named, sensors[0])[0]
     return finding._replace(
-        key=key, values={"word": question.word, "what": what, "truth": question.truth}
+        key=key, values={"word": question.word, "what": sensor, "truth": question.truth}
     )
 
 
@@ -129,21 +129,21 @@ def _question(robot: str) -> str:
 
 def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     words = _words(tokens)
-    times, counted = int(criterion.numbers.get("times", 1)), Counter(words)
-    if "UNTIL" in criterion.words and counted["UNTIL"] - kept.count_unasked(tokens) < times:
-        if counted["UNTIL"] >= times:
+    times, word_counts = int(criterion.numbers.get("times", 1)), Counter(words)
+    if "UNTIL" in criterion.words and word_counts["UNTIL"] - kept.count_unasked(tokens) < times:
+        if word_counts["UNTIL"] >= times:
             return Finding("uses", "uses/unasked")
     for word in criterion.words:
-        if counted[word] < times:
-            key = "uses/none" if not counted[word] else "uses/few"
-            values = {"word": word, "times": str(times), "found": str(counted[word])}
+        if word_counts[word] < times:
+            key = "uses/none" if not word_counts[word] else "uses/few"
+            values = {"word": word, "times": str(times), "found": str(word_counts[word])}
             return Finding("uses", key, values)
-    own = _own_words(words)
+    def_names = _own_words(words)
     uncalled = _uncalled_words(words)
-    if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
+    if "DEF" in criterion.words and len(def_names) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
     if "LOOP" in criterion.words and not any(
-        ACTING_WORDS.union(own).intersection(inside) for inside in _loop_bodies(words)
+        ACTING_WORDS.union(def_names).intersection(inside) for inside in _loop_bodies(words)
     ):
         return Finding("uses", "uses/idle")
     return None
@@ -194,28 +194,32 @@ def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
 
 
 def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
-    most, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
-    result = kept.count_ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
-    values = {"found": str(result), "most": str(most)}
-    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if result > most else None
+    most_moves, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
+    move_count = (
+        kept.count_ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
+    )
+    values = {"found": str(move_count), "most": str(most_moves)}
+    return (
+        Finding("moves", f"moves{'/ahead' * is_ahead}", values) if move_count > most_moves else None
+    )
 
 
 def without_word(word: str, text: str) -> str:
     """Return a program whose loops are done once (LOOP), without its own words (DEF) or tasks."""
     tokens = scan(text).tokens
-    own = _own_words(_words(tokens))
+    def_names = _own_words(_words(tokens))
     parts, end = [], 0
     for k, token in enumerate(tokens):
-        new = None
+        replacement = None
         if word == "LOOP" and token.text == "LOOP":
-            new = "LOOP(1)", kept.end_of_values(tokens, k)
-        elif word == "DEF" and token.text in own and tokens[k - 1].text != "DEF":
-            new = "W(0)", token.end
+            replacement = "LOOP(1)", kept.end_of_values(tokens, k)
+        elif word == "DEF" and token.text in def_names and tokens[k - 1].text != "DEF":
+            replacement = "W(0)", token.end
         elif word in TASKS and token.text == word:
-            new = "W(0)", _end_of_block(tokens, k)
-        if new is not None and token.kind == WORD:
-            parts += [text[end : token.start], new[0]]
-            end = new[1]
+            replacement = "W(0)", _end_of_block(tokens, k)
+        if replacement is not None and token.kind == WORD:
+            parts += [text[end : token.start], replacement[0]]
+            end = replacement[1]
     return "".join([*parts, text[end:]])
 
 
@@ -227,8 +231,8 @@ def _end_of_block(tokens: Sequence[Token], at: int) -> int:
 
 def idle_finding(word: str, text: str) -> Finding:
     """Return what is missing where the task is done without a word of BLOCKS, too."""
-    own = _own_words(_words(scan(text).tokens))
-    return Finding("needs", f"needs/{word}", {"name": own[0] if own else ""})
+    def_names = _own_words(_words(scan(text).tokens))
+    return Finding("needs", f"needs/{word}", {"name": def_names[0] if def_names else ""})
 
 
 JUDGES: dict[str, Callable[[Criterion, Sequence[Token]], Finding | None]] = {

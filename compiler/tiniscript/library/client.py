@@ -38,8 +38,9 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 PATIENCE_MS = DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
-SAVE_S = 10.0  # timeout for saving a program while the motors stand
-LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
+SAVE_LIMIT_S = 10.0  # timeout for saving a program while the motors stand
+# Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
+LOW_VOLTAGE_LIMIT_S = 2.0
 
 
 class Client:
@@ -50,7 +51,7 @@ class Client:
 
     def __init__(
         self, port: str, verb: str, profile: Robot, baud: int | None = None, language: str = "en",
-        limit_s: float = opening.OPEN_S, is_shared: bool = True,
+        limit_s: float = opening.OPEN_LIMIT_S, is_shared: bool = True,
         is_latched: Callable[[], bool] = lambda: False, heed: Callable[[], None] = lambda: None,
     ) -> None:  # fmt: skip
         """Connect to a port through its server, or open it. Raises RobotError.
@@ -103,7 +104,7 @@ class Client:
 
     def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
         """Close the port. First stop what a client of the server has started, or what may run
-        where `has_run`: wait `stop_s` for that, by default as long as a stop may take."""
+        where `may_have_run`: wait `stop_s` for that, by default as long as a stop may take."""
         try:
             if self.server is not None:
                 self.server.close()  # until then a client may start a run
@@ -169,21 +170,25 @@ class Client:
         with self._convert_loss():
             return self.line.begin(with_limit)
 
-    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+    def wait(
+        self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
+    ) -> Reply[T]:
         def watch() -> None:
             self._heed()
-            if look is not None:
-                look()
+            if on_wait is not None:
+                on_wait()
 
         with self._convert_loss():
             return self.line.wait(request, watch)
 
     def request(
-        self, make: Callable[[Requester], PendingRequest[T]], taken: Collection[int] = ()
+        self,
+        begin_request: Callable[[Requester], PendingRequest[T]],
+        accepted_statuses: Collection[int] = (),
     ) -> Reply[T]:
-        """Make a request and return its reply, which is OK or `taken`. Raises RobotError."""
-        reply = self.wait(self.begin_request(make))
-        if reply.status and reply.status not in taken:
+        """Return the reply to a request: OK, or one of `accepted_statuses`. Raises RobotError."""
+        reply = self.wait(self.begin_request(begin_request))
+        if reply.status and reply.status not in accepted_statuses:
             raise self.failure(reply)
         return reply
 
@@ -195,23 +200,23 @@ class Client:
 
     def send_program(
         self, image: Image, runs: bool, saves: bool, is_detached: bool,
-        draw: Callable[[int], None] = lambda done_bytes: None, profile: Robot | None = None,
+        on_progress: Callable[[int], None] = lambda done_bytes: None, profile: Robot | None = None,
     ) -> Reply[ReceiptReply]:  # fmt: skip
         """Send a program to the robot that was verified for `profile`, by default that of the
         client; return the reply.
 
-        It is refused before any byte is sent where the robot has another kit. `draw` gets the
-        number of code bytes that have arrived.
+        It is refused before any byte is sent where the robot has another kit. `on_progress` gets
+        the number of code bytes that have arrived.
         """
         profile = profile or self.profile
-        refused = refusal(image, profile, self.device_info)
-        if refused is not None:
-            return refused
+        refused_reply = refusal(image, profile, self.device_info)
+        if refused_reply is not None:
+            return refused_reply
         kit = profile.kit.fingerprint
         request = self.begin_request(
             lambda session: session.upload(image, runs, saves, is_detached, kit)
         )
-        return self.wait(request, lambda: draw(request.done_bytes))
+        return self.wait(request, lambda: on_progress(request.done_bytes))
 
     def stop(self, limit_s: float | None = None) -> bool:
         """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
@@ -264,9 +269,9 @@ class Client:
         """Return the sentences on the board that answers instead of a robot."""
         from tiniscript.link.foreign import explain
 
-        found = stranger(self.line)
-        assert found is not None
-        return explain(found, self.language)
+        board = stranger(self.line)
+        assert board is not None
+        return explain(board, self.language)
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
@@ -279,7 +284,7 @@ class Client:
         text = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         kind = ProgramError if name == "TOO_LARGE" else RobotError
-        return kind(name, self.language, said=text)
+        return kind(name, self.language, sentence_text=text)
 
 
 class Saving:
@@ -301,10 +306,10 @@ class Saving:
         """Yield while it is worth waiting, as the motors stand: learn the status each time."""
         begun_s = monotonic()
         low_s: float | None = None
-        while not self.is_over and monotonic() < begun_s + SAVE_S:
+        while not self.is_over and monotonic() < begun_s + SAVE_LIMIT_S:
             yield
             low_s = (low_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
-            if low_s is not None and monotonic() > low_s + LOW_S:
+            if low_s is not None and monotonic() > low_s + LOW_VOLTAGE_LIMIT_S:
                 return
 
     @property

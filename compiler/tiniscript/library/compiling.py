@@ -57,18 +57,20 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
-    compiled = analyze(text, kit, name)
-    return compiled if compiled.is_right else _add_findings(compiled, kit)
+    compilation = analyze(text, kit, name)
+    return compilation if compilation.is_right else _add_findings(compilation, kit)
 
 
-def _add_findings(compiled: Compiled, kit: Kit) -> Compiled:
+def _add_findings(compilation: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import told_of
 
-    read = cache(lambda text: analyze(text, kit).diagnostics)  # a repair is asked for again
-    own_kit = _kit_in(compiled.source.text, kit)
-    return compiled._replace(
-        diagnostics=told_of(compiled.source, compiled.diagnostics, read, own_kit)
+    diagnostics_of = cache(
+        lambda text: analyze(text, kit).diagnostics
+    )  # a repair is asked for again
+    own_kit = _kit_in(compilation.source.text, kit)
+    return compilation._replace(
+        diagnostics=told_of(compilation.source, compilation.diagnostics, diagnostics_of, own_kit)
     )
 
 
@@ -81,7 +83,7 @@ def analyze(text: str, kit: Kit, name: str = "") -> Compiled:
     diagnostics = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
-        if kit.given:
+        if kit.given_words:
             from tiniscript.syntax.later_words import report_given_way
 
             diagnostics += report_given_way(parsed.scan.tokens, kit, source)
@@ -98,56 +100,56 @@ def _kit_in(text: str, kit: Kit) -> Kit:
     return kit_for_text(text, kit)
 
 
-def check_size(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
-    """Return `compiled` with a message if the robot's memory is too small."""
-    over = len(compiled.code) - robot.board.program_bytes
-    if over <= 0:
-        return compiled
+def check_size(compilation: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
+    """Return `compilation` with a message if the robot's memory is too small."""
+    excess_bytes = len(compilation.code) - robot.board.program_bytes
+    if excess_bytes <= 0:
+        return compilation
     code = codes.BOARD_TOO_SMALL if is_mistake else codes.BOARD_MAY_BE_TOO_SMALL
     values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
-              "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
-    end = len(compiled.source.text)
+              "code": str(len(compilation.code)), "over": str(excess_bytes)}  # fmt: skip
+    end = len(compilation.source.text)
     diagnostic = codes.Diagnostic(code, Span(end, end), values)
-    return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
+    return compilation._replace(diagnostics=[*compilation.diagnostics, diagnostic])
 
 
-def fit_to_robot(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled`, with a mistake and no image where the robot lacks what it uses.
+def fit_to_robot(compilation: Compiled, robot: Robot) -> Compiled:
+    """Return `compilation`, with a mistake and no image where the robot lacks what it uses.
 
     For what is about to be sent to a robot, a virtual one too.
     """
-    program, verdict = compiled.program, compiled.verdict
-    if program is None or verdict is None or not compiled.is_right:
-        return compiled
+    program, verdict = compilation.program, compilation.verdict
+    if program is None or verdict is None or not compilation.is_right:
+        return compilation
     asks_remote = robot.kit.asks_remote(verdict.uses)
     if not verdict.needs and not asks_remote:
-        return compiled
+        return compilation
     from tiniscript.library.known_kits import has_remote, lacks
 
     needed = (
         (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
         (codes.NO_WAYS, GO, ir.first_way(program)),
     )
-    lacking = [
+    missing_features = [
         codes.Diagnostic(code, span, {"robot": robot.name})
-        for code, need, span in needed
-        if span is not None and lacks(need, robot)
+        for code, missing, span in needed
+        if span is not None and lacks(missing, robot)
     ]
     if asks_remote and not has_remote(robot):
-        lacking.append(_remote_missing(compiled, robot))
-    if not lacking:
-        return compiled
-    return compiled._replace(
-        diagnostics=codes.in_order([*compiled.diagnostics, *lacking]), image=b""
+        missing_features.append(_remote_missing(compilation, robot))
+    if not missing_features:
+        return compilation
+    return compilation._replace(
+        diagnostics=codes.in_order([*compilation.diagnostics, *missing_features]), image=b""
     )
 
 
-def _remote_missing(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+def _remote_missing(compilation: Compiled, robot: Robot) -> codes.Diagnostic:
     """Return the mistake of a program that asks a remote control which the robot does not have."""
     from tiniscript.bytecode.disassembly import devices_of, rows
 
-    first = next(row for row in rows(compiled.code) if robot.kit.asks_remote(devices_of(row)))
-    span = max(place for place in compiled.places if place.offset <= first.offset).span
+    first = next(row for row in rows(compilation.code) if robot.kit.asks_remote(devices_of(row)))
+    span = max(place for place in compilation.places if place.offset <= first.offset).span
     return codes.Diagnostic(codes.NO_REMOTE, span, {"robot": robot.name})
 
 
@@ -167,10 +169,10 @@ def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> 
 
 
 def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
-    compiled = check_text(text, kit, name)
-    program = compiled.program
-    if program is None or not compiled.is_right:
-        return compiled
+    compilation = check_text(text, kit, name)
+    program = compilation.program
+    if program is None or not compilation.is_right:
+        return compilation
     if program.tasks and any(procedure.values for procedure in program.procedures):
         from tiniscript.semantics.task_copies import copy_defs_per_task
 
@@ -179,15 +181,15 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
-        over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
+        values = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
         place = Span(len(text), len(text))
-        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
-        return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
+        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, values)
+        return compilation._replace(diagnostics=[*compilation.diagnostics, diagnostic])
     verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
-    return compiled._replace(lowered=program, code=lowered.code, places=lowered.places,
-                             verdict=verdict, image=image, yes_no=yes_no)  # fmt: skip
+    return compilation._replace(lowered=program, code=lowered.code, places=lowered.places,
+                                verdict=verdict, image=image, yes_no=yes_no)  # fmt: skip
 
 
 def compile_source(
@@ -208,21 +210,23 @@ def compile_source(
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
-    unknown = None if is_chosen else unknown_robot(text)
-    if unknown is not None:  # which words there are nobody knows
-        return Compiled(Source(text, name), [unknown])
+    unknown_robot_diagnostic = None if is_chosen else unknown_robot(text)
+    if unknown_robot_diagnostic is not None:  # which words there are nobody knows
+        return Compiled(Source(text, name), [unknown_robot_diagnostic])
     result = compile_text(text, robot.kit, name, optimize)
     if not result.is_right:
         return add_robot_hints(result, robot, is_chosen) if names_robots else result
     return check_size(result, robot, is_strict)
 
 
-def add_robot_hints(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
-    """Return `compiled` with hints to the robots that have a word that this robot lacks."""
+def add_robot_hints(compilation: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
+    """Return `compilation` with hints to the robots that have a word that this robot lacks."""
     from tiniscript.library.other_robots import with_robot_hints
 
-    named = with_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
-    return compiled._replace(diagnostics=named)
+    diagnostics = with_robot_hints(
+        compilation.diagnostics, compilation.source.text, robot, is_chosen
+    )
+    return compilation._replace(diagnostics=diagnostics)
 
 
 def text_of(data: bytes, name: str) -> str | Compiled:
@@ -235,12 +239,12 @@ def text_of(data: bytes, name: str) -> str | Compiled:
         return Compiled(Source("", name), [codes.Diagnostic(code, Span(0, 0))])
 
 
-def image_of(compiled: Compiled, robot: Robot) -> Image:
+def image_of(compilation: Compiled, robot: Robot) -> Image:
     """Return the image of a program without mistakes."""
-    assert compiled.program is not None and compiled.verdict is not None
-    devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), compiled.verdict.needs
-    return Image(compiled.program.start, devices, compiled.code,
-                 checksum(compiled.image), isa_for_needs(needs), needs=needs)  # fmt: skip
+    assert compilation.program is not None and compilation.verdict is not None
+    devices, needs = robot.kit.hash_of_used(compilation.verdict.uses), compilation.verdict.needs
+    return Image(compilation.program.start, devices, compilation.code,
+                 checksum(compilation.image), isa_for_needs(needs), needs=needs)  # fmt: skip
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:
@@ -253,7 +257,7 @@ def image_maker(robot: Robot) -> Callable[[str], Image | None]:
     return make
 
 
-def kit_of(compiled: Compiled, robot: Robot) -> int:
+def kit_of(compilation: Compiled, robot: Robot) -> int:
     """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
-    assert compiled.verdict is not None
-    return robot.kit.fingerprint if compiled.verdict.uses else 0
+    assert compilation.verdict is not None
+    return robot.kit.fingerprint if compilation.verdict.uses else 0

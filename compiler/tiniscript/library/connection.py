@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 VERB = "python"  # the name that other commands show for the process that holds the port
 LONGEST_S = 10**9
-LOOK_S = 0.1
+LOOK_INTERVAL_S = 0.1
 
 
 class RobotInfo(NamedTuple):
@@ -74,7 +74,7 @@ class RobotConnection:
     """
 
     def __init__(
-        self, port: str, profile: Robot, is_named: bool, baud: int | None, language: Language
+        self, port: str, profile: Robot, is_robot_named: bool, baud: int | None, language: Language
     ) -> None:
         """Internal: use `connect` instead."""
         self.port = port
@@ -88,7 +88,7 @@ class RobotConnection:
         self._is_closed = False
         self._client = Client(port, VERB, profile, baud, language)
         try:
-            self._meet(is_named)
+            self._meet(is_robot_named)
         except BaseException:
             self._part()
             raise
@@ -121,14 +121,16 @@ class RobotConnection:
         the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready = self._ready(program)
-        if ready.start == "PING":
+        ready_program = self._ready(program)
+        if ready_program.start == "PING":
             raise UsageError("ping_program", self.language)
-        reply = self._client.send_program(ready._image, run, save, detached, profile=ready._profile)
+        reply = self._client.send_program(
+            ready_program._image, run, save, detached, profile=ready_program._profile
+        )
         if reply.status:
             raise self._client.failure(reply)
         self._saving = Saving(reply.values) if save else None
-        return self._begin_run(reply.values, run and ready.start == "SI", detached)
+        return self._begin_run(reply.values, run and ready_program.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
         """Run a line once, at most 55 bytes of code, or 42 for a robot that seals; the stored
@@ -138,14 +140,14 @@ class RobotConnection:
         line to the next. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready = self._ready(line)
-        if ready.start != "SI":
-            reason = "live_button" if ready.start == "SB" else "ping_program"
+        ready_program = self._ready(line)
+        if ready_program.start != "SI":
+            reason = "live_button" if ready_program.start == "SB" else "ping_program"
             raise UsageError(reason, self.language)
-        image, kit = ready._image, ready._profile.kit.fingerprint
-        refused = refusal(image, ready._profile, self._client.device_info)
-        if refused is not None:
-            raise self._client.failure(refused)
+        image, kit = ready_program._image, ready_program._profile.kit.fingerprint
+        refused_reply = refusal(image, ready_program._profile, self._client.device_info)
+        if refused_reply is not None:
+            raise self._client.failure(refused_reply)
         reply = self._client.request(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )
@@ -183,7 +185,7 @@ class RobotConnection:
         any_run = Follower(None)
         while self._follower is None or self._ending is None:
             follower = self._follower or any_run
-            left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
+            left_s = LOOK_INTERVAL_S if end_s is None else min(LOOK_INTERVAL_S, end_s - monotonic())
             result = self._client.event(max(left_s, 0.0))
             robot_event = None
             if result is not None and self._concerns_us(follower, result[1]):
@@ -240,8 +242,10 @@ class RobotConnection:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        held = pressed_of(keys, x, y)
-        reply = self._client.wait(self._client.begin_request(lambda session: session.press(*held)))
+        pressed = pressed_of(keys, x, y)
+        reply = self._client.wait(
+            self._client.begin_request(lambda session: session.press(*pressed))
+        )
         if reply.status not in (OK, CANCELLED, LOST):
             raise self._client.failure(reply)
 
@@ -269,14 +273,14 @@ class RobotConnection:
                 for _ in self.events(0):  # it may have been replaced since
                     pass
         self._is_closed = True
-        is_others = (self._client.drives_another or self._is_replaced) and not is_interrupted
+        is_run_of_others = (self._client.drives_another or self._is_replaced) and not is_interrupted
         try:
-            if not (is_clean and self._is_detached) and not is_others:
+            if not (is_clean and self._is_detached) and not is_run_of_others:
                 self._stop()
             if is_clean:
                 self._await_saving()
         finally:
-            self._part(holds=not is_interrupted)
+            self._part(holds_port=not is_interrupted)
 
     def _stop(self) -> None:
         if not self._client.stop():
@@ -287,10 +291,10 @@ class RobotConnection:
         if self._follower is not None and self._ending is None:
             self._ending = Ending("STOPPED", cause="SEQUENCE")
 
-    def _part(self, holds: bool = False) -> None:
-        """Close the port: at once, or where it `holds` once no other command drives the robot
+    def _part(self, holds_port: bool = False) -> None:
+        """Close the port: at once, or where it `holds_port` once no other command drives the robot
         through it, which a thread waits for. The run of a client ends with this server."""
-        if not holds or not self._client.holds_for_others:
+        if not holds_port or not self._client.holds_for_others:
             self._client.close()
             return
         text = languages.text("library", "holds_for_others", self.language)
@@ -320,15 +324,15 @@ class RobotConnection:
         for _ in saving.rounds():
             saving.learn(self._client.request(Requester.status).values)
             if not saving.is_over:
-                self._client.event(LOOK_S)
+                self._client.event(LOOK_INTERVAL_S)
         if saving.reason:
             raise RobotError(saving.reason, self.language)
 
     # -- asking -----------------------------------------------------------------------------------
 
-    def _meet(self, is_named: bool) -> None:
+    def _meet(self, is_robot_named: bool) -> None:
         device_info = self._client.meet()
-        if not is_named and device_info.kit != self._profile.kit.fingerprint:
+        if not is_robot_named and device_info.kit != self._profile.kit.fingerprint:
             self._profile = robot_of_kit(device_info.kit) or self._profile
         opening.remember(self.port, device_info.name)
 
@@ -338,10 +342,10 @@ class RobotConnection:
 
     def _ready(self, program: Program | str | bytes) -> Program:
         is_made = isinstance(program, Program)
-        ready = program_of(program, None if is_made else self._profile, self.language)
-        if ready._map is not None:
-            self._reader.maps[ready.checksum] = ready._map
-        return ready
+        ready_program = program_of(program, None if is_made else self._profile, self.language)
+        if ready_program._map is not None:
+            self._reader.maps[ready_program.checksum] = ready_program._map
+        return ready_program
 
     def _begin_run(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
         # a program that waits for the button has no run number yet
@@ -379,8 +383,8 @@ def connect(
 
 def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
-    if (there := opening.last_port()) is not None:
-        return there
+    if (last_port := opening.last_port()) is not None:
+        return last_port
     last = known_ports.remembered_ports().last
     running = directory.unclaimed_robots()
     if len(running) == 1:

@@ -39,10 +39,10 @@ class Follower:
         if event.name == "RESTARTED":
             raise RobotError("restarted", language, {"port": port})
         if event.name == "STARTED" and self.run is not None:
-            is_it = event.run == self.run
-            if self.has_begun and not is_it:
+            is_own_run = event.run == self.run
+            if self.has_begun and not is_own_run:
                 raise RobotError("replaced", language, {"port": port})
-            self.has_begun = self.has_begun or is_it
+            self.has_begun = self.has_begun or is_own_run
         return self.has_begun or event.name != "STOPPED"
 
     def end(self, event: Event) -> End | None:

@@ -39,13 +39,15 @@ class TiniScriptError(Exception):
 
     def __init__(
         self, reason: str, language: str = "en", values: Mapping[str, str] | None = None,
-        said: str | None = None,
+        sentence_text: str | None = None,
     ) -> None:  # fmt: skip
-        """`said` replaces the sentence that `reason` has in the catalogue `library`."""
+        """`sentence_text` replaces the sentence that `reason` has in the catalogue `library`."""
         self.key = reason  # of its sentence, which may say more than the reason
         self.reason = _REASON_WITHOUT_HINT.get(reason, reason)
         self.values = dict(values or {})
-        super().__init__(sentence(reason, language, self.values) if said is None else said)
+        super().__init__(
+            sentence(reason, language, self.values) if sentence_text is None else sentence_text
+        )
 
 
 class UsageError(TiniScriptError, ValueError):

@@ -58,25 +58,25 @@ class Reader:
 
     def to_robot_event(self, time_ms: int, event: Event) -> RobotEvent | None:
         """Return an event as data, or None for an internal event of the link."""
-        found: dict[str, Value] = {}
+        fields: dict[str, Value] = {}
         if event.name == "SHOW":
-            found = {"value": value_of(event.value, bool(event.is_yes_no))}
+            fields = {"value": value_of(event.value, bool(event.is_yes_no))}
             show = self._shows.show_of(event)
             if show is not None:
-                found |= {"name": show.text, "line": show.line, "column": show.column}
+                fields |= {"name": show.text, "line": show.line, "column": show.column}
         elif event.name == "STARTED":
-            found = {"checksum": event.program}
+            fields = {"checksum": event.program}
         elif event.name == "FAULT":
-            found = self._fault(event)
+            fields = self._fault(event)
         elif event.name == "STOPPED":
-            found = {"cause": cause_name(event.cause)}
+            fields = {"cause": cause_name(event.cause)}
         elif event.name == "MISSED":
-            found = {"count": event.count}
+            fields = {"count": event.count}
         elif event.name == "TEXT":
-            found = {"text": printable(event.text.decode("utf-8", "replace"))}
+            fields = {"text": printable(event.text.decode("utf-8", "replace"))}
         elif event.name != "DONE":
             return None
-        return RobotEvent(time_ms - self._began_ms, event.name, found)
+        return RobotEvent(time_ms - self._began_ms, event.name, fields)
 
     def _fault(self, event: FaultEvent) -> dict[str, Value]:
         places = self._shows.map_of(event.run, event.program)

@@ -44,10 +44,10 @@ def install_command(extra: str) -> list[str] | None:
     if not expected or is_pipx() or is_managed() or find_spec("pip") is None:
         return None
     lock = LOCKS.get(extra)
-    named = (
+    package_names = (
         ["--require-hashes", "-r", str(lock)] if lock is not None and lock.is_file() else expected
     )
-    return [sys.executable, "-m", "pip", "install", "--no-input", *named]
+    return [sys.executable, "-m", "pip", "install", "--no-input", *package_names]
 
 
 def is_clone(folder: Path) -> bool:

@@ -39,7 +39,7 @@ def may_run(image: Image, profile: Robot, kit: int) -> bool:
     if not image.devices or kit == profile.kit.fingerprint:
         return True
     robot = robot_of_kit(kit)
-    return robot is None or fits(image, robot)
+    return robot is None or is_runnable(image, robot)
 
 
 def find_robot_for(image: Image, first: Robot) -> Robot | None:
@@ -47,14 +47,17 @@ def find_robot_for(image: Image, first: Robot) -> Robot | None:
 
     Returns None if no such robot is known.
     """
-    if fits(image, first):
+    if is_runnable(image, first):
         return first
     shipped = (robots.load(name) for name in robots.names())
-    others = (robot for _, robot in given.profiles())
-    return next((robot for item in (shipped, others) for robot in item if fits(image, robot)), None)
+    given_robots = (robot for _, robot in given.profiles())
+    return next(
+        (robot for item in (shipped, given_robots) for robot in item if is_runnable(image, robot)),
+        None,
+    )
 
 
-def fits(image: Image, robot: Robot) -> bool:
+def is_runnable(image: Image, robot: Robot) -> bool:
     """Return whether a robot may run an image that `unpack` has read."""
     try:
         check(image, robot.kit)
@@ -65,12 +68,12 @@ def fits(image: Image, robot: Robot) -> bool:
 
 def lacks(needs: int, robot: Robot) -> bool:
     """Return whether the robot's firmware lacks something of `needs` in an image."""
-    has = CHIPS[robot.board.chip].has
+    capabilities = CHIPS[robot.board.chip].capabilities
     if robot.board.discs:  # on a Nano they have the place of the reader of text, and leave some
-        has |= TASKS
+        capabilities |= TASKS
     if not robot.kit.speed and not robot.kit.turn:
-        has &= ~GO
-    return bool(needs & ~has)
+        capabilities &= ~GO
+    return bool(needs & ~capabilities)
 
 
 def has_remote(robot: Robot) -> bool:

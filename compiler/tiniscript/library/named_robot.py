@@ -45,10 +45,10 @@ def rename_robot(text: str, name: str) -> str:
     return text if result is None else apply_edits(text, [Edit(result.span, name)])
 
 
-def robot_of(data: bytes, usual: Robot) -> Robot:
-    """Return the shipped robot that a program's text names, else `usual`."""
+def robot_of(data: bytes, default: Robot) -> Robot:
+    """Return the shipped robot that a program's text names, else `default`."""
     name = shipped_name_in(data)
-    return usual if name in (None, usual.name) else robots.load(str(name))
+    return default if name in (None, default.name) else robots.load(str(name))
 
 
 def shipped_name_in(data: bytes) -> str | None:

@@ -28,11 +28,11 @@ from tiniscript.virtual import directory
 if TYPE_CHECKING:
     from tiniscript.link.port_connection import PortConnection
 
-BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
+BUSY_LIMIT_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
-RETRY_S = 0.05
+RETRY_INTERVAL_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
-OPEN_S = 20.0  # timeout for opening a port
+OPEN_LIMIT_S = 20.0  # timeout for opening a port
 MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
 ANSWER_MS = 6000  # timeout for HELLO by radio
@@ -46,7 +46,7 @@ CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops 
 
 
 def connection_to(
-    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_S,
+    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_LIMIT_S,
     asked_baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
@@ -74,13 +74,13 @@ def connection_to(
             return line
         except RobotError as failure:
             waited_s = monotonic() - begun_s
-            if failure.reason != "port_busy" or (waited_s > BUSY_S and not is_stop):
+            if failure.reason != "port_busy" or (waited_s > BUSY_LIMIT_S and not is_stop):
                 raise
         if is_stop:
             past = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
             if past is not None:
                 return past
-        sleep(RETRY_S)
+        sleep(RETRY_INTERVAL_S)
 
 
 def _is_suspended(address: str) -> bool:
@@ -116,12 +116,12 @@ def _connect_past_holder(
 
 def _open_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
-    port: str, verb: str = "", is_past: bool = False,
+    port: str, verb: str = "", opens_past_lock: bool = False,
 ) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
-    `port` is the port's name in sentences. The line closes the lock. `is_past`: a serial port that
-    another program has locked.
+    `port` is the port's name in sentences. The line closes the lock. `opens_past_lock`: a serial
+    port that another program has locked.
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.port_connection import PortConnection
@@ -131,7 +131,7 @@ def _open_line(
     with ExitStack() as unless_it_fails:
         if lock is not None:
             unless_it_fails.callback(lock.close)
-        open_it = open_past_lock if is_past else open_port
+        open_it = open_past_lock if opens_past_lock else open_port
         try:
             device = open_it(address, baud, limit_s)
         except PortError as failure:
@@ -167,9 +167,9 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(item.port for item in ports.list_ports())
-        if known:
-            reason, values["known"] = "port_missing_but", printable_name(known)
+        ports_text = ", ".join(item.port for item in ports.list_ports())
+        if ports_text:
+            reason, values["known"] = "port_missing_but", printable_name(ports_text)
     return RobotError(reason, language, values)
 
 

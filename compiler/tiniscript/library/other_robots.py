@@ -55,47 +55,61 @@ def _add_robot_name(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def hints_among(
-    others: Mapping[str, Kit], diagnostics: Sequence[Diagnostic], text: str, name: str, kit: Kit
+    other_kits: Mapping[str, Kit], diagnostics: Sequence[Diagnostic], text: str, name: str, kit: Kit
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
     Where a robot has all kit words of the program, those that lack one are not named. Words that
     lead to the same robots are one mistake, of the first of them.
     """
-    own = set(kit.names)
-    known = {robot: set(own_kit.names) for robot, own_kit in others.items() if robot != name}
-    kit_names = own.union(*known.values())
+    own_words = set(kit.names)
+    words_by_robot = {
+        robot: set(own_kit.names) for robot, own_kit in other_kits.items() if robot != name
+    }
+    kit_names = own_words.union(*words_by_robot.values())
     texts = {token.text for token in scan(text).tokens if token.kind is WORD}
-    used = {word if word in kit_names else lexicon_concept(word) for word in texts} & kit_names
+    words_used = {
+        word if word in kit_names else lexicon_concept(word) for word in texts
+    } & kit_names
     own_name = named_robot(text)
     named_name = own_name.name.lower() if own_name else ""
-    whole = [robot for robot, own_kit in known.items() if used <= own_kit]
-    named: list[Diagnostic] = []
+    full_kits = [robot for robot, own_kit in words_by_robot.items() if words_used <= own_kit]
+    robots_named: list[Diagnostic] = []
     messages: list[set[str]] = []  # robots that words have led to
-    codes = {*_UNKNOWN_CODES, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN_CODES}
+    codes = {*_UNKNOWN_CODES, NO_BUTTON} if words_used - own_words - {BUTTON} else {*_UNKNOWN_CODES}
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
         word = BUTTON if diagnostic.code is NO_BUTTON else word
         word = word if word in kit_names else lexicon_concept(word) or word
         stem = "".join(lexicon_meaning(word, "stem"))
         side = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
-        word = side if side in kit_names - own else word
-        having = [robot for robot, own_kit in known.items() if word in own_kit - own]
-        if diagnostic.code in codes and having:
-            having = [item for item in having if item in whole] or having
+        word = side if side in kit_names - own_words else word
+        robots_with_word = [
+            robot for robot, own_kit in words_by_robot.items() if word in own_kit - own_words
+        ]
+        if diagnostic.code in codes and robots_with_word:
+            robots_with_word = [
+                item for item in robots_with_word if item in full_kits
+            ] or robots_with_word
             # that which the program names is meant, else one with more of its words, or of a lesson
-            having.sort(
+            robots_with_word.sort(
                 key=lambda item: (
-                    item != named_name, -len(used & known[item]), item not in LESSON_ROBOTS,
+                    item != named_name,
+                    -len(words_used & words_by_robot[item]),
+                    item not in LESSON_ROBOTS,
                 )
-            )  # fmt: skip
-            if any(item <= {*having} for item in messages):
+            )
+            if any(item <= {*robots_with_word} for item in messages):
                 continue
-            messages.append({*having})
-            values = {"found": word, "own": name, **dict(zip(_ORDINALS, having, strict=False))}
+            messages.append({*robots_with_word})
+            values = {
+                "found": word,
+                "own": name,
+                **dict(zip(_ORDINALS, robots_with_word, strict=False)),
+            }
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
-        named.append(diagnostic)
-    return named
+        robots_named.append(diagnostic)
+    return robots_named
 
 
 def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
@@ -113,16 +127,16 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
 
 def _other_kits() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
-    others: dict[str, Kit] = {}
+    kits: dict[str, Kit] = {}
     for name in robots.names():
         kit = robots.load(name).kit
-        if kit not in others.values():  # robots on other boards may have the kit of one
-            others[name] = kit
+        if kit not in kits.values():  # robots on other boards may have the kit of one
+            kits[name] = kit
     for path, robot in given.profiles():
         try:
-            near = min(path, os.path.relpath(path), key=len)
+            shorter_path = min(path, os.path.relpath(path), key=len)
         except ValueError:  # Windows: the path is on another drive
-            near = path
-        if len(near) <= SHOWN_CHARACTERS and " " not in near:
-            others[near] = robot.kit
-    return others
+            shorter_path = path
+        if len(shorter_path) <= SHOWN_CHARACTERS and " " not in shorter_path:
+            kits[shorter_path] = robot.kit
+    return kits

@@ -42,14 +42,19 @@ class Program:
     __slots__ = ("_image", "_map", "_profile", "diagnostics", "image", "text")
 
     def __init__(
-        self, text: str | None, image: bytes, parsed: Image, profile: Robot, places: Map | None,
+        self,
+        text: str | None,
+        image: bytes,
+        parsed_image: Image,
+        profile: Robot,
+        places: Map | None,
         diagnostics: tuple[Message, ...],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Internal: use `compile` instead."""
         self.text = text
         self.image = image
         self.diagnostics = diagnostics
-        self._image = parsed
+        self._image = parsed_image
         self._profile = profile
         self._map = places
 
@@ -158,8 +163,8 @@ def program_of(
     else:
         profile = robot
     if isinstance(program, Program):
-        parsed = _read(program.image, profile, language)
-        return Program(program.text, program.image, parsed, profile, program._map,
+        parsed_image = _read(program.image, profile, language)
+        return Program(program.text, program.image, parsed_image, profile, program._map,
                        program.diagnostics)  # fmt: skip
     if not isinstance(program, bytes | bytearray):
         raise UsageError(
@@ -168,8 +173,8 @@ def program_of(
     data = bytes(program)
     if robot is None:
         profile = find_robot_for(_unpack(data, language), profile) or profile
-    parsed = _read(data, profile, language)
-    return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
+    parsed_image = _read(data, profile, language)
+    return Program(None, data, parsed_image, profile, source_map.recall(parsed_image.checksum), ())
 
 
 def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
@@ -180,12 +185,14 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
     try:
         return robots.load(os.fspath(robot))
     except ProfileRefused as refused:
-        said = {"reasons": "\n".join(describe(refused, language))}
-        raise UsageError("profile_refused", language, said) from None
+        values = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("profile_refused", language, values) from None
 
 
-def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
-    return [message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics]
+def diagnostics_of(compilation: Compiled, language: Language) -> list[Message]:
+    return [
+        message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
+    ]
 
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
@@ -195,11 +202,11 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
         return result
     for place in places.places:
         line = places.line(place.line)
-        shown = line.strip()
-        if len(shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
+        code_shown = line.strip()
+        if len(code_shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
             end = place.end_column - 1 if place.end_line == place.line else len(line)
-            shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
-        values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
+            code_shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
+        values = {"line": str(place.line), "shown": printable(code_shown.replace("\t", " "))}
         result[place.offset] = sentence("line", language, values)
     return result
 
@@ -223,16 +230,21 @@ def _program(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, optimize: bool,
     language: Language,
 ) -> Program:  # fmt: skip
-    found, profile = _compile_for(text, robot, name, language, optimize=optimize)
-    diagnostics = tuple(diagnostics_of(found, language))
-    if not found.is_right:
-        texts = [as_text(message(diagnostic, found.source, language), found.source, language)
-                for diagnostic in found.diagnostics]  # fmt: skip
-        error = ProgramError("mistakes", language, said="\n".join(texts))
+    compilation, profile = _compile_for(text, robot, name, language, optimize=optimize)
+    diagnostics = tuple(diagnostics_of(compilation, language))
+    if not compilation.is_right:
+        source = compilation.source
+        texts = [
+            as_text(message(diagnostic, source, language), source, language)
+            for diagnostic in compilation.diagnostics
+        ]
+        error = ProgramError("mistakes", language, sentence_text="\n".join(texts))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.map_of_compiled(found)
-    return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
+    places = source_map.map_of_compiled(compilation)
+    return Program(
+        text, compilation.image, image_of(compilation, profile), profile, places, diagnostics
+    )
 
 
 def _data(text: str) -> bytes:

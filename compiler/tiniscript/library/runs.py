@@ -23,7 +23,7 @@ from tiniscript.vm.tasks import machine_of as python_machine
 Value = float | bool | str  # an int where a number has no decimals
 Readings = Mapping[str, "float | bool | Sequence[float | bool]"]
 
-LONGEST_S = 10**9
+LONGEST_RUN_S = 10**9
 MOST_STEPS = 10**15
 LARGEST_SEED = 2**32 - 1
 
@@ -92,12 +92,12 @@ def run(
     no time passes, `seed` is that of RANDOM. Raises ProgramError for mistakes, UsageError for wrong
     arguments. A fault raises nothing: `ending` reports it.
     """
-    ready = program_of(program, robot, language)
-    profile, image = ready._profile, ready._image
-    max_ms = round(checked_number("max_time", max_time, 0, LONGEST_S, language) * 1000)
+    ready_program = program_of(program, robot, language)
+    profile, image = ready_program._profile, ready_program._image
+    max_ms = round(checked_number("max_time", max_time, 0, LONGEST_RUN_S, language) * 1000)
     check_whole_number("max_steps", max_steps, 0, MOST_STEPS, language)
     check_whole_number("seed", seed, 1, LARGEST_SEED, language)
-    lists = thousandths(sensors or {}, profile, language)
+    reading_lists = thousandths(sensors or {}, profile, language)
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
@@ -107,21 +107,28 @@ def run(
         except (ImportError, OSError, RuntimeError) as why:
             from tiniscript.library import install_advice
 
-            how = install_advice.command(install_advice.VIRTUAL)
-            raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
+            install_command = install_advice.command(install_advice.VIRTUAL)
+            raise UsageError(
+                "no_wasmtime", language, {"why": str(why), "how": install_command}
+            ) from None
     return _trace(
-        iter_actions(image, profile, lists, max_ms, max_steps, seed, machine_of),
+        iter_actions(image, profile, reading_lists, max_ms, max_steps, seed, machine_of),
         profile.kit,
-        ready._map,
+        ready_program._map,
     )
 
 
 def iter_actions(
-    image: Image, robot: Robot, lists: Mapping[int, Sequence[int]], max_ms: int, max_steps: int,
-    seed: int, machine_of: MachineOf | None = None,
-) -> Iterator[Event | Ending]:  # fmt: skip
-    """Yield the actions of a robot with a verified image. `lists` are readings in thousandths."""
-    senses = Senses(robot.kit, lists)
+    image: Image,
+    robot: Robot,
+    reading_lists: Mapping[int, Sequence[int]],
+    max_ms: int,
+    max_steps: int,
+    seed: int,
+    machine_of: MachineOf | None = None,
+) -> Iterator[Event | Ending]:
+    """Yield the actions of a robot with a verified image. Readings are in thousandths."""
+    senses = Senses(robot.kit, reading_lists)
     return run_code(
         image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or python_machine
     )
@@ -146,21 +153,21 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     """Return readings in thousandths, by sensor number. Raises UsageError."""
     devices = robot.kit.readings
     numbers = {device.name: number for number, device in enumerate(devices) if device.name}
-    lists: dict[int, list[int]] = {}
+    reading_lists: dict[int, list[int]] = {}
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
-            known = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
+            sensors_text = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
                 "no_sensors", language, {}
             )
-            values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
+            values = {"robot": robot.name, "found": printable(str(name), 60), "known": sensors_text}
             raise UsageError("no_sensor", language, values)
-        several = readings if isinstance(readings, Iterable) else [readings]
-        result = [] if isinstance(several, str | bytes) else list(several)
+        reading_list = readings if isinstance(readings, Iterable) else [readings]
+        result = [] if isinstance(reading_list, str | bytes) else list(reading_list)
         if not result:
             raise UsageError("bad_readings", language, {"name": devices[number].name})
-        lists[number] = [_reading(devices[number], item, language) for item in result]
-    return lists
+        reading_lists[number] = [_reading(devices[number], item, language) for item in result]
+    return reading_lists
 
 
 def fault_of(name: str, offset: int, places: Map | None) -> Fault:
@@ -193,46 +200,59 @@ def _event(event: Event, kit: Kit) -> TraceEvent:
         is_yes_no = event.text.endswith(("TRUE", "FALSE"))
         values = {"value": value_of(numbers[0], is_yes_no)}
     elif event.what in ("READ", "SET"):
-        what, devices = {"READ": ("sensor", kit.readings), "SET": ("actuator", kit.actuators)}[
-            event.what
-        ]
+        device_kind, devices = {
+            "READ": ("sensor", kit.readings),
+            "SET": ("actuator", kit.actuators),
+        }[event.what]
         device = devices[numbers[0]]
-        values = {what: device.name, "value": value_of(numbers[1], device.is_yes_no)}
+        values = {device_kind: device.name, "value": value_of(numbers[1], device.is_yes_no)}
     return TraceEvent(event.time_ms, event.what, values, event.text)
 
 
-def _reading(device: Device, found: object, language: Language) -> int:
+def _reading(device: Device, given_value: object, language: Language) -> int:
     value: int | None = None
     if device.is_yes_no:
-        value = int(found) if found in (0, 1) and isinstance(found, int | float) else None
-    elif isinstance(found, int | float) and not isinstance(found, bool) and abs(found) < 1e9:
-        value = round(found * 1000)
+        value = (
+            int(given_value)
+            if given_value in (0, 1) and isinstance(given_value, int | float)
+            else None
+        )
+    elif (
+        isinstance(given_value, int | float)
+        and not isinstance(given_value, bool)
+        and abs(given_value) < 1e9
+    ):
+        value = round(given_value * 1000)
     if value is None or not device.low <= value <= device.high:
         low, high = device.text(device.low), device.text(device.high)
         key = "range_yes_no" if device.is_yes_no else "range"
-        allowed = sentence(key, language, {"low": low, "high": high})
-        values = {"found": printable(repr(found), 60), "name": device.name, "range": allowed}
+        range_text = sentence(key, language, {"low": low, "high": high})
+        values = {
+            "found": printable(repr(given_value), 60),
+            "name": device.name,
+            "range": range_text,
+        }
         raise UsageError("bad_reading", language, values)
     return value
 
 
-def checked_number(name: str, found: object, low: float, high: float, language: Language) -> float:
+def checked_number(name: str, number: object, low: float, high: float, language: Language) -> float:
     """Return an argument that must be a number in a range. Raises UsageError."""
-    if isinstance(found, int | float) and not isinstance(found, bool) and low <= found <= high:
-        return found
-    raise _bad_number(name, found, low, high, language)
+    if isinstance(number, int | float) and not isinstance(number, bool) and low <= number <= high:
+        return number
+    raise _bad_number(name, number, low, high, language)
 
 
-def check_whole_number(name: str, found: object, low: int, high: int, language: Language) -> None:
+def check_whole_number(name: str, number: object, low: int, high: int, language: Language) -> None:
     """Check an argument that must be a whole number in a range. Raises UsageError."""
-    if isinstance(found, float):
-        raise _bad_number(name, found, low, high, language)
-    checked_number(name, found, low, high, language)
+    if isinstance(number, float):
+        raise _bad_number(name, number, low, high, language)
+    checked_number(name, number, low, high, language)
 
 
 def _bad_number(
-    name: str, found: object, low: float, high: float, language: Language
+    name: str, number: object, low: float, high: float, language: Language
 ) -> UsageError:
-    allowed = sentence("range", language, {"low": str(low), "high": str(high)})
-    values = {"name": name, "found": printable(repr(found), 60), "range": allowed}
+    range_text = sentence("range", language, {"low": str(low), "high": str(high)})
+    values = {"name": name, "found": printable(repr(number), 60), "range": range_text}
     return UsageError("bad_number", language, values)

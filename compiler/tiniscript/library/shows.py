@@ -40,13 +40,13 @@ class Shows:
 
     def __init__(self, places: Map) -> None:
         self._places = places
-        found = {place[1:]: expression_of(places, place) for place in places.places}
-        named = {place: text for place, text in found.items() if text}
-        texts = Counter(named.values())
-        lines = Counter((text, place[0]) for place, text in named.items())
+        expression_by_place = {place[1:]: expression_of(places, place) for place in places.places}
+        named_places = {place: text for place, text in expression_by_place.items() if text}
+        texts = Counter(named_places.values())
+        lines = Counter((text, place[0]) for place, text in named_places.items())
         self._shows = {
             place: Show(text, *place[:2], texts[text] > 1, lines[text, place[0]] > 1)
-            for place, text in named.items()
+            for place, text in named_places.items()
         }
 
     def at(self, offset: int) -> Show | None:
@@ -56,12 +56,12 @@ class Shows:
 
 
 class Finder:
-    """Finds the SHOW of a value. `own` has the maps of programs that are known here, by checksum;
-    those of others are in the cache. A run keeps the text that its program had when it began, or
-    when it was first heard of: another one may have the same code."""
+    """Finds the SHOW of a value. `own_maps` has the maps of programs that are known here, by
+    checksum; those of others are in the cache. A run keeps the text that its program had when it
+    began, or when it was first heard of: another one may have the same code."""
 
-    def __init__(self, own: Mapping[int, Map] | None = None) -> None:
-        self._own = {} if own is None else own
+    def __init__(self, own_maps: Mapping[int, Map] | None = None) -> None:
+        self._own = {} if own_maps is None else own_maps
         self._runs: dict[int, tuple[int, Map]] = {}  # its program, which comes round again
         self._shows: tuple[Map, Shows] | None = None
 
@@ -72,8 +72,8 @@ class Finder:
 
     def map_of(self, run: int, program: int) -> Map | None:
         """Return the map of a run's program."""
-        begun, places = self._runs.get(run, (-1, None))
-        if begun != program:
+        begin_ms, places = self._runs.get(run, (-1, None))
+        if begin_ms != program:
             places = self._own.get(program) or source_map.recall(program)
             if places is not None:
                 self._runs[run] = program, places

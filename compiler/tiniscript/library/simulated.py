@@ -96,7 +96,7 @@ class VirtualRobotConnection(RobotConnection):
         """Push and release its start button."""
         self._simulated.push()
 
-    def _part(self, holds: bool = False) -> None:
+    def _part(self, holds_port: bool = False) -> None:
         """Close it at once: nobody drives a virtual robot that has ended."""
         try:
             super()._part()
@@ -127,8 +127,10 @@ def _make_robot(profile: Robot, world: str, settings: Settings, language: Langua
     try:
         return VirtualRobot(profile.with_language(language), worlds.load(world), settings)
     except NoWebAssembly as why:
-        how = install_advice.command(install_advice.VIRTUAL)
-        raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
+        install_command = install_advice.command(install_advice.VIRTUAL)
+        raise UsageError(
+            "no_wasmtime", language, {"why": str(why), "how": install_command}
+        ) from None
     except WorldRefused as refused:
-        said = {"reasons": "\n".join(describe(refused, language))}
-        raise UsageError("world_refused", language, said) from None
+        values = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("world_refused", language, values) from None

@@ -64,8 +64,8 @@ class Map(NamedTuple):
         if not any(word in TASKS for word, _ in blocks):
             return None
         for word, map_location in blocks:
-            is_around = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
-            if is_around and word in (*TASKS, "DEF"):
+            is_enclosing = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
+            if is_enclosing and word in (*TASKS, "DEF"):
                 return None if word == "DEF" else (word, map_location.line)
         return "", 0
 
@@ -77,18 +77,18 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def map_of_compiled(compiled: Compiled) -> Map:
+def map_of_compiled(compilation: Compiled) -> Map:
     """Return the map of a program that has just been compiled."""
-    source = compiled.source
+    source = compilation.source
     map_locations = tuple(
         MapLocation(
             place.offset, *source.position(place.span.start), *source.position(place.span.end)
         )
-        for place in compiled.places
+        for place in compilation.places
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, map_locations, compiled.variables, compiled.yes_no)
+    return Map(source.name, lines, map_locations, compilation.variables, compilation.yes_no)
 
 
 def as_json(places: Map) -> str:
@@ -161,10 +161,10 @@ def _path(checksum: int) -> Path:
 def _forget_oldest(folder: Path) -> None:
     names = os.listdir(folder)  # noqa: PTH208 - a thousand Paths cost more than their names
     files.remove_abandoned(folder, names)
-    known = [name for name in names if name.endswith(".json")]
-    if len(known) > MOST_MAPS:
-        result = sorted((_modification_s(folder / name), name) for name in known)
-        for _, name in result[: len(known) - MOST_MAPS]:
+    map_names = [name for name in names if name.endswith(".json")]
+    if len(map_names) > MOST_MAPS:
+        result = sorted((_modification_s(folder / name), name) for name in map_names)
+        for _, name in result[: len(map_names) - MOST_MAPS]:
             with suppress(OSError):
                 (folder / name).unlink()
 

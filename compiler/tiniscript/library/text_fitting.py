@@ -22,8 +22,8 @@ from tiniscript.syntax.parser import parse
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
-    parsed = parse(source)
-    tokens = list(spell_out(parsed.scan.tokens))
+    parsed_program = parse(source)
+    tokens = list(spell_out(parsed_program.scan.tokens))
     ends = ("end", "alias")  # what begins their block says it
     lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
     diagnostics = [
@@ -44,10 +44,10 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     if reader.one_too_many is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
         diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
-    for need in reader.needs:
-        if need.bytes > level.room:
+    for need_of_bytes in reader.needs:
+        if need_of_bytes.byte_count > level.room:
             diagnostics.append(
-                _too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room)
+                _too_many(codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most, level.room)
             )
             break
     return diagnostics
@@ -55,15 +55,17 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
 
 def _value_problems(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    values, yes_no = [], yes_no_variables(program, kit)
+    problems, yes_no = [], yes_no_variables(program, kit)
     for procedure, tasks in zip(program.procedures, count_tasks_by_def(program), strict=True):
-        said = {"level": level.name, "name": procedure.name}
+        level_values = {"level": level.name, "name": procedure.name}
         place = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):
-            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "yes_no": name}))
+            problems.append(Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "yes_no": name}))
         if procedure.values and tasks > 1:
-            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "count": str(tasks)}))
-    return values
+            problems.append(
+                Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "count": str(tasks)})
+            )
+    return problems
 
 
 def _first_span_beyond(code: PlainCode, limit: int) -> Span:

@@ -9,10 +9,10 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.recovery.meanings import meant_by, plain
 
-_NEAR = 80  # characters around a value in which its call is looked for
-_BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
-_AFTER = re.compile(r"[^()\r\n;]*\)")
-_ASKED = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
+_CALL_REACH = 80  # characters around a value in which its call is looked for
+_CALL_START = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
+_CALL_END = re.compile(r"[^()\r\n;]*\)")
+_COMPARED_WORD = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
 _SAMPLES = {"n": "3", "seconds": "2", "power": "50"}
 _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a variable
 
@@ -21,36 +21,43 @@ def is_amount(*words: str) -> bool:
     return any(lexicon_meaning(plain(word), "amount") for word in words)
 
 
-def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
+def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[str, str]:
     """Return how the call around a value is written with numbers, nothing where there is none.
 
-    All its values in words get one, but for the program's `own` names. `DISTANCE < poco` and
+    All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
     `X = mucho` are shown alone.
     """
-    before = text[max(0, span.start - _NEAR) : span.start]
+    before = text[max(0, span.start - _CALL_REACH) : span.start]
     amount = text[slice(*span)]
-    if match := _ASKED.search(before):
+    if match := _COMPARED_WORD.search(before):
         name = meant_by(match[1].upper()) or match[1].upper()
         sample = _CENTIMETRES if name == "DISTANCE" else _ANY
         return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
-    call, after = _BEFORE.search(before), _AFTER.match(text[span.end : span.end + _NEAR])
+    call, after = (
+        _CALL_START.search(before),
+        _CALL_END.match(text[span.end : span.end + _CALL_REACH]),
+    )
     word = WORDS.get(call[1].upper()) if call else None
     if call is None or after is None or word is None:
         return {}
     place = call[2].count(",")
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
     amount = values[place].strip()
-    is_asked = any(sign in amount for sign in "<>=")  # a part of it is no number
-    if is_asked or not any(is_amount(*value.split()) for value in values):
+    is_comparison = any(sign in amount for sign in "<>=")  # a part of it is no number
+    if is_comparison or not any(is_amount(*value.split()) for value in values):
         return {}
-    for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
-        words = [word for word in plain(value).split() if word not in own]
+    for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):
+        words = [word for word in plain(value).split() if word not in own_names]
         texts = [
             lexicon_meaning(word, "power")[0] for word in words if lexicon_meaning(word, "power")
         ]
         if texts or is_amount(*words) or k == place:
-            sample = texts[0] if texts and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
-            sample = _own_number(words, its.unit) or sample
+            sample = (
+                texts[0]
+                if texts and argument.unit == "%"
+                else _SAMPLES.get(argument.name, argument.sample)
+            )
+            sample = _own_number(words, argument.unit) or sample
             values[k] = f"{' ' * (k > 0)}{sample}"
     head = call[0][: len(call[0]) - len(call[2])]
     return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
@@ -60,5 +67,7 @@ def _own_number(words: Sequence[str], unit: str) -> str:
     """Return the number that words for an amount say in its unit: `muy lento 5 segundos`."""
     units = {lexicon_meaning(word, "unit")[0] for word in words if lexicon_meaning(word, "unit")}
     numbers = [(lexicon_meaning(word, "number") or (word,))[0] for word in words]
-    matches = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
-    return matches[0] if len(matches) == 1 and units <= {unit} else ""
+    fitting_numbers = [
+        it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")
+    ]
+    return fitting_numbers[0] if len(fitting_numbers) == 1 and units <= {unit} else ""

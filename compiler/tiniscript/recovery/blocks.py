@@ -13,13 +13,13 @@ from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.lines import ANY_END, Reading
-from tiniscript.recovery.meanings import ENDED, Lexeme, made, texts
+from tiniscript.recovery.meanings import WORD_OF_END, Lexeme, made, texts
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
-_ASKING = ("IF", "WHILE", "WHEN")
-_REMOTE = frozenset(device.name for device in REMOTE)
-LONGEST = 200  # items behind an ELSE whose ends are counted
+_ASKING_WORDS = ("IF", "WHILE", "WHEN")
+_REMOTE_NAMES = frozenset(device.name for device in REMOTE)
+MOST_ITEMS_AFTER_ELSE = 200  # items behind an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -43,7 +43,7 @@ class Edit(NamedTuple):
     new: list[Lexeme]
 
 
-_UNREAD = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
+_UNREADABLE_ITEMS = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
 
 
 class _Block:
@@ -73,10 +73,10 @@ def _is_behind(item: Item, reading: Reading) -> bool:
     """
     tokens, items = reading.tokens, reading.items or ()
     before = [entry.kind for entry in items if entry.start < item.start][-1:]
-    if item.word not in _ASKING or before != ["do"] or item.end >= len(tokens):
+    if item.word not in _ASKING_WORDS or before != ["do"] or item.end >= len(tokens):
         return False
-    apart, after = tokens[item.start - 1], tokens[item.end]
-    return apart.source is None and after.text == ";" and after.source is not None
+    bracket_before, after = tokens[item.start - 1], tokens[item.end]
+    return bracket_before.source is None and after.text == ";" and after.source is not None
 
 
 class Matching:
@@ -91,7 +91,7 @@ class Matching:
         self.flat = [
             (k, item)
             for k, line in enumerate(lines)
-            for item in (_UNREAD if line.reading.items is None else line.reading.items)
+            for item in (_UNREADABLE_ITEMS if line.reading.items is None else line.reading.items)
         ]
         self.flat.append((len(lines), Item("", "", 0, 0)))
         self.open: list[_Block] = []
@@ -105,14 +105,14 @@ class Matching:
         last = -1
         for place, (k, item) in enumerate(self.flat[:-1]):
             self.place, self.k, self.line, self.item = place, k, self.lines[k], item
-            below, self.after = self.flat[place + 1]
+            next_line, self.after = self.flat[place + 1]
             if k != last:
                 self.begin_line(last)
                 last = k
             if not self.read():
                 return False
-            if below != k:
-                self.end_line(self.lines[below].indent if below < len(self.lines) else 0)
+            if next_line != k:
+                self.end_line(self.lines[next_line].indent if next_line < len(self.lines) else 0)
         while self.open:
             block = self.open.pop()
             if not block.word or self.item.kind in ("open", "{"):
@@ -125,11 +125,11 @@ class Matching:
             self.close_behind(last if block.last is None else block.last, block)
         return True
 
-    def edit(self, old: int, *new: str) -> None:
-        self.edit_tokens(self.item.start, old, [made(item) for item in new])
+    def edit(self, old: int, *new_lexemes: str) -> None:
+        self.edit_tokens(self.item.start, old, [made(item) for item in new_lexemes])
 
-    def edit_tokens(self, at: int, old: int, new: list[Lexeme]) -> None:
-        self.edits.setdefault(self.k, []).append(Edit(at, old, new))
+    def edit_tokens(self, at: int, old: int, new_lexemes: list[Lexeme]) -> None:
+        self.edits.setdefault(self.k, []).append(Edit(at, old, new_lexemes))
 
     def close_behind(self, k: int, block: _Block) -> None:
         self.behind.setdefault(k, []).append(" " * block.indent + block.end)
@@ -140,8 +140,8 @@ class Matching:
         indent = self.line.indent
         while self.open and self.item.kind in ("open", "do"):
             block = self.open[-1]
-            is_left = indent < (block.body or 0) and indent <= block.indent
-            if not is_left or block.has_brace:
+            is_further_left = indent < (block.body or 0) and indent <= block.indent
+            if not is_further_left or block.has_brace:
                 break
             self.open.pop()
             self.is_sure = self.is_sure and block.is_begun
@@ -188,10 +188,12 @@ class Matching:
         if self.open or not self.line.is_when or self.item.word != "IF":
             return False
         line, part = next(self.parts(), (self.k, self.item))
-        ended = ENDED.get(part.word)
-        if not _REMOTE.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
-            return part.kind != "end" or ended != "IF"
-        return part.kind == "end" and (ended == "WHEN" or (line != self.k and ended != "IF"))
+        ended_word = WORD_OF_END.get(part.word)
+        if not _REMOTE_NAMES.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
+            return part.kind != "end" or ended_word != "IF"
+        return part.kind == "end" and (
+            ended_word == "WHEN" or (line != self.k and ended_word != "IF")
+        )
 
     def is_end_of_do(self) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
@@ -199,9 +201,9 @@ class Matching:
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
             return False
         condition = self.line.reading.tokens[item.start + 2 : item.end - 1]
-        new = [made("IF"), made("("), *negated(condition), made(")")]
-        new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
-        self.edit_tokens(item.start, item.end - item.start, new)
+        new_lexemes = [made("IF"), made("("), *negated(condition), made(")")]
+        new_lexemes += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
+        self.edit_tokens(item.start, item.end - item.start, new_lexemes)
         self.open.pop()
         return True
 
@@ -237,17 +239,19 @@ class Matching:
     def is_before_arm(self) -> bool:
         """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
         item = self.item
-        is_its = item.word == ANY_END or ENDED[item.word] == "IF"
-        if not (is_its and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"):
+        is_end_of_if = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
+        if not (
+            is_end_of_if and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"
+        ):
             return False
         outer = sum(block.word == "IF" for block in self.open[:-1])
-        rest = [it for _, it in self.flat[self.place + 1 : self.place + LONGEST]]
+        rest = [it for _, it in self.flat[self.place + 1 : self.place + MOST_ITEMS_AFTER_ELSE]]
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
-        is_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
-        if is_early:
+        is_too_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
+        if is_too_early:
             is_parted = item.start > 0 and self.line.reading.tokens[item.start - 1].text == ";"
             self.edit_tokens(item.start - is_parted, 1 + is_parted, [])
-        return is_early
+        return is_too_early
 
     def bare_end(self) -> bool:
         """`FIN` ends the innermost block; one too many is dropped."""
@@ -255,9 +259,11 @@ class Matching:
             if any(line.reading.items is None for line in self.lines):
                 return False
             before = self.line.reading.tokens[self.item.start - 1]
-            is_behind = not self.after.kind and before.text == ";" and before.source is not None
-            is_alone = len(self.line.reading.items or ()) == 1 or is_behind
-            self.is_sure = self.is_sure and is_alone and len(self.flat) > 2
+            follows_separator = (
+                not self.after.kind and before.text == ";" and before.source is not None
+            )
+            is_only_item = len(self.line.reading.items or ()) == 1 or follows_separator
+            self.is_sure = self.is_sure and is_only_item and len(self.flat) > 2
             self.edit(1)
         elif self.open[-1].word:
             self.edit(1, self.open.pop().end)
@@ -266,34 +272,38 @@ class Matching:
         return True
 
     def end(self) -> bool:
-        want, k = ENDED[self.item.word], self.k
-        if self.open and self.open[-1].word not in ("", want):
+        expected_word, k = WORD_OF_END[self.item.word], self.k
+        if self.open and self.open[-1].word not in ("", expected_word):
             words = [block.word for block in self.open]
             block = self.open[-1]
-            is_inside = (len(words) > 1 and block.line == k) or bool(block.body)
-            if want not in words:
+            is_in_block = (len(words) > 1 and block.line == k) or bool(block.body)
+            if expected_word not in words:
                 self.edit(1, self.open.pop().end)
-                is_told = bool(self.line.reading.steps) or block.is_translated
-                self.is_sure = self.is_sure and is_told
+                is_changed = bool(self.line.reading.steps) or block.is_translated
+                self.is_sure = self.is_sure and is_changed
                 return True
-            comes = next((it for _, it in self.parts() if it.kind == "end"), None)
-            if comes and ENDED.get(comes.word) == block.word:  # the two ends are swapped
+            next_end = next((it for _, it in self.parts() if it.kind == "end"), None)
+            if (
+                next_end and WORD_OF_END.get(next_end.word) == block.word
+            ):  # the two ends are swapped
                 self.is_sure = False
-                del self.open[len(words) - 1 - words[::-1].index(want)]
+                del self.open[len(words) - 1 - words[::-1].index(expected_word)]
                 return True
-            if is_inside:
+            if is_in_block:
                 self.open.pop()
-                is_here = block.line == k and (block.is_endless or not self.is_parted(block))
-                is_told = (block.is_begun or is_here) and not block.is_behind
-                self.is_sure = self.is_sure and is_told
+                is_in_same_line = block.line == k and (
+                    block.is_endless or not self.is_parted(block)
+                )
+                is_changed = (block.is_begun or is_in_same_line) and not block.is_behind
+                self.is_sure = self.is_sure and is_changed
                 self.edit(0, block.end, ";")
-        if self.open and self.open[-1].word == want:
+        if self.open and self.open[-1].word == expected_word:
             block = self.open.pop()
             self.is_sure = self.is_sure and not block.has_brace and self.line.is_do <= block.is_do
             if block.is_endless and self.open and self.open[-1].last is None:
                 outer = self.open[-1]  # a WHEN that never ends looks no more
-                is_before = outer.word == "WHEN" and outer.line + 1 < block.line
-                outer.last = block.line - 1 if is_before else k
+                is_in_earlier_line = outer.word == "WHEN" and outer.line + 1 < block.line
+                outer.last = block.line - 1 if is_in_earlier_line else k
             return True
         return False
 
@@ -323,9 +333,13 @@ class Matching:
         items = [it for it in self.line.reading.items or () if block.start <= it.start <= last]
         arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
         messages = [item for item in items[arm:] if item.kind == "do"]
-        between = self.line.reading.tokens[messages[0].end : messages[-1].start] if messages else []
-        headers = sum(item.kind == "open" and item.word == "IF" for item in items)
-        return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
+        tokens_between = (
+            self.line.reading.tokens[messages[0].end : messages[-1].start] if messages else []
+        )
+        header_count = sum(item.kind == "open" and item.word == "IF" for item in items)
+        return header_count > 1 or any(
+            each.text == ";" and each.source is not None for each in tokens_between
+        )
 
     def parts(self) -> Iterator[tuple[int, Item]]:
         """Give the arms and ends behind a place, but those of blocks that begin behind it."""

@@ -16,16 +16,18 @@ from tiniscript.recovery.meanings import Lexeme, Names, lexemes, texts
 from tiniscript.recovery.rewrites import negated
 from tiniscript.recovery.writing import without_note
 
-_BEHIND_ELSE = re.compile(r"(?i)\bELSE(?!_?IF)(?![ \t]+IF)[ \t]*([^\W\d][^;\n]*|\([^;\n]*\))")
-_OF_ELSE = (codes.NO_BRACKETS_HERE, codes.MISSING_OPEN)
-_INSIDE = re.compile(r"[ \t]*\(((?:[^()\n;]|\([^()\n;]*\))+)\)")
-_HEAD = re.compile(r"(?i)(?<!\w)(IF|ELSEIF|END_?IF)\b[ \t]*(?:\(((?:[^()\n;]|\([^()\n;]*\))+)\))?")
-_ASKED = re.compile(r"[<>=]")
-_ASKS = {
+_TEXT_AFTER_ELSE = re.compile(r"(?i)\bELSE(?!_?IF)(?![ \t]+IF)[ \t]*([^\W\d][^;\n]*|\([^;\n]*\))")
+_ELSE_CODES = (codes.NO_BRACKETS_HERE, codes.MISSING_OPEN)
+_BRACKETS = re.compile(r"[ \t]*\(((?:[^()\n;]|\([^()\n;]*\))+)\)")
+_IF_HEADER = re.compile(
+    r"(?i)(?<!\w)(IF|ELSEIF|END_?IF)\b[ \t]*(?:\(((?:[^()\n;]|\([^()\n;]*\))+)\))?"
+)
+_COMPARISON_SIGN = re.compile(r"[<>=]")
+_QUESTION_FORMS = {
     **{word: f"IF({{what}});{word};ENDIF" for word in ("S", "STOP", "BREAK")},
     "TASK": "WHEN({what})",
 }
-_SAID = ("fix", "head", "named", "lost")  # gaps that say what becomes of it
+_ADVICE_GAPS = ("fix", "head", "named", "lost")  # gaps that say what becomes of it
 
 
 def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
@@ -34,20 +36,22 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     `is_offered`: where it is a question, that is asked; else it is named as lost.
     """
     values = diagnostic.values
-    is_said = diagnostic.repair or any(values.get(gap) for gap in _SAID)
-    if diagnostic.code not in (codes.NO_BRACKETS_HERE, codes.NOT_CALLABLE) or is_said:
+    has_other_advice = diagnostic.repair or any(values.get(gap) for gap in _ADVICE_GAPS)
+    if diagnostic.code not in (codes.NO_BRACKETS_HERE, codes.NOT_CALLABLE) or has_other_advice:
         return diagnostic
     at = text.find("(", diagnostic.span.start)
-    inside = _INSIDE.match(text, at) if at >= 0 else None
-    if inside is None or "\n" in text[diagnostic.span.start : at]:
+    brackets = _BRACKETS.match(text, at) if at >= 0 else None
+    if brackets is None or "\n" in text[diagnostic.span.start : at]:
         return diagnostic
-    what, word = inside[1].strip(), values.get("word", "").upper()
-    names = Names([lexemes(what)], kit)
-    is_asked = bool(_ASKED.search(what)) or any(map(names.is_yes_no, texts(lexemes(what))))
-    asks = _ASKS.get(word, "") if is_asked else ""
-    if asks and is_offered:
-        return diagnostic._replace(values={**values, "fix": asks.format(what=what)})
-    return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": what})
+    content, word = brackets[1].strip(), values.get("word", "").upper()
+    names = Names([lexemes(content)], kit)
+    is_condition = bool(_COMPARISON_SIGN.search(content)) or any(
+        map(names.is_yes_no, texts(lexemes(content)))
+    )
+    question_form = _QUESTION_FORMS.get(word, "") if is_condition else ""
+    if question_form and is_offered:
+        return diagnostic._replace(values={**values, "fix": question_form.format(what=content)})
+    return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": content})
 
 
 def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
@@ -57,33 +61,38 @@ def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
     `ELSE(DISTANCE > 20)`. ELSEIF with the question comes second.
     """
     start = diagnostic.span.start
-    match = next((it for it in _BEHIND_ELSE.finditer(text) if it.start() <= start < it.end()), None)
-    if match is None or diagnostic.code not in _OF_ELSE:
+    match = next(
+        (it for it in _TEXT_AFTER_ELSE.finditer(text) if it.start() <= start < it.end()), None
+    )
+    if match is None or diagnostic.code not in _ELSE_CODES:
         return diagnostic
-    before, asked = _asked_before(text[: match.start()]), without_note(match[1])[0].strip(" ;:\t")
-    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(asked)):
+    before, question = (
+        _asked_before(text[: match.start()]),
+        without_note(match[1])[0].strip(" ;:\t"),
+    )
+    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(question)):
         return diagnostic
-    end = match.start(1) + match[1].index(asked) + len(asked)
+    end = match.start(1) + match[1].index(question) + len(question)
     repair = Repair((Edit(Span(match.start(), end), "ELSE"),), False)
-    inside = asked[1:-1] if asked.startswith("(") else asked
-    values = {"fix": "ELSE", "rival": f"ELSEIF({inside.strip()})", "lost": ""}
+    condition = question[1:-1] if question.startswith("(") else question
+    values = {"fix": "ELSE", "rival": f"ELSEIF({condition.strip()})", "lost": ""}
     return diagnostic._replace(values={**diagnostic.values, **values}, repair=repair)
 
 
 def _asked_before(text: str) -> str:
     """Return what the innermost IF that is open asks last."""
-    asked: list[str] = []
+    questions: list[str] = []
     for line in text.split("\n"):
         body = without_note(line)[0]
-        for match in _HEAD.finditer(body):
+        for match in _IF_HEADER.finditer(body):
             word = match[1].upper()
             if word == "IF":
-                asked.append(match[2] or "")
-            elif asked and word == "ELSEIF":
-                asked[-1] = ""  # it is asked only where another answer is no
-            elif asked and word.startswith("END"):
-                asked.pop()
-    return asked[-1] if asked else ""
+                questions.append(match[2] or "")
+            elif questions and word == "ELSEIF":
+                questions[-1] = ""  # it is asked only where another answer is no
+            elif questions and word.startswith("END"):
+                questions.pop()
+    return questions[-1] if questions else ""
 
 
 def _roughly(tokens: Sequence[Lexeme]) -> tuple[str, ...]:

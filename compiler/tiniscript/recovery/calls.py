@@ -26,9 +26,9 @@ from tiniscript.base.words import (
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import (
-    ASKING,
-    CALLED,
-    LONG_S,
+    ASKING_WORDS,
+    CALL_WORDS,
+    LONG_TIME_S,
     MOST_POWER,
     NEAR,
     Names,
@@ -37,22 +37,22 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.writing import without_note
 
-_VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
-_CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_VALUE_PATTERN = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
+_CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE_PATTERN}(?:,{_VALUE_PATTERN})*)\)")
 _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
-_APART_CALL = re.compile(rf"[ \t]*(?P<call>{_ANY_CALL.pattern})")
-_PIECE = re.compile(r"[^;{}|]+")
+_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE_PATTERN}(?:,{_VALUE_PATTERN})*)\)")
+_CALL_AFTER_BLANKS = re.compile(rf"[ \t]*(?P<call>{_ANY_CALL.pattern})")
+_INSTRUCTION = re.compile(r"[^;{}|]+")
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
-_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
-_PERCENT = re.compile(r"[ \t]*%$")
-_TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
-_SHORT = 3  # letters: a phone may have added some to one
-_UNIT = rf"(?P<unit>{'|'.join(WAYS)})"
-_UNIT_BEFORE = re.compile(rf"(?i){_UNIT}[ \t]+(?P<value>[\w.]+)")
-_STORED = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
+_SPACED_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
+_PERCENT_AT_END = re.compile(r"[ \t]*%$")
+_TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
+_MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
+_UNIT_PATTERN = rf"(?P<unit>{'|'.join(WAYS)})"
+_UNIT_BEFORE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
+_STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
 
 
 class _Call(NamedTuple):
@@ -71,10 +71,10 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
     diagnostics = []
     start = 0
-    taught = {match[1].upper() for match in _DEF.finditer(source.text)}
+    def_names = {match[1].upper() for match in _DEF.finditer(source.text)}
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
-            if call.word.text in taught:
+            if call.word.text in def_names:
                 continue  # its values may be those of the DEF
             readings = (
                 _points(call),
@@ -95,13 +95,16 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
     diagnostics = []
     start = 0
     for line in source.text.split("\n"):
-        for piece in _PIECE.finditer(without_note(line)[0]):
+        for piece in _INSTRUCTION.finditer(without_note(line)[0]):
             calls = _only_calls(piece[0])
             words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
-            known = [word if names.is_name(word) else names.meant(word) for word in words]
-            near = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
-            are_calls = {*known} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
-            if len(calls) > 1 and are_calls and not all(known):
+            words_meant = [word if names.is_name(word) else names.meant(word) for word in words]
+            likely_words = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
+            are_calls = {*words_meant} <= {*CALL_WORDS, *words, ""} and not likely_words & {
+                *ASKING_WORDS,
+                "UNTIL",
+            }
+            if len(calls) > 1 and are_calls and not all(words_meant):
                 begin = start + piece.start()
                 first, last = calls[0].start("call"), calls[-1].end()
                 ends = [(it.end(), other.start("call")) for it, other in pairwise(calls)]
@@ -119,7 +122,7 @@ def _only_calls(piece: str) -> list[re.Match[str]]:
     """Return the calls of a text of calls alone, nothing where it has something else."""
     calls: list[re.Match[str]] = []
     at = 0
-    while call := _APART_CALL.match(piece, at):
+    while call := _CALL_AFTER_BLANKS.match(piece, at):
         calls.append(call)
         at = call.end()
     return [] if piece[at:].strip() else calls
@@ -147,7 +150,7 @@ def _call_diagnostic(
 def _points(call: _Call) -> Diagnostic | None:
     """`BEEP(1. 440)`, of a phone: a point before a space is a comma."""
     inside = call.text.partition("(")[2].rpartition(")")[0]
-    values = _split_values(_POINT.sub(",", inside))
+    values = _split_values(_SPACED_POINT.sub(",", inside))
     is_whole = len(call.values) < len(call.word.arguments) == len(values)
     if not is_whole or not all(map(_NUMBER.fullmatch, values)):
         return None
@@ -166,7 +169,7 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
         return None
     if not unit or len(values) != len(call.word.arguments) or not all(values):
         return None
-    first, second = (word for word, its in UNIT_OF.items() if its == unit)
+    first, second = (word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
     fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
     return _call_diagnostic(
         call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second
@@ -175,43 +178,43 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
 
 def _thousands(call: _Call) -> Diagnostic | None:
     """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
-    wanted, found = call.word.arguments, _THOUSANDS.search(call.text)
-    if found is None or len(call.values) <= len(wanted):
+    arguments, number_match = call.word.arguments, _THOUSANDS.search(call.text)
+    if number_match is None or len(call.values) <= len(arguments):
         return None
-    joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
-    inside = joined.partition("(")[2].rpartition(")")[0]
-    values = _split_values(inside)
+    joined_text = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
+    arguments_text = joined_text.partition("(")[2].rpartition(")")[0]
+    values = _split_values(arguments_text)
     is_of_time = any(
         argument.unit == "s" and value not in call.values
-        for argument, value in zip(wanted, values, strict=False)
+        for argument, value in zip(arguments, values, strict=False)
     )
-    if len(values) != len(wanted) or is_of_time:
+    if len(values) != len(arguments) or is_of_time:
         return None
     fix = call.with_values(values)
-    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=found[0])
+    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=number_match[0])
 
 
 def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     """`M(50, 80, 3)`, `M(3, 50, 80)`: how long the motors run is said by a W after them."""
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
-    values = [_PERCENT.sub("", value) for value in call.values]
-    parted = [(values[-1], values[:-1]), (values[0], values[1:])]
-    found = [(_seconds(time), powers) for time, powers in parted if _are_powers(powers)]
-    seconds, powers = next((each for each in found if each[0]), ("", []))
+    values = [_PERCENT_AT_END.sub("", value) for value in call.values]
+    splits = [(values[-1], values[:-1]), (values[0], values[1:])]
+    candidates = [(_seconds_text(time), powers) for time, powers in splits if _are_powers(powers)]
+    seconds, powers = next((each for each in candidates if each[0]), ("", []))
     if not seconds:
         return None
     fix = f"{call.with_values(powers)};W({seconds})"
     fix += "" if text[call.span.end :].strip(" ;\t\r\n") else ";S"
-    said = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
-    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **said)
+    gap_values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
+    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **gap_values)
 
 
-def _seconds(value: str) -> str:
+def _seconds_text(value: str) -> str:
     """Return the number of a value that says a time, "" for another one."""
-    match = _TIMED.fullmatch(value)
+    match = _TIME_WITH_UNIT.fullmatch(value)
     unit = lexicon_meaning(plain(match[2]), "unit") if match and match[2] else ("s", "1000")
-    is_time = match is not None and unit == ("s", "1000") and 0 < float(match[1]) < LONG_S
+    is_time = match is not None and unit == ("s", "1000") and 0 < float(match[1]) < LONG_TIME_S
     return match[1] if match and is_time else ""
 
 
@@ -227,9 +230,9 @@ def _are_powers(values: Sequence[str]) -> bool:
 
 def own_example(text: str) -> str:
     """Return how an instruction with CM or DEG in another place is written with its own values."""
-    if stored := _STORED.fullmatch(text):
+    if stored := _STORED_WITH_UNIT.fullmatch(text):
         name, number, unit = stored[1], stored[2], stored[3].upper()
-        word = next(word for word, its in UNIT_OF.items() if its == unit)
+        word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
         return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
     call = next(_calls(text, 0), None)
     unit = UNIT_OF.get(call.word.text, "") if call else ""
@@ -237,8 +240,8 @@ def own_example(text: str) -> str:
         return ""
     values = [re.sub(rf"(?i)\b{unit}\b", "", value).strip() for value in call.values]
     values = [re.sub(r"  +", " ", value) for value in values if value]
-    is_whole = len(values) == len(call.word.arguments)
-    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
+    has_all_values = len(values) == len(call.word.arguments)
+    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if has_all_values else ""
 
 
 def likely_word(word: str, text: str) -> str:
@@ -249,15 +252,15 @@ def likely_word(word: str, text: str) -> str:
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
-    short, heard = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
-    if heard in CALLED:
-        result = heard
+    short, similar_word = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
+    if similar_word in CALL_WORDS:
+        result = similar_word
     elif is_tone:
         result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
         result = short[0]
     else:
-        result = word[:1] if len(word) <= _SHORT else ""
+        result = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
     return result if result in WORDS and len(WORDS[result].arguments) == len(values) else ""
 
 
@@ -266,10 +269,10 @@ def usage_with(word: str, number: str) -> str:
 
     So much of a turn is degrees; of a way it may be a power.
     """
-    known = WORDS.get(word)
-    is_long = float(number) >= LONG_S
-    if known is None or not known.is_call or (is_long and word not in ("L", "R")):
+    word_row = WORDS.get(word)
+    is_long_time = float(number) >= LONG_TIME_S
+    if word_row is None or not word_row.is_call or (is_long_time and word not in ("L", "R")):
         return ""
-    names = [argument.name for argument in known.arguments][1:]
-    unit = f" {UNIT_OF[word]}" if is_long else ""
-    return f"{word}({', '.join((number + unit, *names))})" if known.role.lasts else ""
+    names = [argument.name for argument in word_row.arguments][1:]
+    unit = f" {UNIT_OF[word]}" if is_long_time else ""
+    return f"{word}({', '.join((number + unit, *names))})" if word_row.role.lasts else ""

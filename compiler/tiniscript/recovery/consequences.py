@@ -1,6 +1,6 @@
 """What is not told, since it follows from something else that is told.
 
-`_FOLLOW` says it of codes, `_RULES` of what two diagnostics have in common. Knows no row.
+`_CONSEQUENCES` says it of codes, `_RULES` of what two diagnostics have in common. Knows no row.
 """
 
 from __future__ import annotations
@@ -12,26 +12,28 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.recovery.writing import instruction_at
 
-_OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
+_END_CODES = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 # What follows from a code, wherever it is told.
-_FOLLOW: dict[Code, tuple[Code, ...]] = {
+_CONSEQUENCES: dict[Code, tuple[Code, ...]] = {
     codes.CASES: (codes.BRACES, codes.BREAK_OUTSIDE),
-    codes.BRACES: _OF_ENDS, codes.DOTS: _OF_ENDS,
+    codes.BRACES: _END_CODES, codes.DOTS: _END_CODES,
     codes.NEVER_ENDS: (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP),
 }  # fmt: skip
-_OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
-_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
-_UNTAUGHT = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
-_MANY = 30  # of which it is looked at: each goes through its row
+_WORD_CODES = (codes.UNKNOWN_WORD, codes.TURN_WITHOUT_DIRECTION)  # whose units say nothing more
+_NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_UNTAUGHT_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
+_MOST_UNITS = 30  # of which it is looked at: each goes through its row
 
 
 def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    gone = {code for diagnostic in diagnostics for code in _FOLLOW.get(diagnostic.code, ())}
+    explained_codes = {
+        code for diagnostic in diagnostics for code in _CONSEQUENCES.get(diagnostic.code, ())
+    }
     follow = {id(diagnostic) for rule in _RULES for diagnostic in rule(diagnostics, source)}
     return [
         diagnostic
         for diagnostic in diagnostics
-        if diagnostic.code not in gone and id(diagnostic) not in follow
+        if diagnostic.code not in explained_codes and id(diagnostic) not in follow
     ]
 
 
@@ -43,7 +45,7 @@ def _ends_of_a_misspelt_loop(diagnostics: Sequence[Diagnostic], _: Source) -> It
         if diagnostic.code is codes.NOT_OPEN
     ]
     if rights == ["LOOP"] and any(it.values.get("near", "")[:4] == "LOOP" for it in diagnostics):
-        yield from (diagnostic for diagnostic in diagnostics if diagnostic.code in _OF_ENDS)
+        yield from (diagnostic for diagnostic in diagnostics if diagnostic.code in _END_CODES)
 
 
 def _ends_of_an_unread_if(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
@@ -59,10 +61,14 @@ def _uses_of_a_reserved_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
     """What another name for a word of the language mends, too, as in the calls of its DEF."""
-    reserved = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.RESERVED]
-    words = {diagnostic.values["word"] for diagnostic in reserved}
-    edits = [diagnostic.repair.edits[1:] for diagnostic in reserved if diagnostic.repair]
-    renamed = {edit.span for its in edits for edit in its}
+    reserved_diagnostics = [
+        diagnostic for diagnostic in diagnostics if diagnostic.code is codes.RESERVED
+    ]
+    words = {diagnostic.values["word"] for diagnostic in reserved_diagnostics}
+    edits = [
+        diagnostic.repair.edits[1:] for diagnostic in reserved_diagnostics if diagnostic.repair
+    ]
+    renamed = {edit.span for edits_of_one in edits for edit in edits_of_one}
     starts = {span.start for span in renamed}
     for diagnostic in diagnostics:
         if starts and instruction_at(diagnostic.span, source)[0] in starts:
@@ -75,26 +81,29 @@ def _uses_of_a_reserved_word(
 
 def _uses_of_a_list(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
     """That a name has no number which holds a list: it needs several names."""
-    lists = {
+    names_of_code = {
         diagnostic.values.get("found", "").upper()
         for diagnostic in diagnostics
         if diagnostic.code is codes.LISTS
     }
-    for diagnostic in diagnostics if lists else ():
-        if diagnostic.code in _OF_NAMES and diagnostic.values.get("found", "").upper() in lists:
+    for diagnostic in diagnostics if names_of_code else ():
+        if (
+            diagnostic.code in _NAME_CODES
+            and diagnostic.values.get("found", "").upper() in names_of_code
+        ):
             yield diagnostic
 
 
 def _units_of_an_unknown_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
-    unknown = [
-        diagnostic.span.start for diagnostic in diagnostics if diagnostic.code in _OF_ITS_WORD
+    unknown_places = [
+        diagnostic.span.start for diagnostic in diagnostics if diagnostic.code in _WORD_CODES
     ]
     units = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNIT_PLACE]
-    for diagnostic in units[:_MANY] if unknown else ():
+    for diagnostic in units[:_MOST_UNITS] if unknown_places else ():
         start, end = instruction_at(diagnostic.span, source)
-        if any(start <= place < end for place in unknown):
+        if any(start <= place < end for place in unknown_places):
             yield diagnostic
 
 
@@ -102,14 +111,14 @@ def _ends_of_a_question_after(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
     """That a move without end needs an UNTIL: `F(FOREVER, 60) WHILE(DISTANCE > 9)`."""
-    asked = [
+    question_places = [
         diagnostic.span.start
         for diagnostic in diagnostics
         if diagnostic.code is codes.QUESTION_AFTER
     ]
     for diagnostic in diagnostics:
         start = diagnostic.span.start
-        after = (source.text[start:place] for place in asked if start < place)
+        after = (source.text[start:place] for place in question_places if start < place)
         if diagnostic.code is codes.FOREVER_NEEDS_UNTIL and any(
             not {*it} & {*";\r\n"} for it in after
         ):
@@ -121,7 +130,7 @@ def _calls_of_a_task(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[D
     started = {it.values.get("started") for it in diagnostics} - {None, ""}
     for diagnostic in diagnostics if started else ():
         names = (diagnostic.values.get(key, "").upper() for key in ("name", "found"))
-        if diagnostic.code in _UNTAUGHT and started & {*names}:
+        if diagnostic.code in _UNTAUGHT_CODES and started & {*names}:
             yield diagnostic
 
 

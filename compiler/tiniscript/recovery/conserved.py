@@ -32,12 +32,12 @@ from tiniscript.diagnostics.fixing import edits_of
 from tiniscript.recovery.keys import key_edits
 from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
-    ASKING,
-    CALLED,
-    ENDED,
+    ASKING_WORDS,
+    CALL_WORDS,
     LAP,
     NEAR,
     NEAR_CM,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
@@ -52,44 +52,56 @@ from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, without_not
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SUMS
 
-_SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
-           "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
+_COMPARISON_SENSES = {
+    "<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
+    "=!": "<>", "≤": "<", "≥": ">", "≠": "<>",
+}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
-_OF_WAYS = tuple(way.unit for way in WAYS.values())
-_STORED = "="  # the unit of what a variable keeps that nothing reads: a move would take seconds
+_WAY_UNITS = tuple(way.unit for way in WAYS.values())
+_STORED_UNIT = "="  # of what a variable keeps that nothing reads: a move would take seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
-_HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
-_DRIVES = frozenset((*MOVES, "M", "W", "BEEP", "S"))
-_COUNTED = frozenset((*_DRIVES, *_HEADS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
-                      "TRUE", "FALSE", "TIME", "FOREVER"))  # fmt: skip
+_HEADER_WORDS = frozenset((*BLOCK_ENDS, *_ARMS))
+_DRIVING_WORDS = frozenset((*MOVES, "M", "W", "BEEP", "S"))
+_COUNTED_WORDS = frozenset((
+    *_DRIVING_WORDS, *_HEADER_WORDS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
+    "TRUE", "FALSE", "TIME", "FOREVER",
+))  # fmt: skip
 # What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
-_AS = {
+_COUNTED_AS = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
     "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
-_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
-_NEGATES = ("no", "without", "unless", "different")
+_QUESTION_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
+_NEGATING_KINDS = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page, a function with no name;
 # and labels of lines.
-_FRAME = re.compile(
+_FRAME_PATTERN = re.compile(
     r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>|(?:\bfunction\s*\(\s*\)|\(\s*\)\s*=>)(?=\s*\{)"
 )
-_ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
-_PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
-_GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
+_ESCAPED_SIGNS = {
+    "¡=": "!=",
+    "&lt;": "<",
+    "&gt;": ">",
+    "&nbsp;": " ",
+    "½": ".5",
+    "¼": ".25",
+    "¾": ".75",
+}
+_FRACTIONS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
+_GLUED_NUMBER = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 # Digits, and letters that look like some; and what may stand between two parts of one number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
-_BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
-_LETTERS = str.maketrans("oOlI", "0011")
-_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
+_GROUP_SEPARATORS = re.compile(r"[.,:;'´`·_ ]*")
+_DIGITS_OF_LETTERS = str.maketrans("oOlI", "0011")
+_NUMBER_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
-_LONGEST = 3  # parts of a number
-_THOUSANDS = 3  # digits of the last part of `1,000`
+_MOST_NUMBER_PARTS = 3  # parts of a number
+_GROUP_DIGITS = 3  # digits of the last part of `1,000`
 # What is written, as far as a change may cut it out; and which messages name what they do.
-_WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
-_NAMING = (
+_COUNTED_TOKEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
+_NAMING_CODES = (
     codes.EXTRA_WORD,
     codes.WORDS_AFTER,
     codes.NAMED_ARGUMENT,
@@ -98,11 +110,11 @@ _NAMING = (
 )
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
-_NUMBERED = ("number", "power", "often", "note")
+_NUMBERED_KINDS = ("number", "power", "often", "note")
 _NUMBER = re.compile(r"(?<![\w.])\d[\d.]*")
 _CALL = re.compile(r"\b([A-Z]+)\(([^()]*)\)")
-_NEAR = f"{NEAR_CM} cm"
-_ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
+_NEAR_SAMPLE = f"{NEAR_CM} cm"
+_NEAR_QUESTION = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
 class Amount(NamedTuple):
@@ -110,35 +122,38 @@ class Amount(NamedTuple):
 
     value: float
     unit: str
-    written: str
+    source_text: str
     line: int
 
 
-LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
-LOOKED_AT = 100_000
-LAYERS = 8
+MOST_LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
+MOST_CHARACTERS_LOOKED_AT = 100_000
+MOST_LAYERS = 8
 
 
 class Difference(NamedTuple):
-    """What is `lost`, as it is written, and which commands there are `more` of."""
+    """The `losses`, as they are written, and the commands that there are more of: `additions`."""
 
-    lost: list[str]
-    more: list[str]
-
-
-NOTHING = Difference([], [])
-UNKNOWN = Difference([""], [])  # nobody has looked, or not at this alone
+    losses: list[str]
+    additions: list[str]
 
 
-def difference(text: str, repaired: str, kit: Kit) -> Difference:
+NO_DIFFERENCE = Difference([], [])
+UNKNOWN_DIFFERENCE = Difference([""], [])  # nobody has looked, or not at this alone
+
+
+def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    before, after = _words_of_wrong(text, _words_of(repaired), kit), _words_of_right(repaired, kit)
-    lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
-    lost += before.sums() - after.sums()
-    more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
-    more = more if len(more) > before.strange else []
-    more += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
-    return Difference([*dict.fromkeys(lost)], more)
+    before, after = (
+        _words_of_wrong(text, _words_of(repaired_text), kit),
+        _words_of_right(repaired_text, kit),
+    )
+    losses = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
+    losses += before.sums() - after.sums()
+    additions = [word for word in _DRIVING_WORDS if after.words[word] > before.meant[word]]
+    additions = additions if len(additions) > before.strange else []
+    additions += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
+    return Difference([*dict.fromkeys(losses)], additions)
 
 
 def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -146,37 +161,52 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
 
     It is shown together with what is `lost`, and so is what was not sure before.
     """
-    sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
-    lost = _losses_of_sure_repairs(sure, text, kit)
-    shown = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
-             and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
-    gone = zip(shown, _losses(shown, text, kit), strict=True)
+    sure_diagnostics = [
+        it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits
+    ]
+    loss_of_diagnostic = _losses_of_sure_repairs(sure_diagnostics, text, kit)
+    shown_diagnostics = [
+        it
+        for it in diagnostics
+        if id(it) not in loss_of_diagnostic
+        and "lost" not in it.values
+        and not (it.repair and it.repair.is_sure)
+        and edits_of(it)
+    ]
+    losses = zip(shown_diagnostics, _losses(shown_diagnostics, text, kit), strict=True)
     left_out = {
-        id(it): found for it, its in gone if (found := _unmentioned_losses(it, its.lost, text))
+        id(it): unmentioned
+        for it, loss in losses
+        if (unmentioned := _unmentioned_losses(it, loss.losses, text))
     }
     return [
-        _with_losses(it, lost[id(it)].lost) if id(it) in lost
+        _with_losses(it, loss_of_diagnostic[id(it)].losses) if id(it) in loss_of_diagnostic
         else _with_losses(it, left_out[id(it)]) if id(it) in left_out else it
         for it in diagnostics
     ]  # fmt: skip
 
 
 def _losses_of_sure_repairs(
-    sure: Sequence[Diagnostic], text: str, kit: Kit
+    sure_diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> dict[int, Difference]:
     """Return what is lost by which sure repairs: by one alone, or by all of them together."""
-    edits = [it.repair.edits for it in sure if it.repair]
-    joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
-    if not joint or not any(difference(text, apply_edits(text, joint), kit)):
+    edits = [it.repair.edits for it in sure_diagnostics if it.repair]
+    joint_edits = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
+    if not joint_edits or not any(difference(text, apply_edits(text, joint_edits), kit)):
         return {}
-    lost = {id(it): its for it, its in zip(sure, _losses(sure, text, kit), strict=True)}
-    is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
-    return {key: its for key, its in lost.items() if is_joint or any(its)}
+    loss_of_diagnostic = {
+        id(it): loss
+        for it, loss in zip(sure_diagnostics, _losses(sure_diagnostics, text, kit), strict=True)
+    }
+    is_joint = not any(
+        any(item) for item in loss_of_diagnostic.values()
+    )  # none alone: then all together do it
+    return {key: loss for key, loss in loss_of_diagnostic.items() if is_joint or any(loss)}
 
 
 def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its changes alone lose nothing that was written."""
-    return [not loss.lost for loss in _losses(diagnostics, text, kit)]
+    return [not loss.losses for loss in _losses(diagnostics, text, kit)]
 
 
 def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
@@ -186,20 +216,20 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     what many lose together each loses what stands in its own instructions.
     """
     edits = [edits_of(it) or () for it in diagnostics]
-    changing = [k for k, its in enumerate(edits) if its]
-    left = min(LOOKS, LOOKED_AT // (len(text) + 1))
-    differences = [NOTHING] * len(edits)
-    groups = deque([k] for k in changing)
-    if len(groups) > left:
-        *layers, rest = _layers({k: edits[k] for k in changing})
+    changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
+    looks_left = min(MOST_LOOKS, MOST_CHARACTERS_LOOKED_AT // (len(text) + 1))
+    differences = [NO_DIFFERENCE] * len(edits)
+    groups = deque([k] for k in changing_keys)
+    if len(groups) > looks_left:
+        *layers, last_layer = _layers({k: edits[k] for k in changing_keys})
         groups = deque(layers)
-        for k in rest:
-            differences[k] = UNKNOWN
+        for k in last_layer:
+            differences[k] = UNKNOWN_DIFFERENCE
     while groups:
-        group, left = groups.popleft(), left - 1
+        group, looks_left = groups.popleft(), looks_left - 1
         joint = difference(text, apply_edits(text, [it for k in group for it in edits[k]]), kit)
         half = len(group) // 2
-        if half and any(joint) and left > len(groups) + 1:
+        if half and any(joint) and looks_left > len(groups) + 1:
             groups += [group[:half], group[half:]]
         elif any(joint):
             shares = _split_difference(joint, [_surrounding_text(edits[k], text) for k in group])
@@ -210,15 +240,17 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
 
 def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
-    layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
-    spanses: list[list[Span]] = [[] for _ in range(LAYERS)]
-    for k, its in edits.items():
+    layers: list[list[int]] = [[] for _ in range(MOST_LAYERS + 1)]
+    spanses: list[list[Span]] = [[] for _ in range(MOST_LAYERS)]
+    for k, edits_of_one in edits.items():
         free = (
-            at for at, spans in enumerate(spanses) if not any(_overlaps(it, spans) for it in its)
+            at
+            for at, spans in enumerate(spanses)
+            if not any(_overlaps(it, spans) for it in edits_of_one)
         )
-        at = next(free, LAYERS)
+        at = next(free, MOST_LAYERS)
         layers[at].append(k)
-        for edit in its if at < LAYERS else ():
+        for edit in edits_of_one if at < MOST_LAYERS else ():
             insort(spanses[at], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
@@ -233,9 +265,9 @@ def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Differenc
     """Return what each of several changes loses, which are in these parts: what stands there."""
     if len(parts) == 1:
         return [joint]
-    own = [[it for it in joint.lost if it in part] for part in parts]
-    is_told = not joint.more and {*joint.lost} == {it for item in own for it in item}
-    return [Difference(item, []) if item or is_told else UNKNOWN for item in own]
+    own = [[it for it in joint.losses if it in part] for part in parts]
+    is_told = not joint.additions and {*joint.losses} == {it for item in own for it in item}
+    return [Difference(item, []) if item or is_told else UNKNOWN_DIFFERENCE for item in own]
 
 
 def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
@@ -246,21 +278,23 @@ def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
     return text[begin : min((it for it in behind if it >= 0), default=len(text))]
 
 
-def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
+def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str) -> list[str]:
     """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
 
     A minus is none of these: a move goes the other way then.
     """
     edits = edits_of(diagnostic) or []
     outcome = " ".join(edit.text for edit in edits).upper()
-    gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
-    kept = {*_WRITTEN.findall(outcome)}
-    is_cut = kept <= gone and diagnostic.code not in _NAMING
+    removed_words = {
+        *_COUNTED_TOKEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())
+    }
+    kept_words = {*_COUNTED_TOKEN.findall(outcome)}
+    is_only_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
     result = []
-    for item in lost:
-        unit = _WITH_UNIT.fullmatch(item) if diagnostic.repair else None
-        is_unit = unit is not None and unit[1].upper() not in outcome
-        if is_unit or (is_cut and item.upper() in gone - kept):
+    for item in losses:
+        unit = _NUMBER_WITH_UNIT.fullmatch(item) if diagnostic.repair else None
+        is_lost_unit = unit is not None and unit[1].upper() not in outcome
+        if is_lost_unit or (is_only_cut and item.upper() in removed_words - kept_words):
             result.append(item)
     return result
 
@@ -272,18 +306,22 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
     the power or the pitch that a call lacks. Where the text has that number, or where the message
     shows an example anyway, nothing changes.
     """
-    written: set[float] | None = None
+    written_numbers: set[float] | None = None
     result = []
     for diagnostic in diagnostics:
         fix = diagnostic.values.get("fix", "")
         samples = [] if diagnostic.values.get("example") else _samples(fix)
         if samples and len(_NUMBER.findall(fix)) <= _count_numbers(diagnostic, text):
-            samples = [it for it in samples if it[1] == _NEAR]  # one each, in words or nearly so
-        if samples and written is None:
-            written = {it.value for it in _words_of_right(text, kit).amounts}
-        said = ", ".join(item for number, item in samples if number not in (written or ()))
-        gap = "samples" if ", " in said else "sample"
-        values = {**diagnostic.values, gap: said} if said else diagnostic.values
+            samples = [
+                it for it in samples if it[1] == _NEAR_SAMPLE
+            ]  # one each, in words or nearly so
+        if samples and written_numbers is None:
+            written_numbers = {it.value for it in _words_of_right(text, kit).amounts}
+        samples_text = ", ".join(
+            item for number, item in samples if number not in (written_numbers or ())
+        )
+        gap = "samples" if ", " in samples_text else "sample"
+        values = {**diagnostic.values, gap: samples_text} if samples_text else diagnostic.values
         result.append(diagnostic._replace(values=values))
     return result
 
@@ -294,42 +332,43 @@ def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
     if ";" not in diagnostic.values.get("fix", ""):
         place = instruction_at(diagnostic.span, Source(text))
     return sum(
-        any(map(str.isdigit, token.text)) or bool(lexicon_meaning(token.text, *_NUMBERED))
+        any(map(str.isdigit, token.text)) or bool(lexicon_meaning(token.text, *_NUMBERED_KINDS))
         for token in lexemes(text[slice(*place)])
     )
 
 
 def _samples(fix: str) -> list[tuple[float, str]]:
     """Return the numbers of what is offered that may be examples, and each with its unit."""
-    found = [_NEAR] if _ASKS_NEAR.search(fix) else []
+    samples = [_NEAR_SAMPLE] if _NEAR_QUESTION.search(fix) else []
     for match in _CALL.finditer(fix):
-        arguments = WORDS[match[1]].arguments if match[1] in _DRIVES else ()
-        found += [
+        arguments = WORDS[match[1]].arguments if match[1] in _DRIVING_WORDS else ()
+        samples += [
             f"{argument.sample} {argument.unit}"
             for argument, value in zip(arguments, match[2].split(","), strict=False)
             if value.strip() == argument.sample
         ]
-    return [(float(item.split()[0]), item) for item in dict.fromkeys(found)]
+    return [(float(item.split()[0]), item) for item in dict.fromkeys(samples)]
 
 
-def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
-    values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
+def _with_losses(diagnostic: Diagnostic, losses: Sequence[str]) -> Diagnostic:
+    values = {**diagnostic.values, "lost": ", ".join(losses)} if losses else diagnostic.values
     repair = diagnostic.repair and diagnostic.repair._replace(is_sure=False)
     return diagnostic._replace(values=values, repair=repair)
 
 
 class _Said:
-    """What a text says, in words of any language; `others` are all words of the repaired one."""
+    """What a text says, in words of any language; `other_words` are all words of the repaired
+    one."""
 
-    def __init__(self, text: str, others: frozenset[str], kit: Kit, is_right: bool) -> None:
+    def __init__(self, text: str, other_words: frozenset[str], kit: Kit, is_right: bool) -> None:
         self.is_right = is_right  # as far as it is repaired
-        self.others = others
+        self.other_words = other_words
         parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
         self.notes = Counter(self._all_lines([note for _, note in parts]))
         self.body = self._without_frame("\n".join(body for body, _ in parts))
-        lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
+        lines = [lexemes(self._separated_numbers(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
-        self.tokens = [lexeme for line in lines for lexeme in (*self._joined(line), _END)]
+        self.tokens = [lexeme for line in lines for lexeme in (*self._join_words(line), _END)]
         self.lines = [0, *accumulate(lexeme is _END for lexeme in self.tokens)]
         self._meanings: dict[str, set[str]] = {}
         self._parts = {row[-1] for row in self.names.rows}  # of `mi velocidad`
@@ -353,40 +392,44 @@ class _Said:
 
     @staticmethod
     def _without_frame(text: str) -> str:
-        for sign, meant in _ESCAPED.items():
+        for sign, meant in _ESCAPED_SIGNS.items():
             text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
             text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
         text = apply_edits(text, [Edit(span, "") for span in labels(text)])
-        return _FRAME.sub(";", text)
+        return _FRAME_PATTERN.sub(";", text)
 
-    def _apart(self, line: str) -> str:
+    def _separated_numbers(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
-        for part, decimals in _PARTS.items():
+        for part, decimals in _FRACTIONS.items():
             line = re.sub(rf"(?<!\d)(\d) {part}(?!\d)", rf"\1{decimals}", line)
             alone = rf"(?i)(?<![\d)] )(?<!\d){part}(?!\d)(?=\s*[a-z])"
             line = re.sub(alone, f"0{decimals}", line)
-        return _GLUED.sub(
-            lambda it: it[0] if it[0].upper() in self.others else f"{it[1]} {it[2]} ", line
+        return _GLUED_NUMBER.sub(
+            lambda it: it[0] if it[0].upper() in self.other_words else f"{it[1]} {it[2]} ", line
         )
 
-    def _joined(self, line: list[Lexeme]) -> list[Lexeme]:
+    def _join_words(self, line: list[Lexeme]) -> list[Lexeme]:
         """Return a line in which words are one that the language, or the repair, has as one."""
-        found: list[Lexeme] = []
+        joined_lexemes: list[Lexeme] = []
         for token in line:
-            last = found[-1] if found else _END
-            before = found[-2] if last.text in ("-", "_", ".") and len(found) > 1 else last
+            last = joined_lexemes[-1] if joined_lexemes else _END
+            before = (
+                joined_lexemes[-2]
+                if last.text in ("-", "_", ".") and len(joined_lexemes) > 1
+                else last
+            )
             one = f"{before.text}_{token.text}"
-            if before.kind is token.kind is WORD and one in self.others:
-                found[found.index(before, -2 if before is not last else -1) :] = [
+            if before.kind is token.kind is WORD and one in self.other_words:
+                joined_lexemes[joined_lexemes.index(before, -2 if before is not last else -1) :] = [
                     token._replace(text=one)
                 ]
             elif last.text == "ELSE" and token.text == "IF":
-                found[-1] = token._replace(text="ELSEIF")
+                joined_lexemes[-1] = token._replace(text="ELSEIF")
             else:
-                found.append(token)
-        while joined := one_word(found, self.names):
-            found = joined[0]
-        return found
+                joined_lexemes.append(token)
+        while joined_line := one_word(joined_lexemes, self.names):
+            joined_lexemes = joined_line[0]
+        return joined_lexemes
 
     # -- what each word is -----------------------------------------------------------------------
 
@@ -400,33 +443,39 @@ class _Said:
     def _possible_words(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
         if token.text not in self._meanings:
-            self._meanings[token.text] = self._found_in(token)
+            self._meanings[token.text] = self._concepts_of(token)
         return self._meanings[token.text]
 
-    def _found_in(self, token: Lexeme) -> set[str]:
-        matches = {self._word(token), lexicon_concept(token.text) or ""}
-        matches |= {
+    def _concepts_of(self, token: Lexeme) -> set[str]:
+        concepts = {self._word(token), lexicon_concept(token.text) or ""}
+        concepts |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
         }
-        return {"S" if item == "STOP" else item for item in matches}
+        return {"S" if item == "STOP" else item for item in concepts}
 
     def _read(self) -> None:
         slots = self._slots()
-        k, depth = 0, [False]  # whether each bracket is that of a call
+        k, open_brackets = 0, [False]  # whether each bracket is that of a call
         while k < len(self.tokens):
             token, before = self.tokens[k], self.tokens[k - 1] if k else _END
             if token.text == "(":
-                depth.append(bool(self._possible_words(before) & CALLED))
+                open_brackets.append(bool(self._possible_words(before) & CALL_WORDS))
             elif token.text == ")":
-                depth = depth[:-1] or [False]
+                open_brackets = open_brackets[:-1] or [False]
             elif token is _END:
-                depth = [False]
+                open_brackets = [False]
             if (value := self._number(token)) is not None:
-                is_said = bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
-                k = k + 1 if is_said or self._is_yes(k) else self._add_amount(k, value, slots[k])
+                is_amount_word = (
+                    bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
+                )
+                k = (
+                    k + 1
+                    if is_amount_word or self._is_yes(k)
+                    else self._add_amount(k, value, slots[k])
+                )
                 continue
             if token.kind is WORD and not self._is_label(k):
-                self._take_word(k, len(depth) > 1)
+                self._take_word(k, len(open_brackets) > 1)
             k += 1
         self.words["ELSE"] += self._arms_in_brackets()
 
@@ -434,7 +483,7 @@ class _Said:
         """Whether a 1 alone is asked for yes: `while (1)`."""
         head, sign = self.tokens[max(0, k - 2)], self.tokens[k - 1]
         is_alone = (sign.text, self.tokens[k].text, self._next_lexeme(k).text) == ("(", "1", ")")
-        return is_alone and bool(self._possible_words(head) & ASKING)
+        return is_alone and bool(self._possible_words(head) & ASKING_WORDS)
 
     def _take_word(self, k: int, is_in_brackets: bool) -> None:
         token, before, after = (
@@ -446,28 +495,30 @@ class _Said:
             self.loose.append((lexicon_meaning(token.text, "unit")[0], token.source or token.text))
             return
         word = self._word(token)
-        around = {before.text, after.text}
-        is_part = token.text in self._parts
-        is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
+        neighbours = {before.text, after.text}
+        is_name_part = token.text in self._parts
+        is_times_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
-            and bool(self._possible_words(after) & _DRIVES)
+            and bool(self._possible_words(after) & _DRIVING_WORDS)
         )
-        is_again = (word == "IF" and before.text in ("AND", "OR")) or (
-            word == "OR" and before.text in _SENSES
+        is_repetition = (word == "IF" and before.text in ("AND", "OR")) or (
+            word == "OR" and before.text in _COMPARISON_SENSES
         )
-        is_again |= after.text == "." and self._next_lexeme(k + 1).kind is WORD  # `random.randint`
-        is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
-        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in around)
+        is_repetition |= (
+            after.text == "." and self._next_lexeme(k + 1).kind is WORD
+        )  # `random.randint`
+        is_repetition |= word in MOVES and after.kind is WORD and word == self._word(after)
+        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbours)
         is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
-            word == "TIME" and not around & _SENSES.keys()
+            word == "TIME" and not neighbours & _COMPARISON_SENSES.keys()
         )
         self.meant.update(self._possible_words(token))
         self.strange += token.text not in WORDS and not self.names.is_name(token.text)
-        if is_part or is_sign or is_joint or is_again or is_needless:
+        if is_name_part or is_times_sign or is_joint or is_repetition or is_needless:
             return
-        if word in _COUNTED or (word and word not in WORDS):
+        if word in _COUNTED_WORDS or (word and word not in WORDS):
             self.words[word] += 1
             self.foreign[word] += word != token.text
             self.written.setdefault(word, token.source or token.text)
@@ -477,9 +528,9 @@ class _Said:
 
     def _is_label(self, k: int) -> bool:
         """Whether a word after an end says which one ends."""
-        back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
-        before = self.tokens[back] if k else _END
-        is_end = before.text in ENDED or bool(lexicon_meaning(before.text, "end"))
+        position_before = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
+        before = self.tokens[position_before] if k else _END
+        is_end = before.text in WORD_OF_END or bool(lexicon_meaning(before.text, "end"))
         token = self.tokens[k]
         is_block = token.text in self.names.defs or bool(
             self._possible_words(token) & BLOCK_ENDS.keys()
@@ -504,13 +555,13 @@ class _Said:
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
             at = k + 1 + bool(lexicon_meaning(self._next_lexeme(k).text, "and"))
-            more = self._number(self.tokens[at]) if at < len(self.tokens) else None
-            if more is None or more >= (100 if value % 100 == 0 else 10):
+            next_number = self._number(self.tokens[at]) if at < len(self.tokens) else None
+            if next_number is None or next_number >= (100 if value % 100 == 0 else 10):
                 break
-            value, k = value + more, at
+            value, k = value + next_number, at
         unit = slot if self.is_right else ""
-        if said := self._unit_after(k):
-            unit, scale = said
+        if unit_and_scale := self._unit_after(k):
+            unit, scale = unit_and_scale
             value, k = value * scale / 1000, k + 1
             text += f"{after.space or ''}{after.source or after.text}"
         signed = -value if is_minus else value
@@ -533,9 +584,9 @@ class _Said:
             return "%", 1000
         text = lexicon_meaning(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
-        is_apart = is_letter and token.space != "" and next_one not in (",", ")")
-        is_order = is_letter and token.source == token.text and token.space != ""
-        if not text or (is_apart and is_order) or self.names.is_name(token.text):
+        is_separate = is_letter and token.space != "" and next_one not in (",", ")")
+        is_move_letter = is_letter and token.source == token.text and token.space != ""
+        if not text or (is_separate and is_move_letter) or self.names.is_name(token.text):
             return None
         return text[0] if text[0] in _COUNTED_UNITS else "", float(text[1])
 
@@ -547,38 +598,40 @@ class _Said:
             self._next_lexeme(k),
         )
         texts = {item.kind for item in lexicon().get(token.text, ())}
-        is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
-        is_unit = texts == {"unit"} or ("unit" in texts and (is_behind or token.text in WAYS))
-        is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
-        if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
+        is_last_argument = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
+        is_only_unit = texts == {"unit"} or (
+            "unit" in texts and (is_last_argument or token.text in WAYS)
+        )
+        is_unbound = not self.names.is_name(token.text) and after.kind is not NUMBER
+        if not is_only_unit or not is_unbound or (len(token.text) == 1 and not is_last_argument):
             return False
         return lexicon_meaning(token.text, "unit")[0] in _UNITS
 
     def _slots(self) -> list[str]:
         """Return the unit that a value at each token has by its place, "" for none."""
         slots = [""] * len(self.tokens)
-        around: list[list[str]] = [[""]]
+        units_by_depth: list[list[str]] = [[""]]
         for k, token in enumerate(self.tokens):
             if token.text == "(":
-                around.append(self._arguments(k) or [around[-1][0]])
-            elif token.text == ")" and len(around) > 1:
-                around.pop()
-            elif token.text == "," and len(around[-1]) > 1:
-                around[-1] = around[-1][1:]
+                units_by_depth.append(self._arguments(k) or [units_by_depth[-1][0]])
+            elif token.text == ")" and len(units_by_depth) > 1:
+                units_by_depth.pop()
+            elif token.text == "," and len(units_by_depth[-1]) > 1:
+                units_by_depth[-1] = units_by_depth[-1][1:]
             elif token is _END:
-                around = [[""]]
-            slots[k] = around[-1][0]
+                units_by_depth = [[""]]
+            slots[k] = units_by_depth[-1][0]
         counts = Counter(token.text for token in self.tokens)
         triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
         for k, (one, sign, other) in enumerate(triples):
-            if sign.text in _SENSES or sign.text == "=":
+            if sign.text in _COMPARISON_SENSES or sign.text == "=":
                 at = min(k + 3 if other.text == "-" else k + 2, len(slots) - 1)
                 slots[at] = slots[at] or self.units.get(one.text, "")
                 slots[k] = slots[k] or self.units.get(other.text, "")
                 before = self.tokens[k - 1] if k else _END
-                is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
-                is_stored = is_set and counts[one.text] == 1
-                slots[at] = slots[at] or (_STORED if is_stored else "")
+                is_assignment = sign.text == "=" and before.text in ("|", ";", _END.text)
+                is_stored = is_assignment and counts[one.text] == 1
+                slots[at] = slots[at] or (_STORED_UNIT if is_stored else "")
         return slots
 
     def _arguments(self, k: int) -> list[str]:
@@ -599,11 +652,11 @@ class _Said:
 
     def _units_of_names(self) -> dict[str, str]:
         """Return the units that variables have by their use; where they are two, with a `/`."""
-        found: dict[str, dict[str, None]] = {}
+        units_by_name: dict[str, dict[str, None]] = {}
         for token, unit in zip(self.tokens, self._slots(), strict=True):
             if unit and token.text in self.names.variables:
-                found.setdefault(token.text, {})[unit] = None
-        return {name: "/".join(units) for name, units in found.items()}
+                units_by_name.setdefault(token.text, {})[unit] = None
+        return {name: "/".join(units) for name, units in units_by_name.items()}
 
     # -- branches --------------------------------------------------------------------------------
 
@@ -621,12 +674,14 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_no = token.text in ("NOT", "!") or bool(lexicon_meaning(token.text, *_NEGATES))
-            if not is_no or self.names.is_name(token.text):
+            is_negation = token.text in ("NOT", "!") or bool(
+                lexicon_meaning(token.text, *_NEGATING_KINDS)
+            )
+            if not is_negation or self.names.is_name(token.text):
                 continue
-            around = self.tokens[max(0, k - 4) : k]
+            lexemes_before = self.tokens[max(0, k - 4) : k]
             if lexicon_meaning(token.text, "unless") or any(
-                self._possible_words(it) & ASKING for it in around
+                self._possible_words(it) & ASKING_WORDS for it in lexemes_before
             ):
                 negations.append(token.source or token.text)
         return negations
@@ -638,10 +693,10 @@ class _Said:
         for one, sign, other, inner in zip(
             self.tokens, self.tokens[1:], self.tokens[2:], after, strict=False
         ):
-            is_value = one.text == ")" or self._is_read(one)
-            is_other = self._is_read(inner if other.text == "(" else other)
+            is_first_value = one.text == ")" or self._is_read(one)
+            is_other_value = self._is_read(inner if other.text == "(" else other)
             is_plain = one.kind is NUMBER and other.kind is NUMBER
-            if sign.text in SUMS and is_value and is_other and not is_plain:
+            if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
                 sums[sign.text] += 1
         return sums
 
@@ -657,12 +712,14 @@ class _Said:
         result = 0
         for k, token in enumerate(left):
             word = self._word(token)
-            if word in _HEADS:
+            if word in _HEADER_WORDS:
                 end = closed(left, k + 1) if texts(left[k + 1 : k + 2]) == ("(",) else k + 1
                 end += word == "DEF"
                 if 0 < end < len(left):
-                    is_over = left[end].text in (*ENDED, "}") or self._word(left[end]) in _ARMS
-                    result += is_over
+                    is_branch_end = (
+                        left[end].text in (*WORD_OF_END, "}") or self._word(left[end]) in _ARMS
+                    )
+                    result += is_branch_end
         return result
 
     def _arms_in_brackets(self) -> int:
@@ -673,14 +730,16 @@ class _Said:
             if end and "IF" in self._possible_words(token):
                 inside = pairwise(self.tokens[k + 2 : end - 1])
                 begun = [b for a, b in inside if a.text in (",", ";")]
-                result += sum(bool(self._possible_words(lexeme) & _DRIVES) for lexeme in begun) > 1
+                result += (
+                    sum(bool(self._possible_words(lexeme) & _DRIVING_WORDS) for lexeme in begun) > 1
+                )
         return result
 
 
 @lru_cache(2)
-def _words_of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+def _words_of_wrong(text: str, other_words: frozenset[str], kit: Kit) -> _Said:
     text = apply_edits(text, note_edits(text))
-    return _Said(apply_edits(text, key_edits(text, kit)), others, kit, is_right=False)
+    return _Said(apply_edits(text, key_edits(text, kit)), other_words, kit, is_right=False)
 
 
 @lru_cache(2)
@@ -694,18 +753,18 @@ def _words_of(text: str) -> frozenset[str]:
 
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
-    left, lost = _Stock(after.amounts), _Stock(before.amounts)
-    read: list[float] = []  # the parts of the run that was read last, which is one number
+    new_stock, old_stock = _Stock(after.amounts), _Stock(before.amounts)
+    read_parts: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
-        is_one = parts is not read and left.has([value]) and lost.has(parts)
-        if is_one and not left.has(parts):
-            read = parts
-            left.take([value])
-            lost.take(parts)
-    gone, kept = lost.all(), left.all()
-    for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        gone, kept = _apart(gone, kept, is_near)
-    yield from (amount.written for amount in gone)
+        is_one_number = parts is not read_parts and new_stock.has([value]) and old_stock.has(parts)
+        if is_one_number and not new_stock.has(parts):
+            read_parts = parts
+            new_stock.take([value])
+            old_stock.take(parts)
+    lost_amounts, new_amounts = old_stock.all(), new_stock.all()
+    for is_same_line in (True, False):  # first what stays in its line: another line's 50 is no 50 %
+        lost_amounts, new_amounts = _unmatched(lost_amounts, new_amounts, is_same_line)
+    yield from (amount.source_text for amount in lost_amounts)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     loose = Counter(after.loose)
@@ -734,31 +793,39 @@ class _Stock:
         return [self.amounts[k] for k in sorted(k for item in self.places.values() for k in item)]
 
 
-def _apart(
-    before: Sequence[Amount], after: Sequence[Amount], is_near: bool
+def _unmatched(
+    before: Sequence[Amount], after: Sequence[Amount], is_same_line: bool
 ) -> tuple[list[Amount], list[Amount]]:
-    """Return the amounts of two texts without those that both have; `is_near`: in one line."""
+    """Return the amounts of two texts without those that both have; `is_same_line`: in one line."""
     places: dict[tuple[int, int], dict[str, deque[int]]] = {}
     for k, amount in enumerate(after):
-        key = _thousandths(amount.value), amount.line * is_near
+        key = _thousandths(amount.value), amount.line * is_same_line
         places.setdefault(key, {}).setdefault(amount.unit, deque()).append(k)
-    lost: list[Amount] = []
-    taken: set[int] = set()
+    unmatched_amounts: list[Amount] = []
+    matched_positions: set[int] = set()
     for amount in before:
         scale = LAP if amount.unit == "turns" else 1
-        keys = {(_thousandths(amount.value * by), amount.line * is_near) for by in (1, scale)}
-        fitting = [
-            its
+        keys = {
+            (_thousandths(amount.value * factor), amount.line * is_same_line)
+            for factor in (1, scale)
+        }
+        fitting_positions = [
+            positions
             for key in keys
-            for its in places.get(key, {}).values()
-            if its and _is_same(amount, after[its[0]])
+            for positions in places.get(key, {}).values()
+            if positions and _is_same(amount, after[positions[0]])
         ]
-        if fitting:
-            own = min(fitting, key=lambda its: (after[its[0]].unit != amount.unit, its[0]))
-            taken.add(own.popleft())
+        if fitting_positions:
+            nearest = min(
+                fitting_positions,
+                key=lambda positions: (after[positions[0]].unit != amount.unit, positions[0]),
+            )
+            matched_positions.add(nearest.popleft())
         else:
-            lost.append(amount)
-    return lost, [amount for k, amount in enumerate(after) if k not in taken]
+            unmatched_amounts.append(amount)
+    return unmatched_amounts, [
+        amount for k, amount in enumerate(after) if k not in matched_positions
+    ]
 
 
 def _thousandths(value: float) -> int:
@@ -770,7 +837,7 @@ def _is_same(before: Amount, after: Amount) -> bool:
         return _thousandths(before.value * LAP) == _thousandths(after.value)
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
-    is_unit |= units == {_STORED} and before.unit not in _OF_WAYS
+    is_unit |= units == {_STORED_UNIT} and before.unit not in _WAY_UNITS
     return is_unit and _thousandths(before.value) == _thousandths(after.value)
 
 
@@ -778,15 +845,15 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
     """Give what digits may mean as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
     pieces = [*_DIGITS.finditer(text)]
     for first in range(len(pieces)):
-        for last in range(first, min(first + _LONGEST, len(pieces))):
+        for last in range(first, min(first + _MOST_NUMBER_PARTS, len(pieces))):
             run = pieces[first : last + 1]
             gaps = [text[a.end() : b.start()] for a, b in pairwise(run)]
-            if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
+            if not all(_GROUP_SEPARATORS.fullmatch(gap) for gap in gaps):
                 break
-            digits = [match[0].translate(_LETTERS) for match in run]
+            digits = [match[0].translate(_DIGITS_OF_LETTERS) for match in run]
             sentence = text[run[0].start() : run[-1].end()]
             parts = [float(item) for item in re.findall(r"\d+(?:\.\d+)?|\.\d+", sentence)]
-            is_thousands = len(digits[-1]) == _THOUSANDS
+            is_thousands = len(digits[-1]) == _GROUP_DIGITS
             is_decimal = not is_thousands and all("," in gap or "." in gap for gap in gaps)
             values = _values(digits, is_decimal, ":" in sentence)
             yield from ((value, parts) for value in values)
@@ -807,7 +874,9 @@ def _words(before: _Said, after: _Said) -> Iterator[str]:
     is_turned = _senses(before) != _senses(after)
     for word, count in before.words.items():
         missing = count - after.words[word]
-        instead = max((after.words[it] - before.words[it] for it in _AS.get(word, ())), default=0)
+        instead = max(
+            (after.words[it] - before.words[it] for it in _COUNTED_AS.get(word, ())), default=0
+        )
         instead = max(instead, min(noted[word], before.foreign[word]))
         if missing > instead and not (word == "NOT" and is_turned):
             yield before.written.get(word, word)
@@ -815,31 +884,40 @@ def _words(before: _Said, after: _Said) -> Iterator[str]:
 
 def _questions(before: _Said, after: _Said) -> Iterator[str]:
     """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
-    asked = _senses(before) - (after.notes - before.notes)
-    left = _senses(after)
-    turners = ({word: item.words[word] for word in _TURNERS} for item in (before, after))
+    lost_senses = _senses(before) - (after.notes - before.notes)
+    new_senses = _senses(after)
+    turners = ({word: item.words[word] for word in _QUESTION_TURNERS} for item in (before, after))
     negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
-    if asked.total() > left.total() or (asked - left and not may_turn):
-        yield from (asked - left) or asked
-    elif asked == left and len(negated[0]) > len(negated[1]):  # nothing is turned round instead
+    if lost_senses.total() > new_senses.total() or (lost_senses - new_senses and not may_turn):
+        yield from (lost_senses - new_senses) or lost_senses
+    elif lost_senses == new_senses and len(negated[0]) > len(
+        negated[1]
+    ):  # nothing is turned round instead
         yield negated[0][0]
     if after.empty() > before.empty():
         yield "ELSE"
 
 
-def _senses(said: _Said) -> Counter[str]:
+def _senses(words_said: _Said) -> Counter[str]:
     senses: Counter[str] = Counter()
-    in_call = [False]
-    for one, sign, other in zip(said.tokens, said.tokens[1:], said.tokens[2:], strict=False):
+    open_brackets = [False]
+    for one, sign, other in zip(
+        words_said.tokens, words_said.tokens[1:], words_said.tokens[2:], strict=False
+    ):
         if sign.text == "(":
-            in_call.append(one.text in CALLED)
+            open_brackets.append(one.text in CALL_WORDS)
         elif sign.text == ")":
-            in_call = in_call[:-1] or [False]
+            open_brackets = open_brackets[:-1] or [False]
         elif sign is _END:
-            in_call = [False]
-        is_between = one.kind in (WORD, NUMBER) or one.text == ")"
-        is_between &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
-        if sign.text in _SENSES and is_between and not in_call[-1] and one.text not in CALLED:
-            senses[_SENSES[sign.text]] += 1
+            open_brackets = [False]
+        is_comparison = one.kind in (WORD, NUMBER) or one.text == ")"
+        is_comparison &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
+        if (
+            sign.text in _COMPARISON_SENSES
+            and is_comparison
+            and not open_brackets[-1]
+            and one.text not in CALL_WORDS
+        ):
+            senses[_COMPARISON_SENSES[sign.text]] += 1
     return senses

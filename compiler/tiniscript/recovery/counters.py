@@ -20,22 +20,23 @@ from tiniscript.recovery.trailing_tokens import width
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_BEGINS = (";", "{", "}", "|")
-_IN = ("IN", "EN", "EM")
+_INSTRUCTION_STARTS = (";", "{", "}", "|")
+_IN_WORDS = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
-    """A header: tokens `start` up to `end` count `times` with `name`, from `first` on, by `step`.
+    """A header: tokens `start` up to `end` count `loop_count` with `name`, from `first` on, by
+    `step`.
 
-    The words before `begun` say that it is one: `for each`.
+    The words before `name_start` say that it is one: `for each`.
     """
 
     start: int
-    begun: int
+    name_start: int
     end: int
     name: str
     first: int
-    times: int
+    loop_count: int
     step: int
 
 
@@ -43,18 +44,18 @@ def counters(source: Source) -> list[Diagnostic]:
     """Return what is told of headers with a counter that is used, and of the ends that name it."""
     diagnostics: list[Diagnostic] = []
     rows = [lexemes(without_note(line)[0]) for line in source.text.split("\n")]
-    matches = [[*_headers(row)] for row in rows]
-    names = {item.name for row in matches for item in row}
+    headers_by_row = [[*_headers(row)] for row in rows]
+    names = {item.name for row in headers_by_row for item in row}
     if not names:
         return []
     words = Counter(token.text for row in rows for token in row)
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
-    for row, own, line in zip(rows, matches, source.text.split("\n"), strict=True):
+    for row, headers, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
         spans = _counter_spans(row, start)
-        for item in own:
-            in_header = [it.text for it in row[item.start : item.end]].count(item.name)
-            is_used = words[item.name] > in_header + ends[item.name]
+        for item in headers:
+            uses_in_header = [it.text for it in row[item.start : item.end]].count(item.name)
+            is_used = words[item.name] > uses_in_header + ends[item.name]
             header = row[item.start : item.end]
             is_of_c = any(it.text == ";" for it in header) and not row[item.end :]
             if is_used or is_of_c or any(lexicon_meaning(it.text, "each") for it in header):
@@ -62,7 +63,7 @@ def counters(source: Source) -> list[Diagnostic]:
                 diagnostics.append(
                     _counter_diagnostic(
                         span,
-                        _spans_text(source, spans[item.start : item.begun]),
+                        _spans_text(source, spans[item.start : item.name_start]),
                         "LOOP",
                         _loop(item, is_used),
                     )
@@ -75,9 +76,15 @@ def counters(source: Source) -> list[Diagnostic]:
     return diagnostics
 
 
-def _counter_diagnostic(span: Span, found: str, right: str, fix: str) -> Diagnostic:
+def _counter_diagnostic(span: Span, found_text: str, right_word: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
-    values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage, "lost": ""}
+    values = {
+        "found": found_text,
+        "right": right_word,
+        "fix": fix,
+        "usage": WORDS[right_word].usage,
+        "lost": "",
+    }
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
 
 
@@ -87,7 +94,7 @@ def _spans_text(source: Source, spans: Sequence[Span]) -> str:
 
 def _loop(counter: _Counter, is_used: bool) -> str:
     name, step, before = counter.name, counter.step, counter.first - counter.step
-    loop = f"LOOP({counter.times})"
+    loop = f"LOOP({counter.loop_count})"
     return f"{name} = {before};{loop};{name} = {name} + {step}" if is_used else loop
 
 
@@ -105,9 +112,9 @@ def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
 
 def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
     for k in range(len(row)):
-        is_begun = k == 0 or row[k - 1].text in _BEGINS
-        if is_begun and (found := _header(row, k)):
-            yield found
+        is_begun = k == 0 or row[k - 1].text in _INSTRUCTION_STARTS
+        if is_begun and (counter := _header(row, k)):
+            yield counter
 
 
 def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
@@ -115,53 +122,53 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     if not lexicon_meaning(row[start].text, "count") and lexicon_concept(row[start].text) != "LOOP":
         return None
     rest = _Rest(row, start + 1)
-    is_open = rest.take("(")
-    while rest.says("each", "every", "declare"):
+    has_bracket = rest.take("(")
+    while rest.means("each", "every", "declare"):
         rest.k += 1
-    begun, name = rest.k, rest.text()
+    name_start, name = rest.k, rest.text()
     if name in WORDS or not name.isidentifier() or lexicon_concept(name):
         return None
     rest.k += 1
     step: int | None = 1
-    if rest.text() in _IN and rest.text(1) == "RANGE" and rest.text(2) == "(":
+    if rest.text() in _IN_WORDS and rest.text(1) == "RANGE" and rest.text(2) == "(":
         rest.k += 3
         numbers = [rest.number()]
         numbers += [rest.number()] if rest.take(",") else []
         step = rest.number() if rest.take(",") else step
-        first, behind = (0, *numbers)[-2:]
-        is_whole = rest.take(")")
-    elif rest.take("=", ":=") or rest.says("from", "to"):
-        rest.k += rest.says("from", "to")
+        first, bound = (0, *numbers)[-2:]
+        is_complete = rest.take(")")
+    elif rest.take("=", ":=") or rest.means("from", "to"):
+        rest.k += rest.means("from", "to")
         first = rest.number()
         if rest.take(";"):
-            is_whole = rest.take(name)
+            is_complete = rest.take(name)
             is_closed = rest.text() == "<="
-            is_whole &= rest.take("<", "<=")
-            behind = _plus(rest.number(), int(is_closed))
-            is_whole &= rest.take(";") and rest.take(name)
-            is_more = rest.text() == "+" and rest.text(1) == "="
-            rest.k += 2 * is_more
-            step = rest.number() if is_more or rest.take("+=") else step
-            is_whole &= is_more or step != 1 or rest.take("++")
+            is_complete &= rest.take("<", "<=")
+            bound = _plus(rest.number(), int(is_closed))
+            is_complete &= rest.take(";") and rest.take(name)
+            is_increment = rest.text() == "+" and rest.text(1) == "="
+            rest.k += 2 * is_increment
+            step = rest.number() if is_increment or rest.take("+=") else step
+            is_complete &= is_increment or step != 1 or rest.take("++")
         else:
-            is_whole = rest.says("to", "until")
-            while rest.says("to", "until"):
+            is_complete = rest.means("to", "until")
+            while rest.means("to", "until"):
                 rest.k += 1
-            behind = _plus(rest.number(), 1)
+            bound = _plus(rest.number(), 1)
             if lexicon_meaning(rest.text(), "unit")[:1] == ("steps",):
                 rest.k += 1
                 step = rest.number()
     else:
         return None
-    is_whole = is_whole and (not is_open or rest.take(")"))
-    rest.k += rest.text() == ":" or rest.says("do")
-    if not is_whole or first is None or behind is None or behind <= first or not step:
+    is_complete = is_complete and (not has_bracket or rest.take(")"))
+    rest.k += rest.text() == ":" or rest.means("do")
+    if not is_complete or first is None or bound is None or bound <= first or not step:
         return None
-    return _Counter(start, begun, rest.k, name, first, -((first - behind) // step), step)
+    return _Counter(start, name_start, rest.k, name, first, -((first - bound) // step), step)
 
 
-def _plus(number: int | None, more: int) -> int | None:
-    return None if number is None else number + more
+def _plus(number: int | None, increment: int) -> int | None:
+    return None if number is None else number + increment
 
 
 class _Rest:
@@ -171,10 +178,10 @@ class _Rest:
         self.row = row
         self.k = k
 
-    def text(self, ahead: int = 0) -> str:
-        return self.row[self.k + ahead].text if self.k + ahead < len(self.row) else ""
+    def text(self, offset: int = 0) -> str:
+        return self.row[self.k + offset].text if self.k + offset < len(self.row) else ""
 
-    def says(self, *kinds: str) -> bool:
+    def means(self, *kinds: str) -> bool:
         is_word = self.k < len(self.row) and self.row[self.k].kind is WORD
         return is_word and bool(lexicon_meaning(self.text(), *kinds))
 

@@ -17,10 +17,10 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import search, slips
-from tiniscript.recovery.ends import added_end, header_of, possible_places, shown
+from tiniscript.recovery.ends import added_end, header_of, places_text, possible_places
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    ENDED,
+    WORD_OF_END,
     Lexeme,
     lexemes,
     lexicon_meaning,
@@ -29,25 +29,25 @@ from tiniscript.recovery.meanings import (
     texts,
 )
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions
+from tiniscript.recovery.slips import BLOCK_WORDS, Change, Slip, alike, instructions
 from tiniscript.recovery.writing import in_one_line, laid_out, spoken_signs, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_FEW = 3  # names of signs that a message shows
-_DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
+_MOST_SIGN_NAMES = 3  # names of signs that a message shows
+_CODES_OF_EACH_WORD = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
-_OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
-             codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
-_SHOW_WHOLE = frozenset((
+_BLOCK_CODES = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
+                codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
+_CODES_SHOWN_WHOLE = frozenset((
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
     codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
-_OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
+_ARM_CODES = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
-_BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
+_SECOND_WORD = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
-_SIGNS = ("BEEP", "SHOW", "S", "STOP")
+_WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
 
 
 class Slipped(NamedTuple):
@@ -70,8 +70,10 @@ class Slipped(NamedTuple):
     tones: str = ""
 
     def values(self, code: Code) -> dict[str, str]:
-        said = {name: str(its) for name, its in self._asdict().items() if name != "slip" and its}
-        return slips.values_of(self.slip, code) | said
+        own_values = {
+            name: str(value) for name, value in self._asdict().items() if name != "slip" and value
+        }
+        return slips.values_of(self.slip, code) | own_values
 
 
 @dataclass
@@ -141,7 +143,7 @@ def explained(program: str, candidate: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
     explainer = _Explainer(program, candidate)
     for k, change in enumerate(candidate.changes):
-        explainer.tell(k, change)
+        explainer.explain_change(k, change)
     for item in explainer.out:
         explainer.complete(item)
     return explainer.out
@@ -156,7 +158,7 @@ class _Block:
 
     word: str
     first: int
-    told: Explanation | None = None
+    explanation: Explanation | None = None
     inside: list[str] = field(default_factory=list)
 
 
@@ -170,28 +172,30 @@ class _Explainer:
         self.out: list[Explanation] = []
         self.open: list[_Block] = []
 
-    def complete(self, told: Explanation) -> None:
-        if told.code is not codes.NEVER_ENDS:
-            is_shown = self.candidate.is_whole and told.last > (told.first, 1)
-            told.whole = self.whole(told.first, told.last) if is_shown else ""
-        start, end = self.words(told.edits[0].span)
+    def complete(self, explanation: Explanation) -> None:
+        if explanation.code is not codes.NEVER_ENDS:
+            is_shown = self.candidate.is_whole and explanation.last > (explanation.first, 1)
+            explanation.whole = (
+                self.joined_changes(explanation.first, explanation.last) if is_shown else ""
+            )
+        start, end = self.words(explanation.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
-        told.span = Span(start, end)
-        told.is_sure = self.is_sure(told)
+        explanation.span = Span(start, end)
+        explanation.is_sure = self.is_sure(explanation)
 
-    def is_sure(self, told: Explanation) -> bool:
+    def is_sure(self, explanation: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
-        places = (place for edit in told.edits for place in edit.span)
+        places = (place for edit in explanation.edits for place in edit.span)
         lines = {self.program.count("\n", 0, place) for place in places}
-        touched = [
+        touched_changes = [
             change for change in self.changes if lines & {*range(change.first, change.last + 1)}
         ]
-        touched += [self.changes[k] for k in (told.first, *told.opened)]
-        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched)
-        has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
+        touched_changes += [self.changes[k] for k in (explanation.first, *explanation.opened)]
+        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched_changes)
+        has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & BLOCK_WORDS)
         is_block_sure = self.candidate.has_sure_blocks or not has_blocks
-        return is_block_sure and all(item.is_sure for item in touched)
+        return is_block_sure and all(item.is_sure for item in touched_changes)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -204,46 +208,54 @@ class _Explainer:
             end += len(behind[0]) - 1 if behind else 0
         return Span(start, end)
 
-    def whole(self, first: int, last: tuple[int, int]) -> str:
+    def joined_changes(self, first: int, last: tuple[int, int]) -> str:
         """Return what changes become, as one line, nothing where that is long."""
-        *others, text = (change.text for change in self.changes[first : last[0] + 1])
-        return in_one_line("\n".join((*others, *text.split("\n")[: last[1]])))
+        *earlier_lines, text = (change.text for change in self.changes[first : last[0] + 1])
+        return in_one_line("\n".join((*earlier_lines, *text.split("\n")[: last[1]])))
 
-    def tell(self, k: int, change: search.Change) -> None:
+    def explain_change(self, k: int, change: search.Change) -> None:
         old = "\n".join(self.lines[change.first : change.last + 1]).rstrip("\r")
-        own, *ends = change.text.split("\n")
-        around = self.open[-1] if self.open else None
-        before, after = tokens_of(old), tokens_of(own)
+        own_text, *ends = change.text.split("\n")
+        enclosing = self.open[-1] if self.open else None
+        before, after = tokens_of(old), tokens_of(own_text)
         closed = self.walk(k, after)
-        parts = [] if closed or "\n" in old else self.parts(k, old, own, before, after)
+        parts = [] if closed or "\n" in old else self.parts(k, old, own_text, before, after)
         for part in parts:
             self.new(k, part, *slips.code_of(part))
-        if own != old and not parts:
+        if own_text != old and not parts:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
-            edit = trimmed(place.start, old, own)
+            edit = trimmed(place.start, old, own_text)
             if ends and edit.span.start == place.end:
-                edit = Edit(place, own)  # the ends that are missing behind it come behind all of it
+                edit = Edit(
+                    place, own_text
+                )  # the ends that are missing behind it come behind all of it
             part = Change(place, edit, self.changes[k].steps, before, after)
             code, step = slips.code_of(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
-            is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
-            message = self.added(closed or around, edit, (k, 1), after) if is_more else None
+            has_added_end = code in (_ARM_CODES if is_arm else _BLOCK_CODES) and (
+                closed or is_brace or is_arm
+            )
+            message = (
+                self.added(closed or enclosing, edit, (k, 1), after) if has_added_end else None
+            )
             message = message or self.new(k, part, code, step)
             message.opened |= {closed.first} if closed else set()
-            if code is codes.WRONG_END and isinstance(about := message.about, Slipped):
-                right = slips.right_of(about.slip)
+            if code is codes.WRONG_END and isinstance(details := message.about, Slipped):
+                right = slips.right_of(details.slip)
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                message.about = about._replace(word=ENDED.get(right, ""), line=line, fix=right)
+                message.about = details._replace(
+                    word=WORD_OF_END.get(right, ""), line=line, fix=right
+                )
             for block in self.open:
                 if block.first == k or is_brace:
-                    block.told = block.told or message
+                    block.explanation = block.explanation or message
         line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
             self.end((k, count), change, end.strip(), line_end + end)
 
     def parts(
-        self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
+        self, k: int, old: str, own_text: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
     ) -> list[Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
@@ -254,16 +266,22 @@ class _Explainer:
             pairs = enumerate(zip(one, other, strict=True))
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
             steps.setdefault(n, []).append(Step(step.code, one[n], other[n]))
-        was, now = instructions(before), instructions(after)
-        notes = (without_note(item)[1] for item in (old, own))
-        if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
+        old_instructions, new_instructions = instructions(before), instructions(after)
+        notes = (without_note(item)[1] for item in (old, own_text))
+        if (
+            len(old_instructions) != len(new_instructions)
+            or len({*notes}) > 1
+            or {*texts(before)} & {*BRACES}
+        ):
             return []
-        if _is_closed(before) and not all(map(_is_closed, was)):
+        if _is_closed(before) and not all(map(_is_closed, old_instructions)):
             return []  # a separator is in brackets
-        matches = []
+        changes = []
         first, end = self.starts[self.changes[k].first], 0
-        for n, (part, meant) in enumerate(zip(was, now, strict=True)):
-            text, new = slips.written(part), slips.written(meant)
+        for n, (part, instruction) in enumerate(
+            zip(old_instructions, new_instructions, strict=True)
+        ):
+            text, new = slips.text_of(part), slips.text_of(instruction)
             start = old.index(text, end)
             end = start + len(text)
             if text != new:
@@ -271,57 +289,66 @@ class _Explainer:
                 edit = trimmed(place.start, text, new)
                 if edit.span.start == place.end:
                     edit = Edit(place, new)  # an end that is missing comes behind all of it
-                matches.append(Change(place, edit, steps.get(n, []), part, meant))
+                changes.append(Change(place, edit, steps.get(n, []), part, instruction))
                 if not steps.get(n) and text.isascii():
                     return []
-        has_all = all(it.after for it in matches)
-        is_alone = not self.candidate.is_whole and has_all  # others are not read
-        return matches if len(matches) > 1 or (len(was) > 1 and is_alone) else []
+        has_all_texts = all(it.after for it in changes)
+        is_separate_line = not self.candidate.is_whole and has_all_texts  # others are not read
+        return (
+            changes if len(changes) > 1 or (len(old_instructions) > 1 and is_separate_line) else []
+        )
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
         closed = None
         if self.open and tokens:
-            inside, head = self.open[-1].inside, tokens[0].text
-            inside[:] = [] if head in _ARMS else [*inside, head]
+            block_instructions, head = self.open[-1].inside, tokens[0].text
+            block_instructions[:] = [] if head in _ARMS else [*block_instructions, head]
         for token in tokens:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
-            elif token.text in ENDED and self.open:
-                ended = (item for item in self.open[::-1] if item.word == ENDED[token.text])
-                block = next(ended, self.open[-1])  # ends may be crossed
+            elif token.text in WORD_OF_END and self.open:
+                ending_blocks = (
+                    item for item in self.open[::-1] if item.word == WORD_OF_END[token.text]
+                )
+                block = next(ending_blocks, self.open[-1])  # ends may be crossed
                 self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
-                if block.told and block.told.last > (block.first, 1):
-                    block.told.last = max(block.told.last, (k, 1))
+                if block.explanation and block.explanation.last > (block.first, 1):
+                    block.explanation.last = max(block.explanation.last, (k, 1))
         return closed
 
     def added(
         self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
-        explanation = block.told if block else None
-        if block is None or explanation is None or explanation.code not in _SHOW_WHOLE:
+        explanation = block.explanation if block else None
+        if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None
         first = min(explanation.first, block.first)
-        if not self.whole(first, last):
+        if not self.joined_changes(first, last):
             return None
         explanation.edits.append(edit)
         explanation.first, explanation.last = first, max(explanation.last, last)
-        ends = next((item.text for item in after if item.text in ENDED), "")
+        ends = next((item.text for item in after if item.text in WORD_OF_END), "")
         explanation.ends = explanation.ends or ends
         return explanation
 
     def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
-        if spoken := spoken_signs(self.program[slice(*part.place)]) if part.after else ():
+        if (
+            spoken_signs_found := spoken_signs(self.program[slice(*part.place)])
+            if part.after
+            else ()
+        ):
             code = codes.OTHER_SIGN
-            about: Slipped | Unended = Slipped(
-                slips.slip_of(part, code, step), spoken=", ".join(spoken[:_FEW])
+            details: Slipped | Unended = Slipped(
+                slips.slip_of(part, code, step),
+                spoken=", ".join(spoken_signs_found[:_MOST_SIGN_NAMES]),
             )
         else:
-            about = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
-        self.out.append(Explanation(code, part.place, part.place, about, [part.edit], k, (k, 1)))
+            details = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
+        self.out.append(Explanation(code, part.place, part.place, details, [part.edit], k, (k, 1)))
         return self.out[-1]
 
     def slipped(self, k: int, part: Change, code: Code, step: Step | None) -> Slipped:
@@ -331,31 +358,42 @@ class _Explainer:
         if code is codes.OTHER_NOTE:
             return Slipped(slip, right=self.changes[k].text.strip())
         if code is codes.EXTRA_WORD and not step:
-            behind = _BEHIND.match(self.program, self.words(part.edit.span).start)
-            arm = behind[1].upper() if behind else ""
-            is_early = bool({arm, meant_by(arm)} & {*_ARMS})
-            return Slipped(slip, early=slips.found_in(slip) if is_early else "")
+            arm_match = _SECOND_WORD.match(self.program, self.words(part.edit.span).start)
+            arm = arm_match[1].upper() if arm_match else ""
+            is_early_arm = bool({arm, meant_by(arm)} & {*_ARMS})
+            return Slipped(slip, early=slips.found_in(slip) if is_early_arm else "")
         if code is codes.OTHER_CALL and (words := _words_of_numbers(part)):
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
             return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
-        if code in _DEDUPED:  # LIGHT_L and LIGHT_R
-            same = (it for it in self.changes[k].steps if it.code is code)
-            pairs = ((texts(it.before), texts(it.after)) for it in same)
-            names = [item for was, now in pairs for item in now if item not in was]
+        if code in _CODES_OF_EACH_WORD:  # LIGHT_L and LIGHT_R
+            steps = (it for it in self.changes[k].steps if it.code is code)
+            pairs = ((texts(it.before), texts(it.after)) for it in steps)
+            names = [
+                item
+                for old_texts, new_texts in pairs
+                for item in new_texts
+                if item not in old_texts
+            ]
             if slips.right_of(slip) in names:
                 return Slipped(slip, right=", ".join(dict.fromkeys(names)))
         return Slipped(slip)
 
     def unended(self, k: int, part: Change) -> Unended:
         """Return what is said of a block that lacks its end on the line where it begins."""
-        now, at = texts(part.after), added_end(part.before, part.after)
-        end = next((it for it in now if it in ENDED), "") if at is None else now[at]
-        unended = Unended(ENDED.get(end, ""), end)
-        inside = [instruction for instruction in instructions(part.after[:at]) if instruction]
+        new_texts, at = texts(part.after), added_end(part.before, part.after)
+        end = (
+            next((it for it in new_texts if it in WORD_OF_END), "") if at is None else new_texts[at]
+        )
+        unended = Unended(WORD_OF_END.get(end, ""), end)
+        block_instructions = [
+            instruction for instruction in instructions(part.after[:at]) if instruction
+        ]
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if at is not None and unended.word in now[:at]:
-            unended.behind = laid_out(inside[-1]) if inside else ""
-            unended.places = shown(possible_places(part.after[header_of(part.after, at) : at]))
+        if at is not None and unended.word in new_texts[:at]:
+            unended.behind = laid_out(block_instructions[-1]) if block_instructions else ""
+            unended.places = places_text(
+                possible_places(part.after[header_of(part.after, at) : at])
+            )
         elif k and above:  # its indentation says where it ends
             unended.line, unended.last = str(above.last + 1), _first_line(above)
         return unended
@@ -363,22 +401,24 @@ class _Explainer:
     def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
         """Tell of an end that is missing behind a line."""
         block = self.open.pop() if self.open else None
-        behind = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
-        edit = Edit(Span(behind, behind), text)
+        end_offset = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
+        edit = Edit(Span(end_offset, end_offset), text)
         if self.added(block, edit, last, lexemes(end)):
             return
         first, word = (block.first, block.word) if block else (last[0], "")
         result = Unended(word, end, line=str(change.last + 1), last=_first_line(change))
-        whole = self.whole(first, last)
+        whole_text = self.joined_changes(first, last)
         if block and self.may_end_earlier(block, last[0]):
-            result.several, result.last, whole = result.last, "", ""
+            result.several, result.last, whole_text = result.last, "", ""
             if before := self.early(block, last[0]):
                 result.early, result.begins = str(before.last + 1), _first_line(before)
         if first < last[0]:
             result.begun = str(self.changes[first].first + 1)
-        place = Span(self.starts[self.changes[first].first], behind)
+        place = Span(self.starts[self.changes[first].first], end_offset)
         self.out.append(
-            Explanation(codes.NEVER_ENDS, place, place, result, [edit], first, (first, 1), whole)
+            Explanation(
+                codes.NEVER_ENDS, place, place, result, [edit], first, (first, 1), whole_text
+            )
         )
 
     def early(self, block: _Block, last: int) -> search.Change | None:
@@ -389,8 +429,8 @@ class _Explainer:
         above = None
         for change in self.changes[block.first + 1 : last + 1]:
             words = texts(tokens_of(change.text))
-            is_apart = not change.text.strip() or (words[:1] and words[0] in BLOCK_ENDS)
-            if above and is_apart:
+            is_separate = not change.text.strip() or (words[:1] and words[0] in BLOCK_ENDS)
+            if above and is_separate:
                 return above
             above = change if words else above
         return None
@@ -400,14 +440,17 @@ class _Explainer:
 
         A sign or a stop behind others may as well come when a LOOP or a DEF is over.
         """
-        inside = block.inside
+        block_instructions = block.inside
         header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
         is_deeper = end[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
-        if len(inside) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
+        if len(block_instructions) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
-        is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
-        return is_sign or block.word not in ("LOOP", "DEF")
+        is_sign_of_end = (
+            block_instructions[-1] in _WORDS_OF_SIGNS
+            and block_instructions[-1] not in block_instructions[:-1]
+        )
+        return is_sign_of_end or block.word not in ("LOOP", "DEF")
 
 
 def _first_line(change: search.Change) -> str:
@@ -419,9 +462,9 @@ def _words_of_numbers(part: Change) -> list[str]:
     if len(part.before) != len(part.after):
         return []
     pairs = zip(part.before, part.after, strict=True)
-    changed = [(was, now) for was, now in pairs if was.text != now.text]
-    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed)
-    return list(dict.fromkeys(was.source or "" for was, _ in changed)) if are_words else []
+    changed_pairs = [(was, now) for was, now in pairs if was.text != now.text]
+    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed_pairs)
+    return list(dict.fromkeys(was.source or "" for was, _ in changed_pairs)) if are_words else []
 
 
 def _is_closed(tokens: Sequence[Lexeme]) -> bool:

@@ -16,44 +16,48 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.free_names import names_in, numbered_names
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
 
-_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins behind
+_INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
-_RESULT = "RESULT"
-_LONGEST = 4_000  # characters of a text that is looked at
-_SUMS = {*"+-*/%"}
-_OF_SUMS = {WORD, NUMBER, "(", ")", *_SUMS}
-_YES_NO = ("AND", "OR", "NOT")
+_RESULT_NAME = "RESULT"
+_MOST_CHARACTERS = 4_000  # characters of a text that is looked at
+_SUM_SIGNS = {*"+-*/%"}
+_KINDS_IN_SUMS = {WORD, NUMBER, "(", ")", *_SUM_SIGNS}
+_YES_NO_WORDS = ("AND", "OR", "NOT")
 
 
 def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     """Return what is told of DEFs that give a value back, and edits to read the rest with."""
     text = source.text
-    if "DEF" not in text.upper() or len(text) > _LONGEST:
+    if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
         return [], []
     tokens = scan(text).tokens
     names = {after.text for token, after in pairwise(tokens) if token.text == "DEF"}
     calls: dict[str, list[Span]] = {}
     for name, k in _values(tokens, names):
         calls.setdefault(name, []).append(_call(tokens, k))
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     edits: list[Edit] = []
     returned: set[str] = set()
-    result = _RESULT if _RESULT not in names_in(text) else next(numbered_names(text, _RESULT))
+    result = (
+        _RESULT_NAME
+        if _RESULT_NAME not in names_in(text)
+        else next(numbered_names(text, _RESULT_NAME))
+    )
     for name, word, value in _returns(tokens, {*calls}):
-        used = calls.get(name, [])
+        calls_of_name = calls.get(name, [])
         values = {"word": name, "back": text[slice(*value)]}
-        values |= {"call": text[slice(*used[0])]} if used else {}
+        values |= {"call": text[slice(*calls_of_name[0])]} if calls_of_name else {}
         edits.append(Edit(Span(word.start, value.start), f"{result} = "))
         if name not in returned:
-            told.append(Diagnostic(codes.NO_VALUE, word.span, values))
+            diagnostics.append(Diagnostic(codes.NO_VALUE, word.span, values))
         returned.add(name)
     for name, spans in calls.items():
         if name not in returned:
             place = Span(spans[0].start, spans[0].start + len(name))
             values = {"word": name, "called": name, "call": text[slice(*spans[0])]}
-            told.append(Diagnostic(codes.NO_VALUE, place, values))
+            diagnostics.append(Diagnostic(codes.NO_VALUE, place, values))
         edits += [Edit(span, result if name in returned else _filler(text, span)) for span in spans]
-    return told, edits
+    return diagnostics, edits
 
 
 def _values(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:
@@ -62,8 +66,8 @@ def _values(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int
         if token.kind is not WORD or token.text not in names or tokens[k + 1].kind != "(":
             continue
         before = tokens[k - 1] if k else None
-        if before is None or before.kind in (*_ENDS, WORD, NUMBER, ")"):
-            if before is None or before.text not in _YES_NO:
+        if before is None or before.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
+            if before is None or before.text not in _YES_NO_WORDS:
                 continue
         if any(each.kind == ")" for each in _until_end(tokens, k)):
             yield token.text, k
@@ -83,15 +87,15 @@ def _call(tokens: Sequence[Token], k: int) -> Span:
 def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
     """Yield the tokens of an instruction from one on."""
     for token in tokens[k:]:
-        if token.kind in _ENDS:
+        if token.kind in _INSTRUCTION_ENDS:
             return
         yield token
 
 
-def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Token, Span]]:
+def _returns(tokens: Sequence[Token], names_used: set[str]) -> Iterator[tuple[str, Token, Span]]:
     """Yield each RETURN with a value in a DEF: the name of that, the word, and the value.
 
-    So is a sum alone, `N * 2`, in one that is `used` as a value.
+    So is a sum alone, `N * 2`, in one that is `names_used` as a value.
     """
     name, begins = "", True
     for k, token in enumerate(tokens):
@@ -103,12 +107,17 @@ def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Tok
             value = [*_until_end(tokens, k + 1)]
             if value:
                 yield name, token, Span(value[0].start, value[-1].end)
-        elif begins and name in used and token.kind in (WORD, NUMBER, "("):
+        elif begins and name in names_used and token.kind in (WORD, NUMBER, "("):
             value = [*_until_end(tokens, k)]
             kinds = {each.kind for each in value}
-            if len(value) > 2 and value[1].kind != "(" and kinds <= _OF_SUMS and kinds & _SUMS:
+            if (
+                len(value) > 2
+                and value[1].kind != "("
+                and kinds <= _KINDS_IN_SUMS
+                and kinds & _SUM_SIGNS
+            ):
                 yield name, token, Span(value[0].start, value[-1].end)
-        begins = token.kind in _ENDS
+        begins = token.kind in _INSTRUCTION_ENDS
 
 
 def _filler(text: str, span: Span) -> str:
@@ -116,5 +125,5 @@ def _filler(text: str, span: Span) -> str:
     before, after = text[: span.start].rstrip(), text[span.end :].lstrip()
     word = before.removesuffix("(").rstrip()[-6:].upper()
     is_asked = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
-    is_joined = before.upper().endswith(_YES_NO) or after[:3].upper() in ("AND", "OR ")
+    is_joined = before.upper().endswith(_YES_NO_WORDS) or after[:3].upper() in ("AND", "OR ")
     return "TRUE" if (is_asked and after.startswith(")")) or is_joined else "1"

@@ -7,8 +7,8 @@ from unicodedata import category
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 
-_KINDS = ("Cc", "Cf", "Zl", "Zp")
-_SEEN = "\t\n\r"
+_INVISIBLE_CATEGORIES = ("Cc", "Cf", "Zl", "Zp")
+_VISIBLE_CONTROLS = "\t\n\r"
 
 
 def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
@@ -27,7 +27,7 @@ def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def _is_invisible(sign: str) -> bool:
-    return sign not in _SEEN and category(sign) in _KINDS
+    return sign not in _VISIBLE_CONTROLS and category(sign) in _INVISIBLE_CATEGORIES
 
 
 def _visible_code(text: str) -> str:

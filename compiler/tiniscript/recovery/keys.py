@@ -18,19 +18,24 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import ASKING, ENDED, Names, lexemes, plain, words_of
+from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Names, lexemes, plain, words_of
 from tiniscript.recovery.writing import without_note
 
 KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
-_SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
-_STICK = {"LEFT": "PAD_X < 0", "RIGHT": "PAD_X > 0", "UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0"}
-_PART = re.compile(r"([^;{}|]*)(\|?)")
+_SIDE_OF_MOVE = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
+_STICK_CONDITIONS = {
+    "LEFT": "PAD_X < 0",
+    "RIGHT": "PAD_X > 0",
+    "UP": "PAD_Y > 0",
+    "DOWN": "PAD_Y < 0",
+}
+_INSTRUCTION_AND_BAR = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
-_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
-_EQUAL = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
-_GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
-_SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
-_LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
+_WORD_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
+_EQUAL_SIGNS = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
+_ORDER_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
+_ASSIGNMENT = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
+_LINK_KINDS = ("the", "of", "to", "is", "filler", "small", "pressed")
 _BEFORE, _BEHIND = ("(", "AND", "OR", "NOT"), (")", "AND", "OR")  # what is asked alone
 
 
@@ -60,16 +65,20 @@ def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
         return []
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(row) for row in rows], kit)
-    own = names.defs.union(*names.parameters.values(), _SET.findall(plain(source.text)))
+    own_names = names.defs.union(
+        *names.parameters.values(), _ASSIGNMENT.findall(plain(source.text))
+    )
     diagnostics: list[Diagnostic] = []
     start = depth = 0
     for row, line in zip(rows, source.text.split("\n"), strict=True):
-        for part in _PART.finditer(row):
+        for part in _INSTRUCTION_AND_BAR.finditer(row):
             if part[2]:
                 continue  # `SI|`
-            diagnostics += _Part(part[1], start + part.start(), names, own).told(depth > 0)
+            diagnostics += _Part(part[1], start + part.start(), names, own_names).diagnostics(
+                depth > 0
+            )
             words = [lexeme.text for lexeme in lexemes(part[1])]
-            depth += sum((it in BLOCK_ENDS) - (it in ENDED) for it in map(names.meant, words))
+            depth += sum((it in BLOCK_ENDS) - (it in WORD_OF_END) for it in map(names.meant, words))
         start += len(line) + 1
     return diagnostics
 
@@ -81,10 +90,10 @@ def key_edits(text: str, kit: Kit) -> list[Edit]:
 
 
 class _Part:
-    """An instruction, which begins at a place of a text that has names of its `own`."""
+    """An instruction, which begins at a place of a text with `own_names`."""
 
-    def __init__(self, text: str, at: int, names: Names, own: Set[str]) -> None:
-        self.own = own
+    def __init__(self, text: str, at: int, names: Names, own_names: Set[str]) -> None:
+        self.own_names = own_names
         self.text = text
         self.at = at
         self.names = names
@@ -96,28 +105,30 @@ class _Part:
             source = token.source or ""
             start = self.text.index(source, end)
             end = start + len(source)
-            if token.text in self.own:
+            if token.text in self.own_names:
                 yield _Piece("", Span(start, end))  # a variable may be called KEY
                 continue
-            for piece in _PIECE.finditer(_HUMP.sub(" ", source)):
-                humps = len(_HUMP.findall(source[: piece.end()]))
-                at = start + piece.start() - min(humps, piece.start())
-                yield from _split_key(plain(piece[0]), at if humps else start + piece.start())
+            for piece in _PIECE.finditer(_WORD_HUMP.sub(" ", source)):
+                hump_count = len(_WORD_HUMP.findall(source[: piece.end()]))
+                at = start + piece.start() - min(hump_count, piece.start())
+                yield from _split_key(plain(piece[0]), at if hump_count else start + piece.start())
 
-    def told(self, is_inside: bool) -> Iterator[Diagnostic]:
+    def diagnostics(self, is_in_block: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
         if order := self._assigned_key():
-            yield self._order(*order, "IF" if is_inside else "WHEN")
+            yield self._order(*order, "IF" if is_in_block else "WHEN")
             return
-        asks = (k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING)
-        k = next(asks, len(self.pieces))
-        asked = None
+        asking_positions = (
+            k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING_WORDS
+        )
+        k = next(asking_positions, len(self.pieces))
+        key_before = None
         while k < len(self.pieces):
-            key = self._key(k) or self._stick(k) or self._side(k, asked)
+            key = self._key(k) or self._stick(k) or self._side(k, key_before)
             if key is not None:
                 yield from self._key_diagnostics(key)
             k = key.end if key else k + 1
-            asked = key or (asked if self._word(k) in ("AND", "OR") else None)
+            key_before = key or (key_before if self._word(k) in ("AND", "OR") else None)
 
     def _key_of(self, piece: _Piece) -> str:
         return self.names.meant(piece.word) if piece.word.isalpha() else ""
@@ -142,7 +153,7 @@ class _Part:
         key = (self._key(0) or self._stick(0)) if self.pieces else None
         if key is None or not key.right:
             return None
-        match = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        match = _ORDER_OF_KEY.fullmatch(self.text, self.pieces[key.end - 1].span.end)
         return (key, match[1].strip()) if match else None
 
     def _order(self, key: _Key, order: str, head: str) -> Diagnostic:
@@ -166,12 +177,12 @@ class _Part:
         if self._word(k).isalpha() and self._word(k + 1) == "." and not _is_key(self._word(k)):
             key = self._key(k + 2)  # of a thing: `input.buttonIsPressed(Button.A)`
             return key and key._replace(first=k)
-        begun = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINKS))
-        side = _side(self._word(begun))
+        side_position = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINK_KINDS))
+        side = _side(self._word(side_position))
         at = (
-            self._while(begun + 1, lambda it: _is_key_word(it, "the", "of") or it == "_")
+            self._while(side_position + 1, lambda it: _is_key_word(it, "the", "of") or it == "_")
             if side
-            else begun
+            else side_position
         )
         if not _is_key(self._word(at)):
             return None
@@ -179,27 +190,30 @@ class _Part:
         end = self._past_keys(at) if self._word(end) in ("A", "B") else end
         signs: list[str] = []
         if not side:
-            behind = self._while(
+            end_position = self._while(
                 end,
                 lambda it: (
-                    it in _EQUAL
+                    it in _EQUAL_SIGNS
                     or _is_key(it)
-                    or _is_key_word(it, *_LINKS)
+                    or _is_key_word(it, *_LINK_KINDS)
                     or bool(lexicon_meaning(it, "to"))
                 ),
             )
-            letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
-            side = _side(self._word(behind))
-            last = behind if side else next(letters, None)
+            letters = (n for n in range(end, end_position + 1) if self._word(n) in ("A", "B"))
+            side = _side(self._word(end_position))
+            last = end_position if side else next(letters, None)
             side = side or (self._word(last) if last is not None else "")
-            if not side and begun - k > 1 and self._word(begun - 1) in ("A", "B"):
-                side, last = self._word(begun - 1), end - 1  # `the A button`
-            signs = [self._word(n) for n in range(end, behind)]
+            if not side and side_position - k > 1 and self._word(side_position - 1) in ("A", "B"):
+                side, last = self._word(side_position - 1), end - 1  # `the A button`
+            signs = [self._word(n) for n in range(end, end_position)]
             is_button = lexicon_concept(self._word(at)) == "BUTTON"
             if not side and is_button:
                 return None
-            is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
-            end = (last if last is not None else behind if is_compared else end - 1) + 1
+            is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(end_position) not in (
+                "",
+                ")",
+            )
+            end = (last if last is not None else end_position if is_compared else end - 1) + 1
         while self._word(end) == "_" and self._word(end + 1).isalnum():
             end += 2  # a name is one thing
         closing = self._while(
@@ -210,14 +224,14 @@ class _Part:
         )
         if "(" in signs and self._word(end) == ")":
             end += 1
-        is_not = bool({*signs} & {"<>", "!="})
+        is_negated = bool({*signs} & {"<>", "!="})
         if self._word(end) in ("=", "==") and self._word(end + 1) in ("0", "1"):
-            is_not, end = self._word(end + 1) == "0", end + 2
-        first = k if self._mentions_pressed(k, begun) else begun
+            is_negated, end = self._word(end + 1) == "0", end + 2
+        first = k if self._mentions_pressed(k, side_position) else side_position
         before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
-        if before.word == "(" or self._key_of(before) in ASKING:
+        if before.word == "(" or self._key_of(before) in ASKING_WORDS:
             first = k  # with its article
-        return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
+        return _Key(first, end, f"{'NOT ' if is_negated else ''}KEY_{side}" if side else "")
 
     def _stick(self, k: int) -> _Key | None:
         """Return what the stick is asked: the number that says its side."""
@@ -233,13 +247,15 @@ class _Part:
         axis = self._while(at + 1, lambda it: it in ("_", ".") or _is_stick(it))
         has_axis = self._word(axis) in ("X", "Y")
         end = axis + 1 if has_axis else at + 1
-        is_not = False
+        is_negated = False
         if not side:
-            behind = self._while(end, lambda it: it in _EQUAL or bool(lexicon_meaning(it, *_LINKS)))
-            side = _side(self._word(behind))
-            signs = {self._word(n) for n in range(end, behind)}
-            is_not = bool(signs & {"<>", "!="})
-            end = behind + 1 if side else end
+            end_position = self._while(
+                end, lambda it: it in _EQUAL_SIGNS or bool(lexicon_meaning(it, *_LINK_KINDS))
+            )
+            side = _side(self._word(end_position))
+            signs = {self._word(n) for n in range(end, end_position)}
+            is_negated = bool(signs & {"<>", "!="})
+            end = end_position + 1 if side else end
             closing = self._while(end, lambda it: it in ('"', "'"))
             end = closing if signs & {'"', "'"} else end
             end += bool(side and "(" in signs and self._word(end) == ")")
@@ -247,9 +263,11 @@ class _Part:
             is_button = self._word(end) in ("A", "B") and self._word(end + 1) in ("", *_BEHIND)
             return _Key(k, end + 1, f"KEY_{self._word(end)}", is_sure=False) if is_button else None
         end = self._while(end, lambda it: _is_key_word(it, "is", "pressed"))
-        is_no, end = self._as_yes_no(end)
-        no, arrow = "NOT " * (is_not or is_no), "" if has_axis else f"KEY_{side}"
-        return _Key(k, end, f"{no}{_STICK[side]}", arrow and f"{no}{arrow}", is_sure=False)
+        is_asked_for_no, end = self._as_yes_no(end)
+        no, arrow = "NOT " * (is_negated or is_asked_for_no), "" if has_axis else f"KEY_{side}"
+        return _Key(
+            k, end, f"{no}{_STICK_CONDITIONS[side]}", arrow and f"{no}{arrow}", is_sure=False
+        )
 
     def _side(self, k: int, before: _Key | None) -> _Key | None:
         """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`.
@@ -258,16 +276,18 @@ class _Part:
         """
         side = _side(self._word(k))
         end = self._while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
-        is_not, end = self._as_yes_no(end)
-        is_alone = self._word(k - 1) in _BEFORE and self._word(end) in _BEHIND
+        is_negated, end = self._as_yes_no(end)
+        stands_alone = self._word(k - 1) in _BEFORE and self._word(end) in _BEHIND
         is_call = self._word(k - 1) == "(" and self._word(k - 2).isalpha()
-        is_alone = is_alone and not (is_call and self._key_of(self.pieces[k - 2]) not in ASKING)
+        stands_alone = stands_alone and not (
+            is_call and self._key_of(self.pieces[k - 2]) not in ASKING_WORDS
+        )
         is_upright = side in ("UP", "DOWN") or self._mentions_pressed(k + 1, end)
-        if not side or not is_alone or not (is_upright or "LINE_L" not in self.names.sensors):
+        if not side or not stands_alone or not (is_upright or "LINE_L" not in self.names.sensors):
             return None
-        no, arrow = "NOT " * is_not, f"KEY_{side}"
+        no, arrow = "NOT " * is_negated, f"KEY_{side}"
         if before and before.arrow:
-            return _Key(k, end, f"{no}{_STICK[side]}", f"{no}{arrow}", is_sure=False)
+            return _Key(k, end, f"{no}{_STICK_CONDITIONS[side]}", f"{no}{arrow}", is_sure=False)
         return _Key(k, end, f"{no}{arrow}", is_sure=is_upright)
 
     def _as_yes_no(self, k: int) -> tuple[bool, int]:
@@ -279,8 +299,8 @@ class _Part:
     def _word(self, k: int) -> str:
         return self.pieces[k].word if 0 <= k < len(self.pieces) else ""
 
-    def _while(self, k: int, fits: Callable[[str], bool]) -> int:
-        while k < len(self.pieces) and fits(self._word(k)):
+    def _while(self, k: int, predicate: Callable[[str], bool]) -> int:
+        while k < len(self.pieces) and predicate(self._word(k)):
             k += 1
         return k
 
@@ -298,7 +318,7 @@ class _Part:
 def _is_key_word(word: str, *kinds: str) -> bool:
     return bool(lexicon_meaning(word, *kinds)) and not {word, lexicon_concept(word)} & {
         *WORDS,
-        *ASKING,
+        *ASKING_WORDS,
     }
 
 
@@ -312,7 +332,7 @@ def _is_stick(word: str) -> bool:
 
 def _side(word: str) -> str:
     if word and not word.isascii():
-        return _SIDES.get(lexicon_concept(word) or "", "")
+        return _SIDE_OF_MOVE.get(lexicon_concept(word) or "", "")
     return "".join(lexicon_meaning(word, "up", "down", "left", "right")).upper()
 
 

@@ -18,23 +18,25 @@ from tiniscript.recovery.meanings import meant_by, plain
 from tiniscript.recovery.writing import without_note
 
 _FIRST_NUMBERS = (1, 10, 100)
-_COUNTED = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
-_PLACE = re.compile(r"(?i)(?:^|[;{}]|\bS[IB][ \t]*\|)[ \t]*(?=[(\w])")
+_COUNTED_LINE = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
+_INSTRUCTION_START = re.compile(r"(?i)(?:^|[;{}]|\bS[IB][ \t]*\|)[ \t]*(?=[(\w])")
 _LABEL = re.compile(
     r"(?:(?P<word>[^\W\d_]{2,})[ \t]*(?:n[º°o]?\.?|#)?[ \t]*(?=[\d(]|\b[A-Za-z]\b))?\(?"
     r"(?P<count>\d{1,3}(?:\.\d{1,2})*|[A-Ha-h])(?P<sign>[ºª°]?[ \t]*[.):\]–—-]+|[ºª°])?"
     r"(?P<space>[ \t]*)(?=(?P<next>[^\W\d]\w*)[ \t]*(?P<after>[|(=])?)"
 )
-_NAME = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
+_NAMED_WORD = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
 
 
 @lru_cache(100)
 def labels(text: str) -> tuple[Span, ...]:
     """Return where the labels of a text are, each with the spaces behind it."""
-    numbers = [*_COUNTED.finditer(text)]
-    counted = [int(number[1]) for number in numbers]
-    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
-    if is_counting and counted == [*range(counted[0], counted[-1] + 1, counted[0])]:
+    numbers = [*_COUNTED_LINE.finditer(text)]
+    line_numbers = [int(number[1]) for number in numbers]
+    is_counting = len(line_numbers) > 1 and line_numbers[0] in _FIRST_NUMBERS
+    if is_counting and line_numbers == [
+        *range(line_numbers[0], line_numbers[-1] + 1, line_numbers[0])
+    ]:
         return tuple(Span(number.start(1), number.end()) for number in numbers)
     return tuple(_in_lines(text))
 
@@ -50,17 +52,19 @@ def labelled(source: Source) -> list[Diagnostic]:
 
 
 def _in_lines(text: str) -> Iterator[Span]:
-    start, is_open = 0, False
+    start, is_value_open = 0, False
     for line in text.split("\n"):
         body = without_note(line)[0]
-        depth = read = 0  # of brackets, up to where they are counted
-        for place in _PLACE.finditer(body):
-            depth += body.count("(", read, place.start()) - body.count(")", read, place.start())
-            read = place.start()
+        depth = counted_to = 0  # of brackets, up to where they are counted
+        for place in _INSTRUCTION_START.finditer(body):
+            depth += body.count("(", counted_to, place.start()) - body.count(
+                ")", counted_to, place.start()
+            )
+            counted_to = place.start()
             label = _LABEL.match(body, place.end())
-            if label and not is_open and depth <= 0 and _is_label(label, text):
+            if label and not is_value_open and depth <= 0 and _is_label(label, text):
                 yield Span(start + label.start(), start + label.end())
-        is_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
+        is_value_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
         start += len(line) + 1
 
 
@@ -101,4 +105,4 @@ def _is_name(word: str, text: str) -> bool:
 
 @lru_cache(1)
 def _names(text: str) -> frozenset[str]:
-    return frozenset(match[1] or match[2] for match in _NAME.finditer(plain(text)))
+    return frozenset(match[1] or match[2] for match in _NAMED_WORD.finditer(plain(text)))

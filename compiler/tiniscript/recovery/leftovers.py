@@ -15,19 +15,19 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, l
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.calls import likely_word
-from tiniscript.recovery.meanings import ASKING, ENDED, Lexeme, Names, lexemes, plain
+from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Lexeme, Names, lexemes, plain
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import WORD
 
-_SETUP = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
-_BEGUN = re.compile(r"(?i)^\s*S[IB]\s*\|")
-_TASK = re.compile(r"\bTASK[ \t]+([A-Z]\w*)")
-_PART = re.compile(r"[^;{}|]+")
+_SETUP_ANYWHERE = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
+_SETUP_AT_START = re.compile(r"(?i)^\s*S[IB]\s*\|")
+_NAMED_TASK = re.compile(r"\bTASK[ \t]+([A-Z]\w*)")
+_INSTRUCTION = re.compile(r"[^;{}|]+")
 _CALL = re.compile(r"\s*(\w+)\s*(?:\([^()]*\))?[\s.]*")
-_HEADS = frozenset((*BLOCK_ENDS, *ASKING, "ELSE", "FOREVER"))
-_MOST = 3  # words
-_ALONE = frozenset(("BREAK", "S", "START", "STOP", *ENDED))
-_MEANS_NOTHING = frozenset((
+_HEADER_WORDS = frozenset((*BLOCK_ENDS, *ASKING_WORDS, "ELSE", "FOREVER"))
+_MOST_LEFTOVER_WORDS = 3  # words
+_WORDS_ALONE = frozenset(("BREAK", "S", "START", "STOP", *WORD_OF_END))
+_EMPTY_WORDS = frozenset((
     "filler", "small", "please", "the", "of", "to", "in", "is", "soon", "there", "this", "so",
     "bye", "above", "program", "all", "moment", "one", "ahead", "first", "idle",
 ))  # fmt: skip
@@ -39,7 +39,7 @@ def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     names = Names([lexemes(row) for row in rows], kit)
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
-    tasks = frozenset(_TASK.findall(plain(source.text)))  # which have no name
+    tasks = frozenset(_NAMED_TASK.findall(plain(source.text)))  # which have no name
     diagnostics: list[Diagnostic] = []
     for row, start in zip(rows, starts, strict=False):
         diagnostics += _words(row, start, names, tasks)
@@ -60,11 +60,16 @@ def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterato
     """Give the word for an end below a program in which no block begins: `Fim.`"""
     last = max((k for k, row in enumerate(rows) if row.strip()), default=0)
     tokens = [token for token in lexemes(rows[last]) if token.text not in (".", ";")]
-    above = [part for row in rows[:last] for part in _BEGUN.sub("", row).split(";") if part.strip()]
-    calls = [_CALL.fullmatch(part) for part in above]
-    is_open = any(it is None or not _is_call(it, names) for it in calls)
+    instructions_above = [
+        part
+        for row in rows[:last]
+        for part in _SETUP_AT_START.sub("", row).split(";")
+        if part.strip()
+    ]
+    calls = [_CALL.fullmatch(part) for part in instructions_above]
+    has_block_start = any(it is None or not _is_call(it, names) for it in calls)
     is_end = len(tokens) == 1 and last > 0 and bool(lexicon_meaning(tokens[0].text, "end"))
-    if is_end and not is_open and not names.is_name(tokens[0].text):
+    if is_end and not has_block_start and not names.is_name(tokens[0].text):
         begin = starts[last] + len(rows[last]) - len(rows[last].lstrip())
         span = Span(begin, starts[last] + len(rows[last]))
         word = tokens[0].source or ""
@@ -76,14 +81,16 @@ def _is_call(part: re.Match[str], names: Names) -> bool:
     """Whether an instruction begins no block: it is one of the language, or nearly so."""
     word = part[1].upper()
     meant = names.meant(word) or likely_word(word, part[0].strip())
-    return names.is_name(word) or (meant in WORDS and meant not in _HEADS)
+    return names.is_name(word) or (meant in WORDS and meant not in _HEADER_WORDS)
 
 
 def _setups(row: str, start: int) -> Iterator[Diagnostic]:
     """Give each `SI|` behind an instruction of its line: what follows it comes next."""
-    for match in _SETUP.finditer(row):
-        is_behind = match["before"] == ")" or bool(_BEGUN.search(row[: match.start("setup")]))
-        if match["before"] is None or not is_behind or match["setup"][1:2] in "Bb":
+    for match in _SETUP_ANYWHERE.finditer(row):
+        follows_instruction = match["before"] == ")" or bool(
+            _SETUP_AT_START.search(row[: match.start("setup")])
+        )
+        if match["before"] is None or not follows_instruction or match["setup"][1:2] in "Bb":
             continue
         place = Span(start + match.start("setup"), start + match.end("setup"))
         edit = Edit(Span(start + match.end("before"), start + match.end()), "; ")
@@ -92,9 +99,9 @@ def _setups(row: str, start: int) -> Iterator[Diagnostic]:
 
 
 def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diagnostic]:
-    for part in _PART.finditer(row):
+    for part in _INSTRUCTION.finditer(row):
         tokens = lexemes(part[0])
-        if not 1 < len(tokens) <= 1 + _MOST or tokens[0].text not in _ALONE:
+        if not 1 < len(tokens) <= 1 + _MOST_LEFTOVER_WORDS or tokens[0].text not in _WORDS_ALONE:
             continue
         if all(it.text in tasks or _is_filler(it, names) for it in tokens[1:]):
             end = start + part.start() + len(part[0].rstrip())
@@ -113,4 +120,4 @@ def _is_filler(token: Lexeme, names: Names) -> bool:
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
         return False
     kinds = {item.kind for item in lexicon().get(word, ())}
-    return lexicon_concept(word) is None and kinds <= _MEANS_NOTHING
+    return lexicon_concept(word) is None and kinds <= _EMPTY_WORDS

@@ -19,11 +19,11 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
 from tiniscript.recovery.meanings import (
-    CALLED,
+    CALL_WORDS,
     KNOWN,
-    LONG_S,
+    LONG_TIME_S,
     NEAR,
-    REMEMBERED,
+    REMEMBERED_LINES,
     Lexeme,
     Meaning,
     Names,
@@ -36,23 +36,23 @@ from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 
-STATES = 80  # of one line that are looked at
-SLIP_STATES = 40
-QUICK_STATES = 8
-FARTHEST = 1.05  # what a rival may cost more than the cheapest reading
-MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
+MOST_STATES = 80  # of one line that are looked at
+MOST_SLIP_STATES = 40
+MOST_QUICK_STATES = 8
+RIVAL_MARGIN = 1.05  # what a rival may cost more than the cheapest reading
+SURE_MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
 SLIP_MARGIN = 0.3
-RIVALS = 4
-LONGEST = 300  # tokens of a line
+MOST_RIVALS = 4
+MOST_TOKENS = 300  # tokens of a line
 ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")
-LONGEST_WITH_SLIPS = 80
-_FIRST_STEPS = 30
-_CALCULATES = SIGNS | {"°"}  # without it another number would be meant
-_NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
-_PLAIN_DIGITS = 4
-_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
-_EDGES = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
+MOST_TOKENS_WITH_SLIPS = 80
+_MOST_FIRST_STEPS = 30
+_CALCULATION_SIGNS = SIGNS | {"°"}  # without it another number would be meant
+_NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
+_MOST_PLAIN_DIGITS = 4
+_WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
+_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
 
 
 class Step(NamedTuple):
@@ -76,23 +76,23 @@ class Reading(NamedTuple):
     is_new_line: bool
     items: Sequence[Item] | None = None
 
-    def changed(
+    def with_change(
         self, tokens: list[Lexeme], cost: float, code: Code, is_sure: bool = True,
         is_new_line: bool = False,
     ) -> Reading:  # fmt: skip
         steps = (*self.steps, Step(code, self.tokens, tokens))
-        sure, new = self.is_sure and is_sure, self.is_new_line or is_new_line
-        return Reading(self.cost + cost, tokens, steps, sure, new)
+        is_still_sure, has_new_line = self.is_sure and is_sure, self.is_new_line or is_new_line
+        return Reading(self.cost + cost, tokens, steps, is_still_sure, has_new_line)
 
     @property
     def text(self) -> tuple[str, ...]:
         return texts(self.tokens)
 
     @property
-    def said(self) -> str:
+    def text_read(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
         text = " ".join(item for item in self.text if item != ";")
-        while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
+        while (bare := _NEEDLESS_BRACKETS.sub(r"\1\2", text)) != text:
             text = bare
         return text
 
@@ -111,25 +111,27 @@ def _normalized(token: Lexeme) -> tuple[str, str]:
     text = token.text
     if text in DEGREES:
         return (WORD, "DEG")
-    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _PLAIN_DIGITS
+    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _MOST_PLAIN_DIGITS
     return token.kind, "1" if is_plain else text
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     items: list[Item] = []
     start = 0
-    around = [";", *(text for _, text in tokens), BRACES[1], ";"]
-    for k, (before, text, after) in enumerate(zip(around, around[1:], around[2:], strict=False)):
-        is_apart = {before, after} <= {";", "|", *BRACES}
-        is_end = is_apart and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
+    padded_texts = [";", *(text for _, text in tokens), BRACES[1], ";"]
+    for k, (before, text, after) in enumerate(
+        zip(padded_texts, padded_texts[1:], padded_texts[2:], strict=False)
+    ):
+        is_separate = {before, after} <= {";", "|", *BRACES}
+        is_end = is_separate and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
         part = outline(tokens[start:k], names.read_as)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
-        if joined := _joined_names(tokens[start:k]):
-            return Failure(start, joined + start)
+        if joined_name := _joined_names(tokens[start:k]):
+            return Failure(start, joined_name + start)
         items += [item._replace(start=item.start + start, end=item.end + start) for item in part]
         if k < len(tokens):
             items.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
@@ -139,12 +141,17 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
 
 def _joined_names(tokens: Sequence[tuple[str, str]]) -> int:
     """Return where a word joins the names of a DEF, 0 for nowhere: `DEF SIDE(X and Y)`."""
-    inside = is_def = False
+    is_in_brackets = is_def = False
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
-        inside = is_def and (inside or text == "(") and text != ")"
-        around = {tokens[k - 1][0], tokens[k + 1][0]}
-        if inside and kind == WORD and around == {WORD} and lexicon_meaning(text, "then"):
+        is_in_brackets = is_def and (is_in_brackets or text == "(") and text != ")"
+        neighbours = {tokens[k - 1][0], tokens[k + 1][0]}
+        if (
+            is_in_brackets
+            and kind == WORD
+            and neighbours == {WORD}
+            and lexicon_meaning(text, "then")
+        ):
             return k
     return 0
 
@@ -157,12 +164,12 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
     return _read(tuple(tokens), names, is_quick)
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
-    whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    message = ((reading, right(reading.tokens, names)) for reading in whole)
+    whole_readings = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
+    message = ((reading, right(reading.tokens, names)) for reading in whole_readings)
     return [reading._replace(items=its) for reading, its in message if not isinstance(its, Failure)]
 
 
@@ -177,40 +184,52 @@ class _Search:
 
     def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
         first = self.at_once(Reading(0, tokens, (), True, False))
-        readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
-        has_words = any(token.kind in (WORD, NUMBER) for token in tokens)
-        if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
-            found = self.search(first, SLIP_STATES, self.with_slips)
-            found = [
+        readings = self.search(
+            first, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewritten
+        )
+        has_word_or_number = any(token.kind in (WORD, NUMBER) for token in tokens)
+        if (
+            not is_quick
+            and not readings
+            and has_word_or_number
+            and len(tokens) < MOST_TOKENS_WITH_SLIPS
+        ):
+            readings_found = self.search(first, MOST_SLIP_STATES, self.with_slips)
+            readings_found = [
                 reading
-                for reading in found
-                if reading.items and reading.cost < found[0].cost + SLIP_MARGIN
+                for reading in readings_found
+                if reading.items and reading.cost < readings_found[0].cost + SLIP_MARGIN
             ]
-            is_alone = len({reading.said for reading in found}) == 1
-            readings = [reading._replace(is_sure=reading.is_sure and is_alone) for reading in found]
+            is_only_reading = len({reading.text_read for reading in readings_found}) == 1
+            readings = [
+                reading._replace(is_sure=reading.is_sure and is_only_reading)
+                for reading in readings_found
+            ]
         return readings
 
     def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
         """Return up to RIVALS right readings, the cheapest first, after `states` lines at most."""
         order = count()
         heap = [(first.cost, next(order), first)]
-        seen: set[tuple[str, ...]] = set()
+        texts_seen: set[tuple[str, ...]] = set()
         readings: list[Reading] = []
-        while heap and len(seen) < states:
+        while heap and len(texts_seen) < states:
             cost, _, reading = heapq.heappop(heap)
-            if readings and (cost > readings[0].cost + FARTHEST or len(readings) >= RIVALS):
+            if readings and (
+                cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MOST_RIVALS
+            ):
                 break
             text = reading.text
-            if text in seen:
+            if text in texts_seen:
                 continue
-            seen.add(text)
+            texts_seen.add(text)
             items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
                 if not self.says_twice(reading, items, first):
                     readings.append(reading._replace(items=items))
                 continue
             for after in successors(reading, items):
-                if len(after.tokens) < LONGEST:
+                if len(after.tokens) < MOST_TOKENS:
                     heapq.heappush(heap, (after.cost, next(order), after))
         return readings
 
@@ -228,12 +247,12 @@ class _Search:
 
     def at_once(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
-        for _ in range(_FIRST_STEPS):
+        for _ in range(_MOST_FIRST_STEPS):
             one = rewrites.one_word(reading.tokens, self.names)
             if one is not None:
-                tokens, is_name = one
-                code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
-                reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
+                tokens, is_sensor_name = one
+                code = codes.NAME_WITH_SPACE if is_sensor_name else codes.OTHER_LANGUAGE
+                reading = reading.with_change(tokens, 1.0 if is_sensor_name else 0.5, code)
                 continue
             after = next(self._apply_patterns(reading, None), None)
             if after is None:
@@ -249,15 +268,17 @@ class _Search:
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Make the rows that touch a place; for none those that come before all others."""
         line = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.tried(line, is_first=failure is None):
+        for row in rewrites.rows_to_try(line, is_first=failure is None):
             for match in line.matches(row.pattern):
                 start, end = line.span(match)
                 if failure and not _is_near(failure, start, end):
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
-                    is_new = ";" in row.becomes
-                    yield reading.changed(tokens, row.cost, row.code, not row.is_offered, is_new)
+                    is_new = ";" in row.replacement
+                    yield reading.with_change(
+                        tokens, row.cost, row.code, not row.is_offered, is_new
+                    )
                     break
 
     def _fill_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
@@ -271,15 +292,15 @@ class _Search:
             if call is None or call.times or texts(call.tokens) == texts(words):
                 continue
             line = [*tokens[:start], *call.tokens, *tokens[end:]]
-            yield reading.changed(line, call.cost, _code_of_call(words), call.is_sure)
+            yield reading.with_change(line, call.cost, _code_of_call(words), call.is_sure)
 
     def _translate_word(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
-        tokens, around = reading.tokens, ("", *reading.text, "")
+        tokens, padded_texts = reading.tokens, ("", *reading.text, "")
         for k, token in enumerate(tokens[: failure.at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
-            is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
+            is_function = padded_texts[k] in ("(", ",", *SIGNS) and padded_texts[k + 2] == "("
             is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
             guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
@@ -288,11 +309,16 @@ class _Search:
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                if concept == "TIME" and k > 1 and around[k] == "(" and around[k - 1] in CALLED:
+                if (
+                    concept == "TIME"
+                    and k > 1
+                    and padded_texts[k] == "("
+                    and padded_texts[k - 1] in CALL_WORDS
+                ):
                     continue  # for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
-                yield reading.changed(line, cost, codes.OTHER_LANGUAGE, is_sure)
+                yield reading.with_change(line, cost, codes.OTHER_LANGUAGE, is_sure)
             if meanings:
                 break
 
@@ -302,31 +328,31 @@ class _Search:
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
             for sign, code in rows.MISSING.items():
-                yield reading.changed([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
+                yield reading.with_change([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
             if k == len(tokens):
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            around = texts((*head[-1:], *rest[:1]))
+            neighbours = texts((*head[-1:], *rest[:1]))
             for sign in rows.CONFUSED.get(token.text, ""):
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 line = [*head, made(sign), *rest]
-                yield reading.changed(line, rows.CONFUSED_COST, code, sign not in around)
-            is_kept = _CALCULATES & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
-            if is_sign and not is_kept and category(token.text[0]) != "Sm":
+                yield reading.with_change(line, rows.CONFUSED_COST, code, sign not in neighbours)
+            is_needed = _CALCULATION_SIGNS & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
+            if is_sign and not is_needed and category(token.text[0]) != "Sm":
                 code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
-                yield reading.changed([*head, *rest], rows.EXTRA_COST, code, is_bracket)
+                yield reading.with_change([*head, *rest], rows.EXTRA_COST, code, is_bracket)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
                 if not is_sign or rest[0].kind in (WORD, NUMBER):
                     line = [*head, rest[0], token, *rest[1:]]
-                    yield reading.changed(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
+                    yield reading.with_change(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
 
 
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
     before = tokens[k - 1].text if k else ""
     rest = [token.text for token in tokens[k + 1 :]]
-    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATES & {*rest})
+    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATION_SIGNS & {*rest})
 
 
 def _code_of_call(words: Sequence[Lexeme]) -> Code:
@@ -351,7 +377,7 @@ def _is_near(failure: Failure, start: int, end: int) -> bool:
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
-    least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
+    least = LONG_TIME_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")
     return is_timed and bool(numbers) and float(numbers[0].text) >= least
 
@@ -360,12 +386,12 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     """Give the pieces of a line in which a call may be told: between separators and headers."""
     start = 0
     for k, token in enumerate([*tokens, made(";")]):
-        is_edge = token.text in _EDGES
-        is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALLED
-        if (is_edge or is_next) and start < k:
+        is_edge = token.text in _EDGE_WORDS
+        is_next_call = k > 0 and tokens[k - 1].text == ")" and token.text in CALL_WORDS
+        if (is_edge or is_next_call) and start < k:
             yield start, k
             start = k
         if is_edge:
             start = max(start, k + 1)
-        if token.text in _AT_END:
+        if token.text in _WORDS_AT_END:
             start = max(start, closed(tokens, k + 1) or k + 2)

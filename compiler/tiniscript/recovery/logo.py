@@ -16,18 +16,18 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, POWER, UNIT_OF, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import LONG_S, Names, lexemes, plain
+from tiniscript.recovery.meanings import LONG_TIME_S, Names, lexemes, plain
 from tiniscript.recovery.writing import without_note
 
 _TOKEN = re.compile(
     r"(?P<word>[^\W\d]\w*)|(?P<number>\d+(?:\.\d+)?)|(?P<sign>[\[\]])"
     r"|(?P<apart>[ \t]*[;|][ \t;]*)|[ \t,]+"
 )
-_TAUGHT = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
-_ALONE = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
+_TAUGHT_WORD = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
+_LONE_WORD = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
 _LEAST_STEPS = 5  # fewer are rather seconds
-_DEEPEST = 4  # loops
-_MOST = 12  # instructions that are read as one
+_MOST_NESTED_LOOPS = 4  # loops
+_MOST_INSTRUCTIONS = 12  # instructions that are read as one
 
 
 class _Token(NamedTuple):
@@ -44,10 +44,12 @@ def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
     for line in source.text.split("\n"):
         pieces = _pieces(without_note(line)[0], start)
         while pieces:
-            ends = range(min(len(pieces), _MOST), 0, -1)
-            tried = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
-            found = ((end, _diagnostic(tokens, source, names)) for end, tokens in tried)
-            end, diagnostic = next((it for it in found if it[1]), (1, None))
+            ends = range(min(len(pieces), _MOST_INSTRUCTIONS), 0, -1)
+            attempts = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
+            ends_and_diagnostics = (
+                (end, _diagnostic(tokens, source, names)) for end, tokens in attempts
+            )
+            end, diagnostic = next((it for it in ends_and_diagnostics if it[1]), (1, None))
             diagnostics += [diagnostic] if diagnostic else []
             pieces = pieces[end:]
         start += len(line) + 1
@@ -62,16 +64,16 @@ def _taught(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         body = without_note(line)[0]
-        taught, alone = _TAUGHT.fullmatch(body), _ALONE.fullmatch(body)
-        if taught and lexicon_meaning(plain(taught["to"]), "teach"):
-            span = Span(start + taught.start("to"), start + taught.end("name"))
-            name = plain(taught["name"])
+        definition, lone_word = _TAUGHT_WORD.fullmatch(body), _LONE_WORD.fullmatch(body)
+        if definition and lexicon_meaning(plain(definition["to"]), "teach"):
+            span = Span(start + definition.start("to"), start + definition.end("name"))
+            name = plain(definition["name"])
             fix = f"DEF {name}" if name.isidentifier() and name not in WORDS else ""
-            head = _taught_part(source, span, taught["to"], fix) if fix else None
+            head = _taught_part(source, span, definition["to"], fix) if fix else None
             is_empty = True
-        elif head and alone and lexicon_meaning(plain(alone[1]), "end"):
-            span = Span(start + alone.start(1), start + alone.end(1))
-            end = _taught_part(source, span, alone[1], BLOCK_ENDS["DEF"])
+        elif head and lone_word and lexicon_meaning(plain(lone_word[1]), "end"):
+            span = Span(start + lone_word.start(1), start + lone_word.end(1))
+            end = _taught_part(source, span, lone_word[1], BLOCK_ENDS["DEF"])
             diagnostics += [] if is_empty else [head, end]  # `para todo` stops
             head = None
         else:
@@ -80,8 +82,8 @@ def _taught(source: Source) -> list[Diagnostic]:
     return diagnostics
 
 
-def _taught_part(source: Source, span: Span, found: str, fix: str) -> Diagnostic:
-    values = {"found": found, "right": fix.split()[0], "fix": fix}
+def _taught_part(source: Source, span: Span, found_text: str, fix: str) -> Diagnostic:
+    values = {"found": found_text, "right": fix.split()[0], "fix": fix}
     repair = Repair((Edit(span, fix),), False)
     return Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
@@ -90,20 +92,20 @@ def _pieces(body: str, start: int) -> list[list[_Token]]:
     """Return the instructions of a line, each nothing where it has other signs."""
     pieces: list[list[_Token]] = [[]]
     depth = end = 0
-    is_read = True
+    is_readable = True
     for match in _TOKEN.finditer(body):
-        is_read = is_read and match.start() == end
+        is_readable = is_readable and match.start() == end
         end = match.end()
         depth += (match[0] == "[") - (match[0] == "]")
         if match["apart"] and (not depth or "|" in match[0]):
-            pieces[-1] = pieces[-1] if is_read else []
+            pieces[-1] = pieces[-1] if is_readable else []
             pieces.append([])
-            is_read = True
+            is_readable = True
         elif match.lastgroup and match.lastgroup != "apart":
             span = Span(start + match.start(), start + match.end())
             pieces[-1].append(_Token(plain(match[0]), match.lastgroup, span))
-    is_read = is_read and end == len(body.rstrip())
-    return pieces if is_read else [*pieces[:-1], []]
+    is_readable = is_readable and end == len(body.rstrip())
+    return pieces if is_readable else [*pieces[:-1], []]
 
 
 def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagnostic | None:
@@ -141,16 +143,16 @@ class _Reader:
             word, after = self.tokens[k], self.tokens[k + 1 : k + 2]
             if word.kind != "word" or not after or after[0].kind != "number":
                 return [], k
-            meant = self._meant(word.text)
-            if meant == "LOOP" and depth < _DEEPEST and self._sign(k + 2) == "[":
+            order = self._meant(word.text)
+            if order == "LOOP" and depth < _MOST_NESTED_LOOPS and self._sign(k + 2) == "[":
                 self.is_bracketed = True
-                inside, end = self.orders(k + 3, depth + 1)
-                if not inside or self._sign(end) != "]":
+                inner_orders, end = self.orders(k + 3, depth + 1)
+                if not inner_orders or self._sign(end) != "]":
                     return [], k
-                result += [f"LOOP({after[0].text})", *inside, BLOCK_ENDS["LOOP"]]
+                result += [f"LOOP({after[0].text})", *inner_orders, BLOCK_ENDS["LOOP"]]
                 k = end + 1
                 continue
-            move = self._move(meant, after[0].text)
+            move = self._move(order, after[0].text)
             if not move:
                 return [], k
             result.append(move)
@@ -163,12 +165,12 @@ class _Reader:
     def _meant(self, word: str) -> str:
         if word in WORDS:
             return word
-        said = lexicon_meaning(word, "turtle")
-        return said[0] if said and not self.names.is_name(word) else self.names.meant(word)
+        meanings = lexicon_meaning(word, "turtle")
+        return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
 
     def _move(self, word: str, number: str) -> str:
         unit = UNIT_OF.get(word, "")
-        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_S):
+        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
         self.moves += 1
         self.is_turned |= unit == "DEG"

@@ -22,21 +22,21 @@ from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
-ENDED = ENDS
+WORD_OF_END = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
-STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
+BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
-CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
-DONE = CALLED | {"S", "STOP", "BREAK"}
-ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
+CALL_WORDS = frozenset(word.text for word in WORDS.values() if word.is_call)
+INSTRUCTION_WORDS = CALL_WORDS | {"S", "STOP", "BREAK"}
+ASKING_WORDS = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 
 _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|--(?=\s*(?:$|[;)]))|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
-_LONGEST = 4  # words of a name
+_MOST_NAME_WORDS = 4  # words of a name
 # Classes by what the lexicon says of a word that is none of the language.
 _CLASSES = {
     LexiconEntry("unit", "cm", "1000"): "@in_cm", LexiconEntry("unit", "cm", "100000"): "@in_m",
@@ -46,17 +46,17 @@ _CLASSES = {
     LexiconEntry("number", "1"): "@one", LexiconEntry("number", "100"): "@hundred",
 }  # fmt: skip
 NEAR_CM = "10"  # an example of what is near
-LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
+LONG_TIME_S = 20  # so much without a unit may be a power, degrees or centimetres
 MOST_POWER = 100
 _EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
-_MAY_BE: dict[str, Callable[[float], bool]] = {
-    "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
-    "@power": lambda it: LONG_S <= it <= MOST_POWER,
+_CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
+    "@whole": float.is_integer, "@time": lambda it: it < LONG_TIME_S,
+    "@power": lambda it: LONG_TIME_S <= it <= MOST_POWER,
     "@angle": lambda it: MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
-_YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
-REMEMBERED = 500  # lines: each is asked for often while one program is read
+_YEAR_WORDS = ("ANO", "ANOS")  # nobody writes AÑO so
+REMEMBERED_LINES = 500  # lines: each is asked for often while one program is read
 
 
 class Lexeme(NamedTuple):
@@ -83,23 +83,23 @@ def lexemes(line: str) -> list[Lexeme]:
     return [*_lexemes(line)]
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
-    found, end = [], 0
+    result, end = [], 0
     for match in _TOKEN.finditer(line):
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
         if kind is WORD:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):
                 other = plain(re.sub("[ñÑ]", "ni", match[0]))
-                text = other if lexicon().get(other) or text in _YEAR else text
+                text = other if lexicon().get(other) or text in _YEAR_WORDS else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
             kind, text = WORD, text[0]  # an arrow says a command
-        found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
+        result.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
-    return tuple(found)
+    return tuple(result)
 
 
 def number_text(number: float) -> str:
@@ -145,7 +145,7 @@ def words_of(*kinds: str) -> str:
     return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
 
 
-_END = re.compile(words_of("end") + "_?")
+_END_PATTERN = re.compile(words_of("end") + "_?")
 
 
 @cache
@@ -162,21 +162,22 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
-    less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
-    if less != word:
-        return (Meaning(less, MISSPELT),) if less in WORDS else meanings(less)
+    shortened = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
+    if shortened != word:
+        return (Meaning(shortened, MISSPELT),) if shortened in WORDS else meanings(shortened)
     parts = word.split("_")
     if (
         len(parts) > 1
-        and (bare := [part for part in parts if not lexicon_meaning(part, "sensing")]) != parts
+        and (kept_parts := [part for part in parts if not lexicon_meaning(part, "sensing")])
+        != parts
     ):
-        return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
+        return meanings("_".join(kept_parts))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
-    near = _speller().find_near_miss(word)
+    near_miss = _speller().find_near_miss(word)
     guesses = (
         (heard_as(word), KNOWN),
-        (lexicon_concept(near or ""), MISSPELT),
+        (lexicon_concept(near_miss or ""), MISSPELT),
         (_in_two_words(word), KNOWN),
         (nearest(word, WORDS), NEAR),
     )
@@ -193,14 +194,14 @@ def heard_as(word: str) -> str | None:
 
 def _sensor_with_side(parts: Sequence[str]) -> str:
     """Return the sensor that two words say: `LEFT_LIGHT`, `luzDer`, `JOYSTICK_X`."""
-    glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
-    pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
+    splits = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
+    pairs = [tuple(parts)] if len(parts) == 2 else splits if len(parts) == 1 else []
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
-        named = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
-        ways = ("X", "Y") if named == "PAD" else ("L", "R")
+        sensor_stem = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
+        ways = ("X", "Y") if sensor_stem == "PAD" else ("L", "R")
         way = side if side in ways else lexicon_concept(side)
-        if named and way in ways:
-            return f"{named}_{way}"
+        if sensor_stem and way in ways:
+            return f"{sensor_stem}_{way}"
     return ""
 
 
@@ -217,12 +218,16 @@ def _in_two_words(word: str) -> str | None:
         texts = {half if half == "STOP" else lexicon_concept(half) or "" for half in long}
         turns = [half for half in halves if lexicon_meaning(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
-        beside = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
-        meant = texts - {"", "M", "F"} or texts - {"", "M"}
-        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(lexicon_concept, halves)}) == 1
-        is_all = all(half in beside or half == "STOP" or lexicon_concept(half) for half in halves)
-        if len(meant) == 1 and is_framed and is_all:
-            only = next(iter(meant))
+        filler_words = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
+        commands = texts - {"", "M", "F"} or texts - {"", "M"}
+        is_framed = (
+            bool(texts & {"F", "M"} or filler_words) or len({*map(lexicon_concept, halves)}) == 1
+        )
+        are_all_known = all(
+            half in filler_words or half == "STOP" or lexicon_concept(half) for half in halves
+        )
+        if len(commands) == 1 and is_framed and are_all_known:
+            only = next(iter(commands))
             if only == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
                 return "S"
             if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
@@ -239,20 +244,22 @@ class _OfLine(NamedTuple):
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
-    begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
-    compared: set[str]  # words beside a sign that compares them with a number
-    counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
-    left: int  # headers that lack an end
-    given: set[tuple[str, str]]  # units of what is no time, and the numbers that calls give: % 50
+    compared_words: set[str]  # words beside a sign that compares them with a number
+    counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
+    open_headers: int  # headers that lack an end
+    units_given: set[
+        tuple[str, str]
+    ]  # units of what is no time, and the numbers that calls give: % 50
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    begun, counted, left = _block_counts(line)
+    block_starts, counted_starts, open_headers = _block_counts(line)
     of_line = _OfLine(
-        set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
-        _compared_words(line), counted, left, _given(line),
+        set(), set(), set(), set(), {}, set(), block_starts, _standalone_words(line),
+        _compared_words(line), counted_starts, open_headers, _given(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
@@ -270,19 +277,19 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not lexicon_meaning(after.text, "main") and lexicon_concept(after.text) != "START":
                 of_line.defs.add(after.text)
-                if bare := _bare_values(line[at:]):
-                    of_line.pairs.add((after.text, *bare))
+                if bare_values := _bare_values(line[at:]):
+                    of_line.pairs.add((after.text, *bare_values))
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
-                if all(item.isidentifier() and item not in WORDS for item in given):
-                    of_line.parameters[after.text] = given
+                names_given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
+                if all(item.isidentifier() and item not in WORDS for item in names_given):
+                    of_line.parameters[after.text] = names_given
     if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), of_line.defs
     else:
         row, names = _name_in_words(head, "="), of_line.variables
     if row:
         of_line.rows.add(row)
-        names.add(joined(row))
+        names.add(joined_name(row))
     return of_line
 
 
@@ -293,7 +300,7 @@ def _given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
         (WORDS[word.text].arguments[1].unit, value.text)
         for word, is_open, _, comma, value, is_closed in rows
         if (is_open.text, comma.text, is_closed.text) == ("(", ",", ")") and value.kind is NUMBER
-        if word.text in CALLED and word.text != "M" and len(WORDS[word.text].arguments) > 1
+        if word.text in CALL_WORDS and word.text != "M" and len(WORDS[word.text].arguments) > 1
     }
 
 
@@ -320,13 +327,13 @@ def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
-    alone = {
+    lone_words = {
         name.text
         for head, before, name, after in rows
         if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
-        if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING
+        if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING_WORDS
     }
-    return alone | {
+    return lone_words | {
         name.text
         for before, one, sign, other in rows
         for name, number in ((one, other), (other, one))
@@ -339,19 +346,25 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
     """Return a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
     row: list[str] = []
     is_glued = after == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
-    for token in tokens[: _LONGEST + 1]:
+    for token in tokens[: _MOST_NAME_WORDS + 1]:
         text = token.text
-        if token.kind not in (WORD, NUMBER, "-") or text in STARTS or text in DONE:
+        if (
+            token.kind not in (WORD, NUMBER, "-")
+            or text in BLOCK_STARTS
+            or text in INSTRUCTION_WORDS
+        ):
             break
         if not row and (lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)):
             break
-        is_other = text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
-        if token.kind is WORD and is_other and len(row) != 1:
+        is_reserved = (
+            text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
+        )
+        if token.kind is WORD and is_reserved and len(row) != 1:
             break
         row.append(text)
     ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
-    is_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
-    return tuple(row) if is_name else ()
+    is_long_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
+    return tuple(row) if is_long_name else ()
 
 
 class Names:
@@ -366,32 +379,40 @@ class Names:
         of_lines = [_names_of(tuple(line)) for line in lines]
         self.in_brackets = {name for line in of_lines for name in line.in_brackets}
         self.rows = {row for line in of_lines for row in line.rows}
-        self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
+        self.parameters = {
+            k: parameters_of_def
+            for line in of_lines
+            for k, parameters_of_def in line.parameters.items()
+        }
         for pair in {pair for line in of_lines for pair in line.pairs}:
             if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
                 self.parameters[pair[0]] = pair[1:]
                 self.rows.discard(pair)
-        self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
-        if sum(line.left for line in of_lines) < 0:
-            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}
+        self.begun = {word: block for line in of_lines for word, block in line.block_starts.items()}
+        if sum(line.open_headers for line in of_lines) < 0:
+            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted_starts}
         self.variables = {name for line in of_lines for name in line.variables}
         self.variables.update(chain.from_iterable(self.parameters.values()))
         self.defs = {name for line in of_lines for name in line.defs} - {
             row[0] for row in self.rows
         }
-        given = {pair for line in of_lines for pair in line.given}
-        units = [unit for unit, _ in given]
-        self.usual = {unit: text for unit, text in given if units.count(unit) == 1}
+        units_and_numbers = {pair for line in of_lines for pair in line.units_given}
+        units = [unit for unit, _ in units_and_numbers]
+        self.usual = {unit: text for unit, text in units_and_numbers if units.count(unit) == 1}
         self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
-        alone = {name for name, count in counts.items() if not count}
+        defs_without_values = {name for name, count in counts.items() if not count}
         calls = {*counts.items(), *((name, 1) for name in self.actuators)}
-        values, instructions = self.sensors | self.variables, self.sensors | alone
+        values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
         self.known = KnownNames(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
-        compared = {name for line in of_lines for name in line.compared if name not in WORDS}
-        meant = {name: self.meant(name, NEAR) for name in compared - values}
-        self.strange = {name for name, its in meant.items() if not its or its in CALLED}
+        compared_names = {
+            name for line in of_lines for name in line.compared_words if name not in WORDS
+        }
+        word_of_name = {name: self.meant(name, NEAR) for name in compared_names - values}
+        self.strange = {
+            name for name, concept in word_of_name.items() if not concept or concept in CALL_WORDS
+        }
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
         words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
         self._content = (
@@ -426,8 +447,8 @@ class Names:
         end, _, block = word.partition("_")
         if lexicon_meaning(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
-        if said := self.sided(word) or self._lamp(word):
-            return (Meaning(said, KNOWN),)
+        if concept := self.sided(word) or self._lamp(word):
+            return (Meaning(concept, KNOWN),)
         result = meanings(word)
         return tuple(
             meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
@@ -436,11 +457,11 @@ class Names:
     def sided(self, word: str) -> str:
         """Return the sensor of a side that `SENSOR_L` says, "" for none."""
         parts = word.split("_")
-        bare = [part for part in parts if not lexicon_meaning(part, "sensing")]
-        if len(bare) != 1 or len(parts) == 1:
+        kept_parts = [part for part in parts if not lexicon_meaning(part, "sensing")]
+        if len(kept_parts) != 1 or len(parts) == 1:
             return ""
-        side = "".join(lexicon_meaning(bare[0], "left", "right"))[:1].upper()
-        return self.on_side(side or lexicon_concept(bare[0]) or bare[0])
+        side = "".join(lexicon_meaning(kept_parts[0], "left", "right"))[:1].upper()
+        return self.on_side(side or lexicon_concept(kept_parts[0]) or kept_parts[0])
 
     def _lamp(self, word: str) -> str:
         """Return the lamp that a word for light says of a robot which sees none."""
@@ -449,80 +470,84 @@ class Names:
 
     def on_side(self, side: str) -> str:
         """Return the one sensor of the robot on L or R, "" for none or several."""
-        found = [name for name in self.sensors if name.endswith(f"_{side}")]
-        return found[0] if len(found) == 1 and side in ("L", "R") else ""
+        sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
+        return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
-    def meant(self, word: str, most: int = MISSPELT) -> str:
+    def meant(self, word: str, most_cost: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
         result = self.meanings(word)
-        return result[0].concept if result and result[0].cost <= most else ""
+        return result[0].concept if result and result[0].cost <= most_cost else ""
 
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
         return concept in self.sensors or concept in self.actuators or concept == SOME_END
 
-    def takes(self, word: str) -> bool:
+    def takes_values(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
-        return word in CALLED or word in self.actuators or bool(self.parameters.get(word))
+        return word in CALL_WORDS or word in self.actuators or bool(self.parameters.get(word))
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
         is_glued = token.space == "" or token.text in WAYS
-        is_unit = (
+        is_unit_position = (
             is_glued and token.text in WORDS and lexicon_meaning(token.text, "unit")
         )  # `5S`, `5 CM`
-        key = (token.kind, token.text, bool(is_unit))
+        key = (token.kind, token.text, bool(is_unit_position))
         if key not in self._labels:
-            classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
+            classes = [*self._classes(token), *(["@unit"] if is_unit_position else [])]
             self._labels[key] = f"\x01|{'|'.join(dict.fromkeys(classes))}|\x02"
         return self._labels[key]
 
     def _classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
-            fitting = (name for name, fits in _MAY_BE.items() if fits(float(text)))
-            return [text, "@num", *ANY, *fitting]
+            fitting = (name for name, fits in _CHECK_OF_UNIT.items() if fits(float(text)))
+            return [text, "@num", *ANY_LABELS, *fitting]
         if token.kind is not WORD:
-            fitting = (name for name, without in _BUT.items() if text not in without)
+            fitting = (name for name, without in _EXCLUSIONS.items() if text not in without)
             own = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
             return [f"s{text}", *fitting, *own]
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
         texts = [meaning.kind for meaning in lexicon().get(text, ())]
-        is_own = text in self.variables or text in self.defs
-        classes = [item for item in texts if item.islower() and not is_own]
+        is_own_name = text in self.variables or text in self.defs
+        classes = [item for item in texts if item.islower() and not is_own_name]
         if text not in WORDS:
             classes += [_CLASSES[item] for item in lexicon().get(text, ()) if item in _CLASSES]
-        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own else []
-        classes += ["@cross"] if text == "X" and not is_own else []
-        if "unit" not in texts and text not in WORDS and not is_own:
+        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own_name else []
+        classes += ["@cross"] if text == "X" and not is_own_name else []
+        if "unit" not in texts and text not in WORDS and not is_own_name:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
-        classes += [item for item in ANY if not lexicon_meaning(text, "do") or item not in _NO_DO]
+        classes += [
+            item
+            for item in ANY_LABELS
+            if not lexicon_meaning(text, "do") or item not in _LABELS_WITHOUT_DO
+        ]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
             classes += [] if self.is_yes_no(word) or self.is_yes_no(text) else ["@amount"]
         if text in self.defs:
-            own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
+            own = ["@defw", "@callw"] if self.takes_values(text) else ["@step", "@close"]
             classes += ["@def", "@start", "@startm", *own]
         is_device = word in self.actuators or text in self.actuators
-        if (word in DONE or is_device) and (not is_name or is_device):
+        if (word in INSTRUCTION_WORDS or is_device) and (not is_name or is_device):
             classes += ["@start", *(["@startm"] if word != "BEEP" else [])]
-            classes += ["@callw"] if self.takes(word or text) else ["@close"]
+            classes += ["@callw"] if self.takes_values(word or text) else ["@close"]
             classes += ["@device"] if is_device else []
-        if word in STARTS and not is_name:
+        if word in BLOCK_STARTS and not is_name:
             classes.append("@start")
         if "turn" in classes and not is_name:
             classes += ["@start", "@startm"]
-        if word in ENDED:
+        if word in WORD_OF_END:
             classes.append("@close")
         if text in self.variables or (text not in WORDS and not meant):
             classes.append("@name")
@@ -533,24 +558,24 @@ class Names:
 
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
-    found: dict[str, str] = {}
-    counted: list[str] = []
-    left = 0
+    block_of_word: dict[str, str] = {}
+    counted_starts: list[str] = []
+    open_headers = 0
     for k, (one, other) in enumerate(pairwise([made(";"), *line])):
         pair = [one.text, other.text] if lexicon_meaning(one.text, "end") else [other.text]
-        block = ENDED.get(lexicon_concept("_".join(pair)) or "", "")
-        word = _END.sub("", "_".join(pair), count=1)
-        if block and lexicon_concept(word) in DONE:
-            found[word] = block
+        block = WORD_OF_END.get(lexicon_concept("_".join(pair)) or "", "")
+        word = _END_PATTERN.sub("", "_".join(pair), count=1)
+        if block and lexicon_concept(word) in INSTRUCTION_WORDS:
+            block_of_word[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
         if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
-            counted.append(other.text)
-        left += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
-        left -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
-    return found, counted, left
+            counted_starts.append(other.text)
+        open_headers += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
+        open_headers -= bool(lexicon_meaning(other.text, "end") or other.text in WORD_OF_END)
+    return block_of_word, counted_starts, open_headers
 
 
-def joined(row: Iterable[str]) -> str:
+def joined_name(row: Iterable[str]) -> str:
     parts = [item for item in row if item != "-"]
     if parts[0][0].isdecimal():  # `2PASOS`
         return "".join((*parts[1:], parts[0]))
@@ -558,11 +583,11 @@ def joined(row: Iterable[str]) -> str:
 
 
 # Classes of pieces: any token but these.
-_BUT: dict[str, tuple[str, ...]] = {
+_EXCLUSIONS: dict[str, tuple[str, ...]] = {
     "@all": ("{", "}"), "@flat": ("{", "}", "(", ")"), "@any": (";", "{", "}"),
     "@cond": (";", ":", "{", "}", "?"), "@nobrace": ("{", "}", "(", ")", "<", ">"),
     "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
-ANY = tuple(_BUT)
-SEPARATOR = "|".join(("s;", *(name for name, without in _BUT.items() if ";" not in without)))
-_NO_DO = ("@cond", "@noparen")
+ANY_LABELS = tuple(_EXCLUSIONS)
+SEPARATOR = "|".join(("s;", *(name for name, without in _EXCLUSIONS.items() if ";" not in without)))
+_LABELS_WITHOUT_DO = ("@cond", "@noparen")

@@ -18,15 +18,20 @@ from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.writing import in_one_line, laid_out
 
-_ENDLESS = "LOOP(FOREVER)"
+_ENDLESS_LOOP = "LOOP(FOREVER)"
 # Codes whose sentence names what is right.
-_WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
-_AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
-_SET = re.compile(r"(\w+) = -?[0-9.]+")
-_CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
-_UNIT = re.compile(r"[^\d\s.]+$")
-_HEAD = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
-_VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
+_CODES_WITH_RIGHT = (
+    codes.OTHER_LANGUAGE,
+    codes.OTHER_SIGN,
+    codes.END_ALONE,
+    codes.OTHER_ASSIGNMENT,
+)
+_CHECKER_CODES = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
+_NUMBER_ASSIGNMENT = re.compile(r"(\w+) = -?[0-9.]+")
+_BALANCED_TEXT = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
+_UNIT_AT_END = re.compile(r"[^\d\s.]+$")
+_DEF_HEADER = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
+_VALUE_WITH_UNIT = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
 def meant_in(
@@ -36,42 +41,51 @@ def meant_in(
 
     `is_sure`: by all of it surely; else by the lines that are read.
     """
-    meant = recovery.sure() if is_sure else recovery.best()
-    if meant is None:
+    candidate = recovery.sure() if is_sure else recovery.best()
+    if candidate is None:
         return []
     text = recovery.program
     sentence = source.text
-    message = explained(sentence, meant)
-    if not message and meant.is_whole:
-        misplaced = [each for each in diagnostics if each.code in rows.MISPLACED]
-        said_of_it = misplaced or [each for each in diagnostics if each.is_mistake]
+    message = explained(sentence, candidate)
+    if not message and candidate.is_whole:
+        misplaced_diagnostics = [each for each in diagnostics if each.code in rows.MISPLACED]
+        said_of_it = misplaced_diagnostics or [each for each in diagnostics if each.is_mistake]
         return [
-            _moved_lines_diagnostic(each, sentence, meant, recovery.kit) for each in said_of_it
+            _moved_lines_diagnostic(each, sentence, candidate, recovery.kit) for each in said_of_it
         ][:1]
     if not message:
         return []
-    told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in message]
-    is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
-    if is_part and difference(text, meant.text, recovery.kit).lost:
-        kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
-        told_of = [it for it, is_kept in zip(told_of, kept, strict=False) if is_kept]
-    others = [each for other in recovery.others for each in explained(sentence, other)]
+    explained_diagnostics = [(each, _diagnostic(each, candidate, diagnostics)) for each in message]
+    loses_nothing = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
+    if loses_nothing and difference(text, candidate.text, recovery.kit).losses:
+        is_kept_of = (
+            []
+            if is_sure
+            else keeps_all([own for _, own in explained_diagnostics], source.text, recovery.kit)
+        )
+        explained_diagnostics = [
+            it for it, is_kept in zip(explained_diagnostics, is_kept_of, strict=False) if is_kept
+        ]
+    other_explanations = [each for other in recovery.others for each in explained(sentence, other)]
     return [
-        _with_rival(_with_carried_unit(own, source.text), each, others) for each, own in told_of
+        _with_rival(_with_carried_unit(own, source.text), each, other_explanations)
+        for each, own in explained_diagnostics
     ]
 
 
 def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
     set_to = (
-        _SET.fullmatch(diagnostic.values.get("fix", "")) if diagnostic.code is codes.UNIT else None
+        _NUMBER_ASSIGNMENT.fullmatch(diagnostic.values.get("fix", ""))
+        if diagnostic.code is codes.UNIT
+        else None
     )
-    unit = _UNIT.search(diagnostic.values.get("found", ""))
+    unit = _UNIT_AT_END.search(diagnostic.values.get("found", ""))
     way = _unit_word(unit[0]) if unit else ""
     uses = [*_move_pattern(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
-        use
-        for head, use, _ in _in_bodies(text, text)
+        unit_match
+        for head, unit_match, _ in _in_bodies(text, text)
         if diagnostic.code is codes.UNIT
         and diagnostic.span.start < head.end
         and diagnostic.span.end > head.start
@@ -87,10 +101,10 @@ def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def _with_rival(
-    diagnostic: Diagnostic, explanation: Explanation, others: Sequence[Explanation]
+    diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    fixes = (item.fix for item in others if item.place == explanation.place)
+    fixes = (item.fix for item in other_explanations if item.place == explanation.place)
     other = next((fix for fix in fixes if fix and fix != explanation.fix), "")
     if not other:
         return diagnostic
@@ -102,12 +116,12 @@ def _with_rival(
 
 def _in_brackets(one: str, other: str) -> tuple[str, str]:
     """Return what the brackets hold in which two texts differ first."""
-    apart = slips.alike(one, other)[0]
-    start, depth = apart, 0
+    common_start = slips.alike(one, other)[0]
+    start, depth = common_start, 0
     while start > 0 and depth < 1:
         start -= 1
         depth += (one[start] == "(") - (one[start] == ")")
-    inside = [_CLOSED.match(item, start + 1) for item in (one, other)]
+    inside = [_BALANCED_TEXT.match(item, start + 1) for item in (one, other)]
     return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
@@ -115,21 +129,21 @@ def _diagnostic(
     explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    is_said = (
+    is_explained = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
     )  # how often
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
-    repair = Repair(tuple(explanation.edits), is_said and is_sure)
+    repair = Repair(tuple(explanation.edits), is_explained and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
         explanation.whole = ""  # where it ends is a guess
     code, values = _in_words(explanation)
-    asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
-    counted = (each for each in diagnostics if each.code is asked)
-    for each in counted if asked in _AS_CHECKED else ():
+    checker_code = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
+    checker_diagnostics = (each for each in diagnostics if each.code is checker_code)
+    for each in checker_diagnostics if checker_code in _CHECKER_CODES else ():
         if explanation.place.start <= each.span.start < explanation.place.end:
             values = {**each.values, "fix": explanation.fix}
             return Diagnostic(each.code, each.span, values, explanation.place, repair)
-    if code in _AS_CHECKED[:2]:  # its values are not counted
+    if code in _CHECKER_CODES[:2]:  # its values are not counted
         code, values = codes.OTHER_CALL, explanation.values_as(codes.OTHER_CALL)
     return Diagnostic(code, explanation.span, values, explanation.place, repair)
 
@@ -137,17 +151,19 @@ def _diagnostic(
 def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     """Return the code of the sentence that has a word for what is told, and its values."""
     code, slip = explanation.code, explanation.slip
-    if slip and code in _WITH_RIGHT and not slips.right_of(slip):
+    if slip and code in _CODES_WITH_RIGHT and not slips.right_of(slip):
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = explanation.values_as(code)
-    found, suggestion = values.get("found", "").upper(), values.get("right", "")
-    is_near = nearest(found, [suggestion]) or (suggestion in WAYS and is_slip(found, suggestion))
-    if code is codes.OTHER_LANGUAGE and is_near:
+    found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
+    is_misspelling = nearest(found_word, [suggestion]) or (
+        suggestion in WAYS and is_slip(found_word, suggestion)
+    )
+    if code is codes.OTHER_LANGUAGE and is_misspelling:
         code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": suggestion}
-    elif suggestion == "FOREVER" and _ENDLESS in explanation.fix:
-        values["right"] = _ENDLESS  # FOREVER alone begins no block
+    elif suggestion == "FOREVER" and _ENDLESS_LOOP in explanation.fix:
+        values["right"] = _ENDLESS_LOOP  # FOREVER alone begins no block
     return code, values
 
 
@@ -156,8 +172,8 @@ def _moved_lines_diagnostic(
 ) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     result = _with_units(text, candidate.text)
-    lost = [item for item in difference(text, result, kit).lost
-            if (unit := _UNIT.search(item)) and _unit_word(unit[0])]  # fmt: skip
+    lost = [item for item in difference(text, result, kit).losses
+            if (unit := _UNIT_AT_END.search(item)) and _unit_word(unit[0])]  # fmt: skip
     values = {**diagnostic.values, "whole": in_one_line(result)}
     values |= {"lost": ", ".join(lost)} if lost else {}
     if diagnostic.code is codes.WRONG_END:
@@ -180,7 +196,7 @@ def _moved_lines_diagnostic(
 def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
     text = lexicon_meaning(plain(unit), "unit")
-    return next((way for way, its in WAYS.items() if text and its.unit == text[0]), "")
+    return next((way for way, way_unit in WAYS.items() if text and way_unit.unit == text[0]), "")
 
 
 def _move_pattern(name: str, way: str) -> re.Pattern[str]:
@@ -189,19 +205,24 @@ def _move_pattern(name: str, way: str) -> re.Pattern[str]:
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
 
 
-def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+def _in_bodies(written_text: str, meant_text: str) -> Iterator[tuple[Span, re.Match[str], str]]:
     """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
-    for head in _HEAD.finditer(written):
-        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
-        for match in _VALUE.finditer(written, head.start("values"), head.end()):
+    for head in _DEF_HEADER.finditer(written_text):
+        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant_text)
+        for match in _VALUE_WITH_UNIT.finditer(written_text, head.start("values"), head.end()):
             way = _unit_word(match[2])
             for use in (
-                _move_pattern(match[1], way).finditer(meant, *body.span()) if body and way else ()
+                _move_pattern(match[1], way).finditer(meant_text, *body.span())
+                if body and way
+                else ()
             ):
                 yield Span(*match.span()), use, way
 
 
-def _with_units(written: str, meant: str) -> str:
+def _with_units(written_text: str, meant_text: str) -> str:
     """Return a program in whose DEFs the moves have the units that stood at their values."""
-    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
-    return apply_edits(meant, edits)
+    edits = [
+        Edit(Span(*it.span("unit")), f" {way}")
+        for _, it, way in _in_bodies(written_text, meant_text)
+    ]
+    return apply_edits(meant_text, edits)

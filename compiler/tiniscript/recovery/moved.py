@@ -11,12 +11,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.recovery.meanings import ENDED
+from tiniscript.recovery.meanings import WORD_OF_END
 from tiniscript.recovery.writing import without_note
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
 _MOST_MOVES = 20
-_FIRST = re.compile(r"\s*(\w*)[ \t]*(\w*)")
+_FIRST_WORDS = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
 class Moved(NamedTuple):
@@ -58,18 +58,20 @@ def _reorder(text: str, is_at_start: bool) -> Moved | None:
     first: Moved | None = None
     is_guess = False
     for _ in range(_MOST_MOVES):
-        swap, late = _swapped_ends(pieces), _end_too_late(pieces)
-        move = swap or late or _late_def(pieces, is_at_start)
+        swap, late_end = _swapped_ends(pieces), _end_too_late(pieces)
+        move = swap or late_end or _late_def(pieces, is_at_start)
         if move is None:
             return first and first._replace(text=_join_pieces(pieces), is_guess=is_guess)
-        begin, end, to = move
+        begin, end, target = move
         name = next((it.name for it in pieces[begin::-1] if it.word == "DEF"), pieces[0].name)
         is_called = bool([*_calls(pieces, name, 0, len(pieces))])
-        is_guess = is_guess or bool(late and not swap) or not (swap or is_called)
+        is_guess = is_guess or bool(late_end and not swap) or not (swap or is_called)
         if first is None:
             rows = [pieces[k].line for k in move]
-            first = Moved(text, name, rows[0], rows[1], rows[2], bool(swap or late), is_guess=False)
-        pieces[to : end + 1] = [*pieces[begin : end + 1], *pieces[to:begin]]
+            first = Moved(
+                text, name, rows[0], rows[1], rows[2], bool(swap or late_end), is_guess=False
+            )
+        pieces[target : end + 1] = [*pieces[begin : end + 1], *pieces[target:begin]]
     return None
 
 
@@ -78,10 +80,10 @@ def _pieces(text: str) -> Iterator[_Piece]:
         body, note = without_note(row)
         parts = [part for part in body.split(";") if part.strip()] or [""]
         for k, part in enumerate(parts):
-            match = _FIRST.match(part.upper())
+            match = _FIRST_WORDS.match(part.upper())
             word, name = match.groups() if match else ("", "")
-            shown = part + note if note and k + 1 == len(parts) else part.rstrip()
-            yield _Piece(shown, line, ALIASES.get(word, word), name)
+            piece_text = part + note if note and k + 1 == len(parts) else part.rstrip()
+            yield _Piece(piece_text, line, ALIASES.get(word, word), name)
 
 
 def _join_pieces(pieces: list[_Piece]) -> str:
@@ -100,7 +102,7 @@ def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
         if pieces[place].word in BLOCK_ENDS:
             result = place if not depth else result
             depth += 1
-        elif pieces[place].word in ENDED:
+        elif pieces[place].word in WORD_OF_END:
             depth -= 1
         result = k if not depth else result
     return result
@@ -124,15 +126,15 @@ _Move = tuple[int, int, int]
 
 def _swapped_ends(pieces: list[_Piece]) -> _Move | None:
     """The ends of two blocks, of which the outer one ends first."""
-    opened: list[str] = []
+    open_words: list[str] = []
     for k, piece in enumerate(pieces):
         if piece.word in BLOCK_ENDS:
-            opened.append(BLOCK_ENDS[piece.word])
-        elif piece.word in ENDED and opened:
+            open_words.append(BLOCK_ENDS[piece.word])
+        elif piece.word in WORD_OF_END and open_words:
             after = pieces[k + 1].word if k + 1 < len(pieces) else ""
-            if opened[-2:] == [piece.word, after] and piece.word != after:
+            if open_words[-2:] == [piece.word, after] and piece.word != after:
                 return k + 1, k + 1, k
-            opened.pop()
+            open_words.pop()
     return None
 
 

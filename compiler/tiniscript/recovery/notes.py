@@ -17,12 +17,12 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import plain
 from tiniscript.recovery.writing import without_note
 
-_SIGN = re.compile(
+_NOTE_SIGN = re.compile(
     r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)[ \t]*(?=[^\W\d]|[¡¿\"'])"
 )
-_END = re.compile(r"[ \t]*(?:\*+/|--+>)\s*$")
-_OPEN = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and goes on
-_DEFINES = re.compile(r"(?i)define\b")
+_NOTE_END = re.compile(r"[ \t]*(?:\*+/|--+>)\s*$")
+_OPEN_VALUE = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and goes on
+_DEFINE = re.compile(r"(?i)define\b")
 _CALL = re.compile(r"([^\W\d]\w*)\s*\(")
 
 
@@ -45,22 +45,30 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
     start = 0
     for line in text.split("\n"):
         body = without_note(line)[0]
-        sign = next((it for it in _SIGN.finditer(body) if _is_note(body, it)), None)
+        sign = next((it for it in _NOTE_SIGN.finditer(body) if _is_note(body, it)), None)
         if sign is not None:
-            end = _END.search(line, sign.end())
-            begin = Edit(Span(start + sign.start(), start + sign.end()), "// ")
+            end = _NOTE_END.search(line, sign.end())
+            sign_edit = Edit(Span(start + sign.start(), start + sign.end()), "// ")
             edits = (
-                (begin, Edit(Span(start + end.start(), start + end.end()), "")) if end else (begin,)
+                (sign_edit, Edit(Span(start + end.start(), start + end.end()), ""))
+                if end
+                else (sign_edit,)
             )
-            right = line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
-            yield Span(start + sign.start(), start + sign.end("sign")), right.strip(), tuple(edits)
+            corrected_line = (
+                line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
+            )
+            yield (
+                Span(start + sign.start(), start + sign.end("sign")),
+                corrected_line.strip(),
+                tuple(edits),
+            )
         start += len(line) + 1
 
 
 def _is_note(body: str, sign: re.Match[str]) -> bool:
     before, after = body[: sign.start()], body[sign.end() :]
-    is_inside = before.count("(") > before.count(")") or _OPEN.search(before) is not None
-    if is_inside or (sign["sign"] == "#" and _DEFINES.match(after)):
+    is_inside = before.count("(") > before.count(")") or _OPEN_VALUE.search(before) is not None
+    if is_inside or (sign["sign"] == "#" and _DEFINE.match(after)):
         return False
     return not any(_is_order(word) for word in _CALL.findall(after))
 

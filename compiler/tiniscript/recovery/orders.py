@@ -12,9 +12,9 @@ from typing import NamedTuple
 from tiniscript.base.words import BLOCK_ENDS, MOVES, POWER
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.meanings import (
-    CALLED,
-    ENDED,
+    CALL_WORDS,
     NEAR_CM,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
@@ -27,9 +27,9 @@ from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-LONGEST = 40  # words of a sentence
-_ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
-_SIDES = _ASIDE[:2]
+MOST_WORDS = 40  # words of a sentence
+_SIDEWAYS_MOVES = ("L", "R", "B")  # DISTANCE looks ahead
+_TURNS = _SIDEWAYS_MOVES[:2]
 
 
 class Order(NamedTuple):
@@ -57,7 +57,7 @@ def made_up(orders: Sequence[Order]) -> str:
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return the orders of a sentence, in turn."""
     result: list[Order] = []
-    if len(words) > LONGEST:
+    if len(words) > MOST_WORDS:
         return []
     words = [
         one
@@ -66,24 +66,26 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         or lexicon_meaning(after.text, "the")
         or not lexicon_meaning(after.text, "idle")
     ]  # `o robô` is no OR
-    meant = ["", *(names.meant(word.text) for word in words[1:])]
-    asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
-    if asks:
-        return _orders_with_condition(orders(words[:asks], names), words[asks:], names)
+    words_meant = ["", *(names.meant(word.text) for word in words[1:])]
+    question_at = next((k for k, each in enumerate(words_meant) if each in ("IF", "WHEN")), 0)
+    if question_at:
+        return _orders_with_condition(
+            orders(words[:question_at], names), words[question_at:], names
+        )
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(
         words, key=lambda it: it.text in (*joins,) or bool(lexicon_meaning(it.text, "then"))
     )
-    for is_between, group in groups:
+    for is_joint, group in groups:
         part = list(group)
-        if is_between or (
+        if is_joint or (
             not result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in part)
         ):
             continue  # `Hola robot, …`
-        own = _orders(part, names)
-        if not own or any(order.is_repeated for order in own[bool(not result) :]):
+        part_orders = _orders(part, names)
+        if not part_orders or any(order.is_repeated for order in part_orders[bool(not result) :]):
             return []  # nobody knows how much of it is done so often
-        result += own
+        result += part_orders
     return result
 
 
@@ -98,20 +100,20 @@ def _orders_with_condition(
     first: list[Order], words: Sequence[Lexeme], names: Names
 ) -> list[Order]:
     """Return orders and the condition after them; a move that it stops is watched meanwhile."""
-    asked = block(words, names, is_open=False)
-    if not asked and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
+    question = block(words, names, goes_on=False)
+    if not question and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
         return _stopped_when(first[:-1], words, names)
-    if not first or not asked:
+    if not first or not question:
         return []
-    header, stop, *rest = asked.split(";")
+    header, stop, *rest = question.split(";")
     number = any(word.kind is NUMBER for word in words)
     samples = () if number else (f"{NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         move, made_of = first[-1], first[-1].samples + samples
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
-        left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
-        return [*first[:-1], stopped, *left]
-    return [*first, Order("IF", asked, samples)]
+        branch_orders = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
+        return [*first[:-1], stopped, *branch_orders]
+    return [*first, Order("IF", question, samples)]
 
 
 def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -128,8 +130,8 @@ def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> 
 
 def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     """Return the orders between two words that join, of which each begins with its own."""
-    if whole := _order(words, names):
-        return [whole]
+    if order := _order(words, names):
+        return [order]
     for k in range(2, len(words) - 1):
         first = _order(words[:k], names) if _begins_order(words[k], names) else None
         if first and first.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
@@ -143,7 +145,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
 def _begins_order(token: Lexeme, names: Names) -> bool:
     """Whether a word begins an order."""
     is_turn = bool(lexicon_meaning(token.text, "turn"))
-    return is_turn or names.meant(token.text) in (*CALLED, "S", "STOP")
+    return is_turn or names.meant(token.text) in (*CALL_WORDS, "S", "STOP")
 
 
 def _order(words: list[Lexeme], names: Names) -> Order | None:
@@ -158,17 +160,17 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
             pause = filled([made("W"), *words[1:]], names, has_until=False)
             return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     call = filled(words, names, has_until=False, is_order=True)
-    is_free = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
-    if is_free:
-        unturned = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
-        call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
+    is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
+    if is_free_turn:
+        other_words = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
+        call = filled([made("R"), *other_words], names, has_until=False, is_order=True)
     if call is None:
         return None
     text, word = laid_out(call.tokens), call.tokens[0].text
     if call.times:
         pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
         text = f"LOOP({call.times});{text};{pause_s}{BLOCK_ENDS['LOOP']}"
-    return Order(word, text, call.samples, is_free, bool(call.times))
+    return Order(word, text, call.samples, is_free_turn, bool(call.times))
 
 
 def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
@@ -178,39 +180,41 @@ def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
     word = call.tokens[0].text
-    condition, sample = _parse_condition(words[k + 1 :], names, is_ahead=word == "F")
+    condition, sample = _parse_condition(words[k + 1 :], names, may_be_distance=word == "F")
     text = f"{laid_out(call.tokens)} UNTIL({condition})"
     return Order(word, text, call.samples + sample) if condition else None
 
 
 def _parse_condition(
-    words: Sequence[Lexeme], names: Names, is_ahead: bool = True
+    words: Sequence[Lexeme], names: Names, may_be_distance: bool = True
 ) -> tuple[str, tuple[str, ...]]:
     """Return the condition that words ask, and what they do not say of it.
 
-    `is_ahead`: it may be one for something near, which DISTANCE sees.
+    `may_be_distance`: it may be one for something near, which DISTANCE sees.
     """
     if exact := laid_out(condition_in(words, names)):
         return exact, ()
-    text = (worded(words, names) if is_ahead else None) or {}
+    text = (worded(words, names) if may_be_distance else None) or {}
     condition = text.get("asked") or text.get("question", "")
-    is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
-    if is_other or not condition.startswith("DISTANCE"):
+    has_other_question = any(
+        names.meant(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
+    )
+    if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()
     return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
 
 
-def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
+def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     """Return the block that one sentence says: its header, what is done, and its end.
 
-    `is_open`: it goes on further down.
+    `goes_on`: it goes on further down.
     """
     word = names.meant(tokens[0].text)
-    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > LONGEST:
+    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
         return ""
     is_when = bool(lexicon_meaning(tokens[0].text, "whenever"))
     tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE
-    while tokens[-1].text in ENDED or lexicon_meaning(tokens[-1].text, "end"):
+    while tokens[-1].text in WORD_OF_END or lexicon_meaning(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
     arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
@@ -225,8 +229,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             return ""  # another order than the words after it say
         if not body or any(order.is_side_free for order in (*body, *other)):
             continue
-        is_side = names.meant(texts[k]) in _SIDES and texts[k + 1 : k + 2] != ["("]
-        if word != "LOOP" and tokens[k].source and is_side:
+        is_side_word = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
+        if word != "LOOP" and tokens[k].source and is_side_word:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not lexicon_meaning(texts[j], "filler")), k)
         if lexicon_meaning(texts[place], "front") and place + 1 < arm:
@@ -237,7 +241,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
-        return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
+        return ";".join(parts if goes_on else [*parts, BLOCK_ENDS[word]])
     return ""
 
 

@@ -12,22 +12,25 @@ from tiniscript.diagnostics.rendering import names_found
 from tiniscript.recovery.meanings import plain
 
 # what they found is a calculated number
-_COUNTED = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
-_WAYS = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they ask for no change
+_COUNTING_CODES = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
+_CODES_WITH_WAYS = (
+    codes.QUESTION_AFTER,
+    codes.NOT_CALLABLE,
+)  # without a place they ask for no change
 
 
 def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     """Return a diagnostic at what it names, and with the place that it had for what to try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
-    named = diagnostic.values.get("found", "").strip()
-    if not named or code in _COUNTED or not names_found(diagnostic):
+    found_text = diagnostic.values.get("found", "").strip()
+    if not found_text or code in _COUNTING_CODES or not names_found(diagnostic):
         return diagnostic
-    if _normalized(source[span]) == _normalized(named):
+    if _normalized(source[span]) == _normalized(found_text):
         return diagnostic
-    result = _nearest(named, span, source)
+    result = _nearest(found_text, span, source)
     if result is None:
         return diagnostic
-    if place is None and code not in _WAYS:
+    if place is None and code not in _CODES_WITH_WAYS:
         place = span
     return diagnostic._replace(span=result, place=place)
 
@@ -36,25 +39,27 @@ def _normalized(text: str) -> str:
     return " ".join(plain(text).split())
 
 
-def _nearest(named: str, span: Span, source: Source) -> Span | None:
-    """Return where `named` stands in the lines of a place: in it, or else nearest to it."""
+def _nearest(found_text: str, span: Span, source: Source) -> Span | None:
+    """Return where `found_text` stands in the lines of a place: in it, or else nearest to it."""
     text = source.text
     begin = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
     assert line_end is not None  # each text has an end
     part = _unaccented(text[begin : line_end.start()])
-    words = r"\s*".join(map(re.escape, _unaccented(named).split()))
-    head = r"(?<!\w)" if named[0].isdigit() else r"(?<![^\W\d])" * named[0].isalpha()  # V of 2V
-    tail = r"(?!\w)" * named[-1].isalnum()
-    matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
-    places = (Span(begin + match.start(), begin + match.end()) for match in matches)
+    words = r"\s*".join(map(re.escape, _unaccented(found_text).split()))
+    head = (
+        r"(?<!\w)" if found_text[0].isdigit() else r"(?<![^\W\d])" * found_text[0].isalpha()
+    )  # V of 2V
+    tail = r"(?!\w)" * found_text[-1].isalnum()
+    word_matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
+    places = (Span(begin + match.start(), begin + match.end()) for match in word_matches)
     return min(places, key=lambda it: _distance(it, span), default=None)
 
 
 def _distance(one: Span, other: Span) -> tuple[int, int]:
     """Return how far a place is from another, 0 where it is in it or around it."""
-    apart = max(0, other.start - one.end, one.start - other.end)
-    return apart, abs(one.start - other.start)
+    gap = max(0, other.start - one.end, one.start - other.end)
+    return gap, abs(one.start - other.start)
 
 
 @lru_cache(16)

@@ -17,14 +17,14 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
-    ANY,
-    ENDED,
+    ANY_LABELS,
     NEAR,
     SEPARATOR,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
-    joined,
+    joined_name,
     made,
     number_text,
     texts,
@@ -34,18 +34,18 @@ from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
-_PART = re.compile(r"<(\w+)>")
-_CONTINUED = re.compile(r"\n    ")
+_PART_REFERENCE = re.compile(r"<(\w+)>")
+_CONTINUATION = re.compile(r"\n    ")
 # Where an instruction begins and ends, by the labels around it; and a line.
-_EDGES = {
+_EDGE_PATTERNS = {
     "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
     "$": r"(?:\Z|(?=\x01\|s[;}]\|))",
     "^^": r"\A",
     "$$": r"\Z",
 }
 _EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")  # or what has none: `\$`, `[^;]`
-_DEEPEST = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
-_OF_NUMBERS = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
+_MOST_NESTED_BRACKETS = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
+_NUMBER_LABEL = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
@@ -57,7 +57,7 @@ class Row(NamedTuple):
     """
 
     pattern: Pattern
-    becomes: tuple[str, ...]
+    replacement: tuple[str, ...]
     cost: float
     code: Code
     is_first: bool
@@ -70,7 +70,7 @@ class SignRow(NamedTuple):
     """A row of the table of signs: a pattern of characters, of which no token is made."""
 
     pattern: re.Pattern[str]
-    becomes: str
+    replacement: str
     code: Code
     is_offered: bool
     example: tuple[str, str]
@@ -78,7 +78,7 @@ class SignRow(NamedTuple):
 
 def cells(table: str) -> Iterator[list[str]]:
     """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
-    for row in _CONTINUED.sub(" ", table.strip("\n")).split("\n"):
+    for row in _CONTINUATION.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [part.split("¦") for part in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
@@ -89,25 +89,25 @@ def cells(table: str) -> Iterator[list[str]]:
 
 @cache
 def of_tokens() -> tuple[Row, ...]:
-    matches = []
-    for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
-        parts = tuple(_expanded(becomes, rows.PARTS).split())
+    token_rows = []
+    for pattern, replacement, cost, code, how, example in cells(rows.TOKENS):
+        parts = tuple(_expanded(replacement, rows.PARTS).split())
         is_offered = "offered" in how
-        may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
+        may_lose = is_offered or bool(_NUMBER_LABEL.search(f"{pattern} {replacement}"))
         row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
                   is_offered, may_lose, _texts(example))  # fmt: skip
-        matches.append(row)
-    return tuple(matches)
+        token_rows.append(row)
+    return tuple(token_rows)
 
 
 @cache
-def _places(is_first: bool) -> Places:
+def _index_of(is_first: bool) -> RowIndex:
     return places({k: row.pattern for k, row in enumerate(of_tokens()) if row.is_first is is_first})
 
 
-def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
+def rows_to_try(line: Encoded, is_first: bool) -> Iterator[Row]:
     """Give the rows that may match a line, in the order of the table."""
-    return (of_tokens()[k] for k in line.tried(_places(is_first)))
+    return (of_tokens()[k] for k in line.candidate_rows(_index_of(is_first)))
 
 
 @cache
@@ -115,12 +115,12 @@ def of_signs() -> tuple[SignRow, ...]:
     return tuple(
         SignRow(
             re.compile(_anchored(pattern), re.I),
-            becomes[1:-1],
+            replacement[1:-1],
             CODES[code],
             how == "offered",
             _texts(it),
         )
-        for pattern, becomes, code, how, it in cells(rows.SIGNS)
+        for pattern, replacement, code, how, it in cells(rows.SIGNS)
     )
 
 
@@ -149,21 +149,21 @@ class Pattern(NamedTuple):
 def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
     atoms = [_atom(word) for word in _expanded(pattern, pieces).split()]
-    needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY, "s|"})
+    needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY_LABELS, "s|"})
     return Pattern(re.compile("".join(text for text, _ in atoms)), needed)
 
 
 def _expanded(pattern: str, pieces: Mapping[str, str]) -> str:
     """Return a pattern with its `<parts>` written out."""
-    while _PART.search(pattern):
-        pattern = _PART.sub(lambda match: pieces[match[1]], pattern)
+    while _PART_REFERENCE.search(pattern):
+        pattern = _PART_REFERENCE.sub(lambda match: pieces[match[1]], pattern)
     return pattern
 
 
 def _atom(atom: str) -> tuple[str, frozenset[str]]:
     """Return the pattern of one token, and labels of which there is one, none where it may miss."""
-    if atom in _EDGES:
-        return _EDGES[atom], frozenset()
+    if atom in _EDGE_PATTERNS:
+        return _EDGE_PATTERNS[atom], frozenset()
     capture = _CAPTURE.match(atom) if len(atom) > 2 else None
     name, atom = (capture[1], atom[2:]) if capture else ("", atom)
     often = ""
@@ -183,7 +183,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
         body = f"(?:{body}{often}?)"
         return f"(?P<{name}>{body})" if name else body, frozenset()
     one = _token(labels)
-    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in result else [])]
+    choices = [*([one] if labels else []), *([_EDGE_PATTERNS["$"]] if "$" in result else [])]
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
     is_needed = often in ("", "+") and "$" not in result
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
@@ -192,7 +192,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
 def _closing_pattern(labels: Sequence[str]) -> str:
     """Return the pattern of a token of these labels, or of brackets that such tokens are in."""
     body = _token(labels)
-    for _ in range(_DEEPEST):
+    for _ in range(_MOST_NESTED_BRACKETS):
         body = rf"(?:{_token(labels)}|{_token(['s('])}{body}*{_token(['s)'])})"
     return body
 
@@ -202,10 +202,10 @@ def _token(labels: Sequence[str]) -> str:
     return rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
 
 
-Places = Mapping[str, Sequence[int]]
+RowIndex = Mapping[str, Sequence[int]]
 
 
-def places(patterns: Mapping[int, Pattern]) -> Places:
+def places(patterns: Mapping[int, Pattern]) -> RowIndex:
     """Return where the patterns of a table stand that only lines with a label match.
 
     It is the label that the fewest patterns need, "" for one that any line may match.
@@ -242,7 +242,7 @@ class Encoded:
                 return iter(())
         return pattern.of_labels.finditer(self.text)
 
-    def tried(self, table: Places) -> list[int]:
+    def candidate_rows(self, table: RowIndex) -> list[int]:
         """Return where the patterns of a table stand that the line may match, in their order."""
         return sorted({k for label in self._labels & table.keys() for k in table[label]})
 
@@ -254,17 +254,17 @@ class Encoded:
     def rewritten(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
         """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
-        for part in row.becomes:
-            made_of = self._replacement(part, match)
-            if made_of is None:
+        for part in row.replacement:
+            sources = self._replacement(part, match)
+            if sources is None:
                 return None
-            if new and made_of and new[-1].source is None and made_of[0].space == "":
-                made_of = [made_of[0]._replace(space=None), *made_of[1:]]
-            new += made_of
+            if new and sources and new[-1].source is None and sources[0].space == "":
+                sources = [sources[0]._replace(space=None), *sources[1:]]
+            new += sources
         new = _without_double_brackets(new)
         start, end = self.span(match)
-        is_set = row.code is codes.OTHER_ASSIGNMENT
-        if is_set and start and self.tokens[start - 1].text in _BEFORE_VALUE:
+        is_assignment = row.code is codes.OTHER_ASSIGNMENT
+        if is_assignment and start and self.tokens[start - 1].text in _BEFORE_VALUE:
             return None  # in brackets it would be a condition
         if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
             new.pop()
@@ -286,8 +286,8 @@ class Encoded:
             return [self.translated(lexeme) for lexeme in captured(part[1])]
         if part[0] != "@":
             return [made(part.strip("'"))]
-        function, *named = part[1:].split(":")
-        place = _Place(self, [captured(item) for item in named], self.span(match)[0])
+        function, *names = part[1:].split(":")
+        place = _Place(self, [captured(item) for item in names], self.span(match)[0])
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
@@ -323,21 +323,26 @@ def negated(condition: Sequence[Lexeme]) -> list[Lexeme]:
 def _end_of(place: _Place) -> _Made:
     word = place.line.translated(place.captured[0][0]).text
     word = "LOOP" if lexicon_meaning(word, "count") else _HEADER_OF.get(word, word)
-    end = BLOCK_ENDS.get(word, word if word in ENDED else "")
+    end = BLOCK_ENDS.get(word, word if word in WORD_OF_END else "")
     return [made(end)] if end else None
 
 
 def _decimal(place: _Place) -> _Made:
     """`1,5` is 1.5 where nobody takes it for two values."""
-    (whole,), (comma,), (rest,) = place.captured
+    (whole_part,), (comma,), (decimals,) = place.captured
     before = place.line.tokens[place.start - 1].text if place.start else ""
-    longest = 3 if whole.text == "0" else 2 if before == "=" else 1
-    is_list = rest.text == "0" or (len(whole.text) > 1 and rest.text != "5")
-    has_space = bool(comma.space or rest.space)
-    if "." in whole.text + rest.text or is_list or len(rest.text) > longest or has_space:
+    longest = 3 if whole_part.text == "0" else 2 if before == "=" else 1
+    is_value_list = decimals.text == "0" or (len(whole_part.text) > 1 and decimals.text != "5")
+    has_space = bool(comma.space or decimals.space)
+    if (
+        "." in whole_part.text + decimals.text
+        or is_value_list
+        or len(decimals.text) > longest
+        or has_space
+    ):
         return None
-    text = f"{whole.text}.{rest.text}"
-    return [whole._replace(text=text, source=text)]
+    text = f"{whole_part.text}.{decimals.text}"
+    return [whole_part._replace(text=text, source=text)]
 
 
 def _zero_after(place: _Place) -> _Made:
@@ -425,14 +430,14 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
     for row in names.rows:
         for k in range(len(tokens) - len(row) + 1):
             if texts(tokens[k : k + len(row)]) == row:
-                name = made(joined(row))._replace(space=tokens[k].space)
+                name = made(joined_name(row))._replace(space=tokens[k].space)
                 return [*tokens[:k], name, *tokens[k + len(row) :]], True
     for k in range(len(tokens)):
         if sided := _sensor_of_side(tokens, k, names):
             sensor, count = sided
             word = made(sensor)._replace(space=tokens[k].space)
-            is_own = joined(texts(tokens[k : k + count])) == sensor  # `LIGHT-L`
-            return [*tokens[:k], word, *tokens[k + count :]], is_own
+            is_sensor_name = joined_name(texts(tokens[k : k + count])) == sensor  # `LIGHT-L`
+            return [*tokens[:k], word, *tokens[k + count :]], is_sensor_name
     for k, count in product(range(len(tokens)), (3, 2)):
         row = texts(tokens[k : k + count])
         if len(row) < count or any(token.kind is not WORD for token in tokens[k : k + count]):
@@ -446,8 +451,8 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if lexicon_concept(text) == "ELSE" and after == "(" and tokens[k + count].space == "":
             continue  # `SE NÃO(DISTANCE < 10)`
         if lexicon_concept(text) or (text in WORDS and row[0] == "END"):
-            meant = names.meanings(text)  # `END IF` ends any block
-            word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
+            meanings = names.meanings(text)  # `END IF` ends any block
+            word = made(meanings[0].concept if meanings else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
     return None
 
@@ -463,5 +468,5 @@ def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str
     sensor = name if name in names.sensors else names.meant(name)
     count = 2 if not at else 4 if signs[0] in "([" else 3
     is_call = not at and signs[1:2] == ("(",)  # an order after it: `IF LIGHT L(1, 60)`
-    is_said = is_closed and signs[at:] and not is_call
-    return (sensor, count) if is_said and sensor in names.sensors else None
+    is_complete = is_closed and signs[at:] and not is_call
+    return (sensor, count) if is_complete and sensor in names.sensors else None

@@ -18,10 +18,10 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matching
-from tiniscript.recovery.lines import BRACES, MARGIN, Reading, Step, is_right
+from tiniscript.recovery.lines import BRACES, SURE_MARGIN, Reading, Step, is_right
 from tiniscript.recovery.meanings import (
-    ENDED,
     NEAR,
+    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -42,17 +42,19 @@ from tiniscript.recovery.writing import (
 )
 from tiniscript.syntax.outline import Failure
 
-UNREAD = 5  # lines that nobody can read, after which others are read quickly
-ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
+MOST_UNREAD_LINES = 5  # lines that nobody can read, after which others are read quickly
+MOST_ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
 # A line that begins a block whose condition comes at its end, and its last line.
-_DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
+_LONE_LOOP_START = re.compile(
+    rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$"
+)
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
-_SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
-_WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
+_SETUP_AT_START = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
+_WHEN_AT_START = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 
 # What begins a block or ends one, as far as a word says it.
-_OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
-_BEGIN = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
+_BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
+_BLOCK_START_KINDS = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
 
 Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
@@ -82,7 +84,7 @@ class Candidate(NamedTuple):
     move: Moved | None = None
 
 
-_UNREAD = Reading(0, [], (), True, False)
+_UNREAD_LINE = Reading(0, [], (), True, False)
 
 
 class _Text:
@@ -94,7 +96,7 @@ class _Text:
         self.body, self.note = without_note(source)
         self.steps: list[Step] = []
         self.is_sure = True
-        self.reading = _UNREAD
+        self.reading = _UNREAD_LINE
         self.rivals: list[Reading] = []
 
     @property
@@ -144,9 +146,9 @@ class Recovery:
             self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
         rows_of = ([lexemes(text.body), text.reading.tokens] for text in self.lines)
-        told, names = Names([*chain(*rows_of)], self.kit), self.names
-        if new := (told.variables | told.defs) - names.variables - names.defs:
-            self.names = told
+        new_names, names = Names([*chain(*rows_of)], self.kit), self.names
+        if new := (new_names.variables | new_names.defs) - names.variables - names.defs:
+            self.names = new_names
             for line in self.lines:
                 if line.reading.items is None and new & {*texts(lexemes(line.body))}:
                     self.read_line(line)
@@ -169,12 +171,12 @@ class Recovery:
                 continue
             for row in rewrites.of_signs():
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
-                    new = row.pattern.sub(row.becomes, body, count=1)
+                    new = row.pattern.sub(row.replacement, body, count=1)
                     before, after = lexemes(body), lexemes(new)
-                    is_lost = names.defs & ({*texts(before)} - {*texts(after)})
+                    lost_defs = names.defs & ({*texts(before)} - {*texts(after)})
                     if (
                         new != body
-                        and not is_lost
+                        and not lost_defs
                         and _open_brackets(after) <= _open_brackets(before)
                     ):
                         line.steps.append(Step(row.code, before, after))
@@ -186,13 +188,13 @@ class Recovery:
     def has_signs(self, start: int) -> bool:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
-        near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
-        return any(is_right(lexemes(text.body), self.names) for text in near)
+        lines_near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
+        return any(is_right(lexemes(text.body), self.names) for text in lines_near)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""
         for line in [text for text in self.lines if text.body.strip()][1:]:
-            body = _SETUP.sub("", line.body)
+            body = _SETUP_AT_START.sub("", line.body)
             if body != line.body:
                 line.steps.append(Step(codes.SETUP_TWICE, lexemes(line.body), lexemes(body)))
                 line.body = body
@@ -200,21 +202,32 @@ class Recovery:
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own after the instruction before it."""
         texts: list[_Text] = []
-        until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
+        until_pattern = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
-        if not until.search(text) or _END_UNTIL.search(text):
+        if not until_pattern.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
-        is_do = False
+        is_do_line = False
         for line in self.lines:
-            above = next((text for text in reversed(texts) if text.body.strip()), None)
-            body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
-            if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
-                above.body, above.note = f"{body} {line.body.strip()}", line.note
-                above.last = line.last
-                above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
+            text_above = next((text for text in reversed(texts) if text.body.strip()), None)
+            body = (
+                text_above.body.rstrip().rstrip(";")
+                if text_above and not text_above.note.strip()
+                else ""
+            )
+            if (
+                text_above
+                and body.endswith(")")
+                and not is_do_line
+                and until_pattern.match(plain(line.body))
+            ):
+                text_above.body, text_above.note = f"{body} {line.body.strip()}", line.note
+                text_above.last = line.last
+                text_above.steps.append(
+                    Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(text_above.body))
+                )
             else:
                 texts.append(line)
-            is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
+            is_do_line = is_do_line or _LONE_LOOP_START.match(plain(line.body)) is not None
         self.lines = texts
 
     def read_line(self, line: _Text) -> None:
@@ -224,20 +237,20 @@ class Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        readings = lines.read(tokens, names, is_quick=self.unread > UNREAD)
+        readings = lines.read(tokens, names, is_quick=self.unread > MOST_UNREAD_LINES)
         if not readings:
             self.unread += 1
             line.reading = self.parts(tokens, names)
             return
         first = readings[0]
-        line.rivals = [reading for reading in readings[1:] if reading.said != first.said]
-        is_close = any(
+        line.rivals = [reading for reading in readings[1:] if reading.text_read != first.text_read]
+        has_close_rival = any(
             rival.is_sure
-            and rival.cost < first.cost + MARGIN
+            and rival.cost < first.cost + SURE_MARGIN
             and _count_kept(rival) >= _count_kept(first)
             for rival in line.rivals
         )
-        is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
+        is_sure = first.is_sure and not has_close_rival and not _is_key(tokens, first.tokens)
         line.reading = first._replace(is_sure=is_sure)
 
     def parts(self, tokens: list[Lexeme], names: Names) -> Reading:
@@ -254,7 +267,7 @@ class Recovery:
                     Step(code, [*head, *before, *tail], [*head, *after, *tail])
                     for code, before, after in reading.steps
                 ]
-        return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD
+        return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD_LINE
 
     @cached_property
     def whole(self) -> Candidate | None:
@@ -275,13 +288,13 @@ class Recovery:
         """Return programs that may have been meant as well: each costs about the same."""
         if not (self.whole and self.whole.is_whole) or self.whole.is_applied:
             return ()
-        found = {self.whole.text: self.whole}
-        for cost, k, rival in self.rivals()[:ALTERNATIVES]:
+        candidates = {self.whole.text: self.whole}
+        for cost, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
             readings = [rival if it is self.lines[k] else it.reading for it in self.lines]
-            other = self.candidate(readings, True) if cost < MARGIN else None
+            other = self.candidate(readings, True) if cost < SURE_MARGIN else None
             if other and other.is_whole:
-                found.setdefault(other.text, other)
-        return [*found.values()][1:]
+                candidates.setdefault(other.text, other)
+        return [*candidates.values()][1:]
 
     def candidate(self, readings: list[Reading], has_blocks: bool) -> Candidate | None:
         """Return the program of some readings, None where it is no better than the text."""
@@ -292,57 +305,64 @@ class Recovery:
         has_sure_blocks, move = blocks.is_sure, None
         is_sure = has_sure_blocks and all(change.is_sure for change in changes)
         text = "\n".join(change.text for change in changes)
-        left = self.mistakes(text)
-        if left and set(left) & rows.MISPLACED:
-            for moved in ordered(text):
-                if left and not self.mistakes(moved.text):
-                    text, left, changes, move = moved.text, [], [], moved
-        is_alone = has_sure_blocks and _count_ends(text) == self.ends
-        if left and not ((is_sure or is_alone) and len(left) < self.count):
+        mistakes_left = self.mistakes(text)
+        if mistakes_left and set(mistakes_left) & rows.MISPLACED:
+            for moved_program in ordered(text):
+                if mistakes_left and not self.mistakes(moved_program.text):
+                    text, mistakes_left, changes, move = moved_program.text, [], [], moved_program
+        is_better_alone = has_sure_blocks and _count_ends(text) == self.ends
+        if mistakes_left and not ((is_sure or is_better_alone) and len(mistakes_left) < self.count):
             return None
         is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
-        return Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
+        return Candidate(text, is_applied, not mistakes_left, changes, has_sure_blocks, move)
 
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
-        matches = [
+        costlier_readings = [
             (rival.cost - text.reading.cost, k, rival)
             for k, text in enumerate(self.lines)
             for rival in text.rivals
         ]
-        return sorted(matches, key=lambda it: it[0])
+        return sorted(costlier_readings, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
         cheapest = [line.reading for line in self.lines]
         yield cheapest, True
-        for _, k, rival in self.rivals()[:ALTERNATIVES]:
+        for _, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure = [reading if reading.is_sure else _UNREAD for reading in cheapest]
+        sure_readings = [reading if reading.is_sure else _UNREAD_LINE for reading in cheapest]
         unread = (
-            one for one, reading in zip(self.lines, sure, strict=True) if reading.items is None
+            one
+            for one, reading in zip(self.lines, sure_readings, strict=True)
+            if reading.items is None
         )
         if not any(map(self.may_be_of_block, unread)):  # they are instructions in their blocks
-            yield sure, True
-        yield sure, False
-        has_blocks = [any(it.kind != "do" for it in reading.items or ()) for reading in sure]
-        alone = [_UNREAD if has else reading for reading, has in zip(sure, has_blocks, strict=True)]
-        if alone != sure:
-            yield alone, False
+            yield sure_readings, True
+        yield sure_readings, False
+        has_blocks = [
+            any(it.kind != "do" for it in reading.items or ()) for reading in sure_readings
+        ]
+        without_blocks = [
+            _UNREAD_LINE if has_block else reading
+            for reading, has_block in zip(sure_readings, has_blocks, strict=True)
+        ]
+        if without_blocks != sure_readings:
+            yield without_blocks, False
 
     def may_be_of_block(self, line: _Text) -> bool:
         """Whether a line that nobody can read may begin a block, or end one."""
         return any(
             word in BRACES
-            or lexicon_meaning(word, *_BEGIN)
-            or self.names.meant(word, NEAR) in _OF_BLOCKS
+            or lexicon_meaning(word, *_BLOCK_START_KINDS)
+            or self.names.meant(word, NEAR) in _BLOCK_WORDS
             for word in texts(lexemes(line.body))
         )
 
     def matched(self, readings: Sequence[Reading]) -> Matching | None:
         """Return what all blocks of the lines need, or None where they fit in no way."""
         read = [
-            Line(line.indent, _WHEN.match(line.source.upper()) is not None, reading)
+            Line(line.indent, _WHEN_AT_START.match(line.source.upper()) is not None, reading)
             for line, reading in zip(self.lines, readings, strict=False)
         ]
         matching = Matching(read)
@@ -352,7 +372,7 @@ class Recovery:
         changes = []
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
-            if reading is not _UNREAD:
+            if reading is not _UNREAD_LINE:
                 edits, tails = blocks.edits.get(k, []), blocks.tails.get(k, [])
                 text = _line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.behind.get(k, [])))
@@ -379,7 +399,7 @@ def _open_brackets(tokens: Sequence[Lexeme]) -> int:
 
 
 def _count_ends(text: str) -> int:
-    return sum(lexeme.text in ENDED for lexeme in lexemes(text))
+    return sum(lexeme.text in WORD_OF_END for lexeme in lexemes(text))
 
 
 def _rank(candidate: Candidate) -> tuple[bool, bool]:

@@ -20,8 +20,8 @@ from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-_WHOLE = 100
-_COMPARING = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
+_HUNDRED_PERCENT = 100
+_COMPARING_KINDS = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
 
 
 def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
@@ -31,12 +31,12 @@ def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
     """
     bodies = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
-    found: list[tuple[Diagnostic, Edit]] = []
+    findings: list[tuple[Diagnostic, Edit]] = []
     start = 0
     for body, line in zip(bodies, source.text.split("\n"), strict=True):
-        found += _shares_of(body, start, names)
+        findings += _shares_of(body, start, names)
         start += len(line) + 1
-    return [each for each, _ in found], [edit for _, edit in found]
+    return [each for each, _ in findings], [edit for _, edit in findings]
 
 
 def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic, Edit]]:
@@ -44,20 +44,26 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
     ends = [*accumulate(map(width, tokens))]
     for k, token in enumerate(tokens):
         size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
-        at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
+        at = _compared(tokens, k) if size and float(token.text) <= _HUNDRED_PERCENT else -1
         side = "".join(lexicon_meaning(tokens[at].text, "left", "right")) if at > 0 else ""
         at -= bool(side)  # `luz izquierda`
-        asked = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
-        sensor = _sensor(asked, names) if at >= 0 else None
+        sensor_word = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
+        sensor = _sensor(sensor_word, names) if at >= 0 else None
         if sensor is None or sensor.low:
             continue
         begin, end = ends[k] - len(token.source or ""), ends[k + size]
-        named = ends[at] - len(tokens[at].source or "")
-        before = body[named:begin] if tokens[at].text in names.asked else ""
-        share = number_text(round(sensor.high * float(token.text) / _WHOLE, -3) / ONE)
-        values = {"sensor": body[named : ends[at]], "low": "0", "high": f"{sensor.high / ONE:g}",
-                  "found": body[begin:end], "number": token.text,
-                  "share": before + share, "kept": before + token.text}  # fmt: skip
+        name_start = ends[at] - len(tokens[at].source or "")
+        before = body[name_start:begin] if tokens[at].text in names.asked else ""
+        share = number_text(round(sensor.high * float(token.text) / _HUNDRED_PERCENT, -3) / ONE)
+        values = {
+            "sensor": body[name_start : ends[at]],
+            "low": "0",
+            "high": f"{sensor.high / ONE:g}",
+            "found": body[begin:end],
+            "number": token.text,
+            "share": before + share,
+            "kept": before + token.text,
+        }
         span = Span(start + begin, start + end)
         yield Diagnostic(codes.UNIT, span, values), Edit(span, share)
 
@@ -77,7 +83,7 @@ def _compared(tokens: Sequence[Lexeme], k: int) -> int:
     """Return the place of the word that is compared with the number at a place, -1 for none."""
     at = k - 1
     while at >= 0 and (
-        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING)
+        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING_KINDS)
     ):
         at -= 1
     return at if at < k - 1 and tokens[at].kind is WORD else -1
@@ -85,6 +91,6 @@ def _compared(tokens: Sequence[Lexeme], k: int) -> int:
 
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
-    found = [word, names.meant(word, NEAR)]
-    found += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
-    return next((names.asked[name] for name in found if name in names.asked), None)
+    candidates = [word, names.meant(word, NEAR)]
+    candidates += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
+    return next((names.asked[name] for name in candidates if name in names.asked), None)

@@ -1,6 +1,6 @@
 """Slips: how an instruction differs from what it becomes, its code, and what a message says of it.
 
-A message names few things of a slip: `NAMED` says which, by code, `_VALUES` how each is written.
+A message names few things of a slip: `NAMES_OF_CODE` says which, `_VALUE_GAPS` how each is written.
 Knows no block and no sentence of any language.
 """
 
@@ -19,8 +19,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    ENDED,
     SOME_END,
+    WORD_OF_END,
     Lexeme,
     lexemes,
     lexicon_meaning,
@@ -31,9 +31,9 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
+BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", *BRACES))
 # What messages name, and what they offer: of two codes `dedupe` asks for `found`, too.
-_NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
+_CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("fix",): (
         codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT, codes.UNTIL_ALONE,
         codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE, codes.SPANISH_IF,
@@ -64,7 +64,7 @@ _NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("found", "right", "letter", "fix"): (codes.BAD_NUMBER,),
     ("found", "right", "usage", "takes", "fix"): (codes.OTHER_LANGUAGE,),
 }  # fmt: skip
-NAMED = {code: names for names, its in _NAMED_BY.items() for code in its}
+NAMES_OF_CODE = {code: names for names, its in _CODES_BY_NAMES.items() for code in its}
 
 
 class Change(NamedTuple):
@@ -100,33 +100,37 @@ class Slip(NamedTuple):
 
 def values_of(slip: Slip, code: Code) -> dict[str, str]:
     """Return what a message with this code says of a slip."""
-    return {name: _VALUES[name](slip) for name in NAMED.get(code, ())}
+    return {name: _VALUE_GAPS[name](slip) for name in NAMES_OF_CODE.get(code, ())}
 
 
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
     is_of_step = step is not None and code is not codes.OTHER_NOTE
-    old, new = (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    old_texts, new = (
+        (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    )
     if "WHEN" in texts(change.after):  # what the steps took for an IF
-        old, new = (
+        old_texts, new = (
             [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
-            for line in (old, new)
+            for line in (old_texts, new)
         )
-    told, fix = without_setup(change.before), without_setup(change.after)
+    old_lexemes, new_lexemes = without_setup(change.before), without_setup(change.after)
     is_begun = setup_of(change.after) and not setup_of(change.before)
     if is_begun and code in (codes.OTHER_SIGN, codes.QUOTE):
-        fix = instructions(change.after)  # the bar was a word, or in quotation marks, too
-    head, tail = alike([*map(texts, told)], [*map(texts, fix)])
-    was, now = (
+        new_lexemes = instructions(change.after)  # the bar was a word, or in quotation marks, too
+    head, tail = alike([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
+    old_part, new_part = (
         [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
-        for parts in (told, fix)
+        for parts in (old_lexemes, new_lexemes)
     )
-    start, found, right = first_difference(old, new)
-    has_end = bool(head) and any(lexeme.text in ENDED for lexeme in now)
-    parts = fix[0 if has_end else head : len(fix) - tail]
-    until = len(fix[head]) if len(told) < len(fix) else None
-    slip = Slip(code, old, new, start, found, right, was, now, change.after, parts, until)
-    return _EXACTLY[code](slip) if code in _EXACTLY else slip
+    start, found, right = first_difference(old_texts, new)
+    has_end = bool(head) and any(lexeme.text in WORD_OF_END for lexeme in new_part)
+    parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
+    until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
+    slip = Slip(
+        code, old_texts, new, start, found, right, old_part, new_part, change.after, parts, until
+    )
+    return _EXACT_SLIPS[code](slip) if code in _EXACT_SLIPS else slip
 
 
 # -- which code ---------------------------------------------------------------------------------
@@ -136,16 +140,16 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
     _, _, steps, before, after = change
     fewer = Counter(texts(before)) - Counter(texts(after))
-    more = {*texts(after)} - {*texts(before)}
-    if "SI" in fewer and "IF" in more:
+    added_words = {*texts(after)} - {*texts(before)}
+    if "SI" in fewer and "IF" in added_words:
         return codes.SPANISH_IF, None
-    dropped = {item for item in fewer if {item, meant_by(item)} & {*ENDED}}
-    if dropped and not more and fewer.keys() <= dropped | {";"}:
+    dropped = {item for item in fewer if {item, meant_by(item)} & {*WORD_OF_END}}
+    if dropped and not added_words and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
     if (
         code is codes.EXTRA_WORD
-        and more & {*ENDED}
+        and added_words & {*WORD_OF_END}
         and any(lexicon_meaning(it, "end") for it in fewer)
     ):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
@@ -166,22 +170,26 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     """Return the code of the rewrite that says most: rather another word than a sign."""
     _, _, steps, before, after = change
     words, new = {*texts(before)}, {*texts(after)}
-    own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
-    own.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
-    if own and own[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
-        return own[0].code, own[0]
-    lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
-    foreign = next((item for item in lost if meant_by(item) in new - words), "")
+    own_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+    own_steps.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
+    if own_steps and own_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
+        return own_steps[0].code, own_steps[0]
+    lost_words = (
+        lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new
+    )
+    foreign = next((item for item in lost_words if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
-    if translated and (foreign or not own):
-        is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
-        return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
+    if translated and (foreign or not own_steps):
+        is_foreign_call = foreign or "(" in words or "(" not in new or before[0].text not in new
+        return codes.OTHER_LANGUAGE if is_foreign_call else codes.MISSING_OPEN, translated
     if foreign:
-        changed = (it for it in own if foreign in {*texts(it.before)} - {*texts(it.after)})
-        return codes.OTHER_LANGUAGE, next(changed, own[0])
-    right = first_difference(own[0].before, own[0].after)[2]
-    is_comma = own[0].code is codes.OTHER_CALL and texts(right) == (",",)
-    return codes.MISSING_COMMA if is_comma else own[0].code, own[0]
+        changed_texts = (
+            it for it in own_steps if foreign in {*texts(it.before)} - {*texts(it.after)}
+        )
+        return codes.OTHER_LANGUAGE, next(changed_texts, own_steps[0])
+    right = first_difference(own_steps[0].before, own_steps[0].after)[2]
+    is_comma = own_steps[0].code is codes.OTHER_CALL and texts(right) == (",",)
+    return codes.MISSING_COMMA if is_comma else own_steps[0].code, own_steps[0]
 
 
 def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
@@ -195,7 +203,7 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
         )
         return codes.BAD_NAME if has_word else codes.OTHER_SIGN
     _, found, right = first_difference(before, after)
-    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
+    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*WORD_OF_END}:
         return codes.WRONG_END
     ends = [lexeme.text for lexeme in before if lexicon_meaning(lexeme.text, "end")]
     if ends and ends[-1] not in texts(after):
@@ -209,23 +217,23 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 
 def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
-    old, start, result, right = slip.old, slip.start, slip.found, slip.right
-    with_next = old[start : start + len(result) + 1]
+    old_texts, start, result, right = slip.old, slip.start, slip.found, slip.right
+    with_next = old_texts[start : start + len(result) + 1]
     has_dot = texts(result[-1:]) == (".",)
     if has_dot and not right:
         result, right = with_next, slip.new[start : start + 1]
-    elif not right and start and old[start - 1].text != "|":
-        result, right = [old[start - 1], *result], [old[start - 1]]
+    elif not right and start and old_texts[start - 1].text != "|":
+        result, right = [old_texts[start - 1], *result], [old_texts[start - 1]]
     elif has_dot:
         result = with_next
-    cut = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
-    is_set = cut < len(result) and result[cut].text == "="
-    result = result[: cut - is_set] or result
+    end = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
+    is_assignment = end < len(result) and result[end].text == "="
+    result = result[: end - is_assignment] or result
     if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
         result = [*takewhile(_is_counting, result)] or result
     if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
-        named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
-        result = named[:1] or result  # `oi robô, anda`
+        meant_lexemes = [lexeme for lexeme in old_texts if meant_by(lexeme.text) == right[0].text]
+        result = meant_lexemes[:1] or result  # `oi robô, anda`
     return slip._replace(found=result, right=right)
 
 
@@ -271,7 +279,7 @@ def _whole_sign(slip: Slip) -> Slip:
     return slip._replace(found=[before, *found], right=[slip.new[k - 1], *right], start=k - 1)
 
 
-_EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
+_EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
     codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number, codes.UNIT: _measured,
     codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
@@ -285,17 +293,19 @@ def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
     code, found = slip.code, slip.found
     if _has_gap(slip):
-        return written(slip.old[slip.start : slip.start + 1])
-    is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
-    is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
-    was = written(slip.was if is_all or not (found or is_sign) else found)
-    if code is codes.LINE_NUMBER and was[:1] == "_":
+        return text_of(slip.old[slip.start : slip.start + 1])
+    is_missing_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
+    is_whole_instruction = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
+    old_text = text_of(
+        slip.was if is_whole_instruction or not (found or is_missing_sign) else found
+    )
+    if code is codes.LINE_NUMBER and old_text[:1] == "_":
         return "_"
     if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD):
-        return was.strip("; ")
+        return old_text.strip("; ")
     if code is codes.OTHER_NOTE:
-        return re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
-    return was
+        return re.match(r"\w+|\W+", old_text).group().strip()  # type: ignore[union-attr]
+    return old_text
 
 
 def _has_gap(slip: Slip) -> bool:
@@ -306,19 +316,23 @@ def _has_gap(slip: Slip) -> bool:
 
 def right_of(slip: Slip) -> str:
     """Return how that is written in TiniScript."""
-    shown = _changed_text(slip)
-    now = laid_out(slip.right) or shown
-    now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
+    changed_text = _changed_text(slip)
+    right_text = laid_out(slip.right) or changed_text
+    right_text = (
+        changed_text if right_text == SOME_END and changed_text in WORD_OF_END else right_text
+    )  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
-        now = _word_in(now)
-    if slip.code is codes.OTHER_SIGN and now.split()[-1:] in (["AND"], ["OR"]):
-        now = now.split()[-1]  # `A O B > 5`: what A lacks before it is no part of the sign
-    return f"{now} )" if now.endswith("(") else now
+        right_text = _word_in(right_text)
+    if slip.code is codes.OTHER_SIGN and right_text.split()[-1:] in (["AND"], ["OR"]):
+        right_text = right_text.split()[
+            -1
+        ]  # `A O B > 5`: what A lacks before it is no part of the sign
+    return f"{right_text} )" if right_text.endswith("(") else right_text
 
 
 def _word_in(text: str) -> str:
     """Return the one word that a text is about: LOOP of `I = 0;LOOP(5)`, F of `va F`."""
-    heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in OF_BLOCKS)
+    heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in BLOCK_WORDS)
     text = re.split("[()]", next(heads, text), maxsplit=1)[0]
     text = next((word for word in text.split() if word in WORDS), text)
     return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
@@ -327,13 +341,13 @@ def _word_in(text: str) -> str:
 def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
     if _has_gap(slip):
-        return written(slip.old[slip.start - 1 : slip.start])
-    result = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+        return text_of(slip.old[slip.start - 1 : slip.start])
+    result = text_of(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (
-        not result or result[-1] == "(" or lexemes(result)[0].text not in OF_BLOCKS
+        not result or result[-1] == "(" or lexemes(result)[0].text not in BLOCK_WORDS
     ):
-        begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
-        return laid_out(next(begun)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
+        block_parts = (part for part in without_setup(slip.line) if part[0].text in BLOCK_WORDS)
+        return laid_out(next(block_parts)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
     return result
 
 
@@ -350,7 +364,7 @@ def fix_of(slip: Slip) -> str:
 
 def _word(slip: Slip) -> str:
     """Return the word that is told of: the one before its brackets, else the first one."""
-    word = _WORD_OF.get(slip.code, _first_word)(slip)
+    word = _WORD_GAPS.get(slip.code, _first_word)(slip)
     is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line)
     return f"DEF {word}" if is_def else word
 
@@ -397,7 +411,7 @@ def _rest_of_line(slip: Slip) -> str:
     return _known_word(message[2:] if texts(message[1:2]) == ("=",) else message)  # `Y = SIDE(3)`
 
 
-_WORD_OF: dict[Code, Callable[[Slip], str]] = {
+_WORD_GAPS: dict[Code, Callable[[Slip], str]] = {
     codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping, codes.BAD_NAME: _accented_word,
     codes.MISSING_OPEN: _opened, codes.NO_VALUE: _rest_of_line,
     codes.NO_BRACKETS_HERE: _rest_of_line,
@@ -419,13 +433,15 @@ def _letter(slip: Slip) -> str:
 
 def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
-    given, needed = (sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now))
+    number_count, needed_count = (
+        sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now)
+    )
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
     usage = word.usage if word and word.arguments else _usage(slip)
-    return usage if needed > given else ""
+    return usage if needed_count > number_count else ""
 
 
-_VALUES: dict[str, Callable[[Slip], str]] = {
+_VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
     "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
     "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
@@ -434,20 +450,24 @@ _VALUES: dict[str, Callable[[Slip], str]] = {
 # -- tokens -------------------------------------------------------------------------------------
 
 
-def alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+def alike(old_texts: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
     """Return how much two texts, or two lines, have alike at their beginning and at their end."""
-    most = min(len(old), len(new))
-    head = next((k for k in range(most) if old[k] != new[k]), most)
-    most -= head
-    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
+    most_lexemes = min(len(old_texts), len(new))
+    head = next((k for k in range(most_lexemes) if old_texts[k] != new[k]), most_lexemes)
+    most_lexemes -= head
+    return head, next(
+        (k for k in range(most_lexemes) if old_texts[-1 - k] != new[-1 - k]), most_lexemes
+    )
 
 
 def first_difference(
     before: Sequence[Lexeme], after: Sequence[Lexeme]
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
     """Return where two lines differ first, and what stands there in each of them."""
-    old = [lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before]
-    matched = SequenceMatcher(None, old, texts(after), autojunk=False)
+    old_texts = [
+        lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before
+    ]
+    matched = SequenceMatcher(None, old_texts, texts(after), autojunk=False)
     for kind, start, end, begin, stop in matched.get_opcodes():
         if kind != "equal":
             return start, before[start:end], after[begin:stop]
@@ -477,5 +497,5 @@ def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     ]
 
 
-def written(tokens: Sequence[Lexeme]) -> str:
+def text_of(tokens: Sequence[Lexeme]) -> str:
     return "".join((token.space or "") + (token.source or token.text) for token in tokens).strip()

@@ -22,10 +22,10 @@ from tiniscript.base.words import (
 from tiniscript.base.words import names_argument as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
-    CALLED,
-    DONE,
+    CALL_WORDS,
+    INSTRUCTION_WORDS,
     LAP,
-    LONG_S,
+    LONG_TIME_S,
     NEAR,
     Lexeme,
     Names,
@@ -35,11 +35,11 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_STEPS_FROM = 10  # so many are as many centimetres
+_LEAST_STEPS = 10  # so many are as many centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
-_LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
-_PASSED = frozenset("(),:=.-_") | {"->", "%"}
+_UNIT_OF_LETTER = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
+_PASSED_SIGNS = frozenset("(),:=.-_") | {"->", "%"}
 
 
 class Filled(NamedTuple):
@@ -119,10 +119,14 @@ class _Reader:
             rest = self.words[k + 1 :]
             if sign == ")" and any(it.kind in (WORD, NUMBER) or it.text == "(" for it in rest):
                 return False
-            is_odd = sign == "," and after in (",", ")")
-            is_again = sign == "(" and k > 2 and "(" in signs[:k]
-            is_call = sign == "(" and self.names.meant(after, NEAR) in CALLED
-            if is_odd or is_again or (is_call and self.names.meant(signs[0], NEAR) != "M"):
+            is_odd_comma = sign == "," and after in (",", ")")
+            has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
+            is_call = sign == "(" and self.names.meant(after, NEAR) in CALL_WORDS
+            if (
+                is_odd_comma
+                or has_second_group
+                or (is_call and self.names.meant(signs[0], NEAR) != "M")
+            ):
                 self.is_sure = False
         return True
 
@@ -139,9 +143,9 @@ class _Reader:
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
         text = lexicon_meaning(token.text, "number")
-        is_told = after in (",", ")") or lexicon_meaning(after, "unit") or self._is_half(k + 1)
-        is_one = text == ("1",) and not is_told
-        if text and self.command and not is_one:
+        has_context = after in (",", ")") or lexicon_meaning(after, "unit") or self._is_half(k + 1)
+        is_bare_one = text == ("1",) and not has_context
+        if text and self.command and not is_bare_one:
             number, k = self._sum(float(text[0]), k + 1)
             self.is_sure = self.is_sure and text != ("1",)
             return number, k
@@ -177,11 +181,11 @@ class _Reader:
             "100",
         ):
             unit, k = "%", k + 2
-        elif its := lexicon_meaning(
+        elif unit_meaning := lexicon_meaning(
             self.text(of := k + bool(lexicon_meaning(self.text(k), "of"))), "unit"
         ):
             k = of  # `un cuarto de vuelta`
-            unit, thousandths = its[0], float(its[1])
+            unit, thousandths = unit_meaning[0], float(unit_meaning[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
                 return None  # `R 1 50 S`: an order of its own
@@ -216,10 +220,10 @@ class _Reader:
             self._add_value("-" + number_text(float(self.text(k + 1))), self.mark)
             return k + 2
         if is_minus and (before in ("(", ",") or self._is_glued(k)):
-            is_back = self.command in MOVES and not self.is_back and not self.values
+            is_minus_of_move = self.command in MOVES and not self.is_back and not self.values
             self.is_sure, self.is_back = False, True
-            return k + 1 if is_back else None  # nobody drops a sign
-        if sign not in _PASSED or (sign == "=" and not self.mark):
+            return k + 1 if is_minus_of_move else None  # nobody drops a sign
+        if sign not in _PASSED_SIGNS or (sign == "=" and not self.mark):
             return None
         if sign == "," and self.mark and before != ",":
             return None  # a value that is only named
@@ -235,12 +239,14 @@ class _Reader:
     def _word(self, k: int) -> int | None:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, lexicon_meaning(word, "value")
-        is_command = word in names.actuators or (word in DONE and word != "BREAK")
+        is_command = word in names.actuators or (word in INSTRUCTION_WORDS and word != "BREAK")
         text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
-        meant = next((item for item in text if is_command or item in CALLED or item == "S"), None)
+        command = next(
+            (item for item in text if is_command or item in CALL_WORDS or item == "S"), None
+        )
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
-        if self.command in MOVES and word in _LETTERS and is_before_number:
-            self.mark = _LETTERS[word]
+        if self.command in MOVES and word in _UNIT_OF_LETTER and is_before_number:
+            self.mark = _UNIT_OF_LETTER[word]
         elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
                 return None  # another order
@@ -248,8 +254,8 @@ class _Reader:
             self.command = None if self.command == "F" else self.command
         elif self._is_mark(word, marked):
             last = self.values[-1] if self.values else None
-            is_behind = after in ("", ",", ")") and self.text(k - 1) != ","
-            if last and last.unit in (None, marked[0]) and is_behind and marked != ("s",):
+            is_last = after in ("", ",", ")") and self.text(k - 1) != ","
+            if last and last.unit in (None, marked[0]) and is_last and marked != ("s",):
                 self.values[-1] = last._replace(unit=marked[0])
             else:
                 self.mark = marked[0]
@@ -268,9 +274,9 @@ class _Reader:
         elif lexicon_meaning(word, "power") and self.command:
             self._add_value(lexicon_meaning(word, "power")[0], "%")
             self.is_sure = False
-        elif meant:
-            is_again = after in ("", ",") and meant == self.command and meant in MOVES
-            return k + 1 if is_again or self._take_command(word, meant) else None
+        elif command:
+            is_repetition = after in ("", ",") and command == self.command and command in MOVES
+            return k + 1 if is_repetition or self._take_command(word, command) else None
         elif lexicon_meaning(word, "filler"):
             is_in_place = self._is_number(k - 1) and after in ",)"
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
@@ -297,18 +303,18 @@ class _Reader:
         self.values.append(_Value(text, unit))
         self.mark = None
 
-    def _take_command(self, word: str, meant: str) -> bool:
-        meanings = () if word in DONE else self.names.meanings(word)
+    def _take_command(self, word: str, command: str) -> bool:
+        meanings = () if word in INSTRUCTION_WORDS else self.names.meanings(word)
         cost = meanings[0].cost if meanings else 0
         self.is_sure = self.is_sure and cost < 2
         before = self.command
-        is_way = before == "F" and meant in ("B", "L", "R") and not self.values
-        is_side = self.is_turn and meant in ("L", "R") and before not in ("L", "R")
-        if before is None or is_way or is_side:
-            self.command = meant
-        elif before == meant and not self.values and meant in MOVES:
+        is_way_of_f = before == "F" and command in ("B", "L", "R") and not self.values
+        is_side_of_turn = self.is_turn and command in ("L", "R") and before not in ("L", "R")
+        if before is None or is_way_of_f or is_side_of_turn:
+            self.command = command
+        elif before == command and not self.values and command in MOVES:
             pass
-        elif not (meant == "F" and before in MOVES and lexicon_meaning(word, "filler")):
+        elif not (command == "F" and before in MOVES and lexicon_meaning(word, "filler")):
             return False
         self.cost += cost * 0.3
         return True
@@ -330,10 +336,10 @@ class _Reader:
             return None  # of which motor?
         texts: list[str] = []
         samples: list[str] = []
-        for value, its in zip(slots, word.arguments, strict=True):
-            own = value.text if value else self._own_value(its)
-            samples += [] if own else [f"{its.sample} {its.unit}"]
-            texts.append(own or its.sample)
+        for value, argument in zip(slots, word.arguments, strict=True):
+            own_text = value.text if value else self._own_value(argument)
+            samples += [] if own_text else [f"{argument.sample} {argument.unit}"]
+            texts.append(own_text or argument.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
         tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
@@ -343,12 +349,18 @@ class _Reader:
 
         The one variable that is called so, VELOCIDAD for `F(2)`, else what all other calls give.
         """
-        own = [
+        own_values = [
             it
             for it in self.names.variables
             if any(is_called(part, argument) for part in it.split("_"))
         ]
-        return own[0] if len(own) == 1 else "" if own else self.names.usual.get(argument.unit, "")
+        return (
+            own_values[0]
+            if len(own_values) == 1
+            else ""
+            if own_values
+            else self.names.usual.get(argument.unit, "")
+        )
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
@@ -363,14 +375,15 @@ class _Reader:
 
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
         """Take a plain number after a command that counts milliseconds for these."""
-        plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
-        if plain and values and lexicon_meaning(self.words[0].text, "milliseconds"):
+        plain_values = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
+        if plain_values and values and lexicon_meaning(self.words[0].text, "milliseconds"):
             self.is_sure = False
             return [
-                _Value(number_text(it.number / 1000), "s") if it in plain else it for it in values
+                _Value(number_text(it.number / 1000), "s") if it in plain_values else it
+                for it in values
             ]
-        is_long = any(it.number >= MILLISECONDS_FROM for it in plain)
-        return None if self.command == "W" and is_long else values
+        is_in_milliseconds = any(it.number >= MILLISECONDS_FROM for it in plain_values)
+        return None if self.command == "W" and is_in_milliseconds else values
 
     def _slots(
         self, values: list[_Value], arguments: tuple[Argument, ...], has_until: bool
@@ -382,7 +395,7 @@ class _Reader:
         for k, value in enumerate(values):
             unit = value.unit
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
-            if is_of_scratch and way == "CM" and value.number >= _STEPS_FROM:
+            if is_of_scratch and way == "CM" and value.number >= _LEAST_STEPS:
                 unit, self.is_sure = WAYS[way].unit, False
             if unit == "turns" and way == "DEG":
                 unit, self.is_sure = WAYS[way].unit, False
@@ -392,14 +405,18 @@ class _Reader:
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
-                fits = (i for i, its in enumerate(arguments) if unit in (its.unit, its.name))
-                place = next((i for i in fits if slots[i] is None), None)
+                fitting_places = (
+                    i
+                    for i, expected in enumerate(arguments)
+                    if unit in (expected.unit, expected.name)
+                )
+                place = next((i for i in fitting_places if slots[i] is None), None)
                 if place is None:
                     return None
                 slots[place], order[k] = value, place
         rest = [k for k in range(len(values)) if k not in order]
         if self.command == "BEEP" and len(rest) == 2:
-            rest.sort(key=lambda k: values[k].number >= LONG_S)
+            rest.sort(key=lambda k: values[k].number >= LONG_TIME_S)
         if has_until and slots[0] is None and arguments[0].unit == "s" and not rest:
             slots[0] = _Value("FOREVER", None)
         for k in rest:
@@ -412,16 +429,16 @@ class _Reader:
         places = [order[k] for k in sorted(order)]
         self.is_sure = self.is_sure and places == sorted(places)
         for k, place in order.items():
-            is_long = values[k].number >= LONG_S and values[k].unit is None
-            if is_long and arguments[place].unit == "s" and len(arguments) > 1:
+            is_long_time = values[k].number >= LONG_TIME_S and values[k].unit is None
+            if is_long_time and arguments[place].unit == "s" and len(arguments) > 1:
                 if self.words[0].text not in WORDS:
                     return None  # of another language: rarely seconds, as in `move(50, 50)`
                 self.is_sure = False
         if None in slots:
-            if any(value.unit == "%" and value.number < LONG_S for value in values):
+            if any(value.unit == "%" and value.number < LONG_TIME_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
             is_move = self.command in MOVES and rest == [0]
-            if self.command == "SHOW" or (is_move and values[0].number >= LONG_S):
+            if self.command == "SHOW" or (is_move and values[0].number >= LONG_TIME_S):
                 return None  # a power, degrees or centimetres
             self.is_sure, self.cost = False, self.cost + 2
         for slot, argument in zip(slots, arguments, strict=True):

@@ -22,9 +22,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
 from tiniscript.recovery.meanings import (
-    ASKING,
-    ENDED,
+    ASKING_WORDS,
     NEAR,
+    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -34,38 +34,45 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.trailing_tokens import Around, Trailing, set_in, whole, width
+from tiniscript.recovery.trailing_tokens import (
+    LineContext,
+    Trailing,
+    instruction_length,
+    set_in,
+    width,
+)
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-LONGEST = 24  # words behind an instruction that are read
-MOST = 1_000  # instructions of a text that are read
+MOST_WORDS = 24  # words behind an instruction that are read
+MOST_INSTRUCTIONS = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
-_ASIDE = (codes.REPEATED, codes.WORDS_AFTER)
-_MAY_BE_NOTES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
-_MEASURES = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
-_IN_PROSE = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
-_MOST_BEFORE = 8  # instructions that an example repeats
-_FARTHEST = 40  # lines and instructions that are looked at for what is done again
-_BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
+_SECONDARY_CODES = (codes.REPEATED, codes.WORDS_AFTER)
+_NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
+_UNIT_MEANINGS = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
+_PROSE_SIGNS = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
+_MOST_REPEATED = 8  # instructions that an example repeats
+_MOST_LINES_BACK = 40  # lines and instructions that are looked at for what is done again
+_BODY_STARTS = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
-_PART = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
-_ONCE = re.compile(r"(.+?;)\1*")  # orders that the others repeat
-_CHOICE = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
-_COUNTED = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
+_INSTRUCTION_AND_BAR = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
+_REPEATED_ORDERS = re.compile(r"(.+?;)\1*")  # orders that the others repeat
+_CHOICE_CALL = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
+_LINE_COUNT = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
-_BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
+_NEEDLESS_SIGNS = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
 class Row(NamedTuple):
-    """A row: its code is None where it is told with that which was found, and `how` says where."""
+    """A row: its code is None where it is told with that which was found, and `conditions` says
+    where."""
 
     pattern: rewrites.Pattern
     code: Code | None
-    how: Sequence[str]
+    conditions: Sequence[str]
     values: dict[str, str]
     example: tuple[str, str]
 
@@ -96,23 +103,23 @@ class Suggestion(NamedTuple):
     """What is told, and the words that are passed over so that the rest can be read."""
 
     diagnostic: Diagnostic
-    passed: Edit
+    blanking_edit: Edit
 
 
 @cache
 def rows() -> tuple[Row, ...]:
-    matches = []
+    compiled_rows = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
-        named = dict(item.split("=", 1) for item in values.split("; ") if item)
+        named_values = dict(item.split("=", 1) for item in values.split("; ") if item)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         number, *how = code.split()
-        matches.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
-    return tuple(matches)
+        compiled_rows.append(Row(compiled, CODES.get(number), how, named_values, (wrong, right)))
+    return tuple(compiled_rows)
 
 
 @cache
-def _places() -> rewrites.Places:
+def _places() -> rewrites.RowIndex:
     return rewrites.places({k: row.pattern for k, row in enumerate(rows())})
 
 
@@ -121,25 +128,33 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
-    above: list[str | None] = []
+    orders_above: list[str | None] = []
     start = depth = 0
-    left = MOST
+    instructions_left = MOST_INSTRUCTIONS
     for body, line in zip(bodies, text.split("\n"), strict=True):
-        told: list[Suggestion] = []
+        suggestions_of_line: list[Suggestion] = []
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
-            for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
-                left -= 1
+            for part in islice(
+                _parts(body, start, LineContext(text, names, depth, orders_above)),
+                instructions_left,
+            ):
+                instructions_left -= 1
                 each = _suggestion_for(part)
-                if each and not (told and overlap([told[-1].passed], [each.passed])):
-                    told.append(each)
-        suggestions += told
-        if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
-            bare = _COUNTED.sub("", body)  # `2. S`
-            is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
-            above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
-        depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
+                if each and not (
+                    suggestions_of_line
+                    and overlap([suggestions_of_line[-1].blanking_edit], [each.blanking_edit])
+                ):
+                    suggestions_of_line.append(each)
+        suggestions += suggestions_of_line
+        if body.strip() and not any(
+            each.diagnostic.code is codes.SAME_AGAIN for each in suggestions_of_line
+        ):
+            uncounted = _LINE_COUNT.sub("", body)  # `2. S`
+            is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
+            orders_above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
+        depth += sum((word.text in BLOCK_ENDS) - (word.text in WORD_OF_END) for word in words)
         start += len(line) + 1
     return suggestions
 
@@ -147,35 +162,37 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
 def _as_orders(line: str, is_right: bool) -> str | None:
     """Return a line of orders, "" for another one, None for one that begins a block."""
     heads = [item[0].text for item in map(lexemes, line.split(";")) if item]
-    if heads and heads[-1] in _BEGIN_BODY:
+    if heads and heads[-1] in _BODY_STARTS:
         return None
-    is_right = is_right and not {*heads} & {*_BEGIN_BODY, *ENDED}
+    is_right = is_right and not {*heads} & {*_BODY_STARTS, *WORD_OF_END}
     return line.strip().rstrip(" ;") if is_right else ""
 
 
-def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
+def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]:
     """Give each instruction of a line that has words behind it, and words without one."""
-    names = around.names
+    names = line_context.names
     before: list[str | None] = []
-    for match in _PART.finditer(body):
+    for match in _INSTRUCTION_AND_BAR.finditer(body):
         tokens, at = lexemes(match[1]), start + match.start()
         if not tokens or match[2]:
             continue
-        is_block = tokens[0].text in (*_BEGIN_BODY, *ENDED)
-        while 0 < len(tokens) <= lines.LONGEST:
-            size = whole(tokens, names)
+        is_block = tokens[0].text in (*_BODY_STARTS, *WORD_OF_END)
+        while 0 < len(tokens) <= lines.MOST_TOKENS:
+            size = instruction_length(tokens, names)
             rest = tokens[size:]
-            if not size and (found := _spoken_call(tokens, names)):
-                yield _Words(around, at, tokens, found[0], before, found[1])
+            if not size and (spoken_call := _spoken_call(tokens, names)):
+                yield _Words(line_context, at, tokens, spoken_call[0], before, spoken_call[1])
                 break
             if not size or not rest:
-                yield _Words(around, at, tokens, 0, before)
+                yield _Words(line_context, at, tokens, 0, before)
                 break
-            if any(token.text in ASKING for token in tokens[:size]):
-                is_ended = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
-                yield _Words(around, at, tokens if is_ended else tokens[:size], 0, before)
-            if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
-                yield _Words(around, at, tokens, size, before)
+            if any(token.text in ASKING_WORDS for token in tokens[:size]):
+                has_only_then = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
+                yield _Words(
+                    line_context, at, tokens if has_only_then else tokens[:size], 0, before
+                )
+            if not instruction_length(rest, names) or rest[0].text in ("IF", "WHILE"):
+                yield _Words(line_context, at, tokens, size, before)
                 break
             at += sum(map(width, tokens[:size]))
             tokens = rest
@@ -185,7 +202,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
 def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
     line = rewrites.Encoded([made(";"), *place.row], place.names, place.labels())
-    for k in line.tried(_places()):
+    for k in line.candidate_rows(_places()):
         row = rows()[k]
         if match := next(line.matches(row.pattern), None):
             gaps = Gaps(place, line, match)
@@ -195,10 +212,10 @@ def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
 
 
 def _suggestion_for(part: _Words) -> Suggestion | None:
-    if len(part.row) > LONGEST or not part.is_aside():
+    if len(part.row) > MOST_WORDS or not part.is_aside():
         return None
     for row, gaps in holding(part):
-        is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
+        is_aside = row.code in _SECONDARY_CODES and part.tokens and _is_read_surely(part)
         return None if is_aside else _suggestion(row, gaps)
     return None
 
@@ -215,11 +232,11 @@ class _Words(Trailing):
     """Words behind an instruction, or without one, as a place of rows."""
 
     def __init__(
-        self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str | None], said: str = "",
+        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
+        before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
-        super().__init__(around, start, tokens, size, before, said)
-        self.gaps = _GAPS
+        super().__init__(line_context, start, tokens, size, before, spoken)
+        self.gaps = _GAP_FUNCTIONS
 
     def values(self) -> dict[str, str]:
         return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
@@ -229,24 +246,24 @@ class _Words(Trailing):
 
 
 def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
-    part, named, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
+    part, group_names, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
     place = part.place if values["fix"] else None
     is_right = lines.is_right(part.tokens, part.names)
     if place and not is_right and values["fix"].startswith(part.call):
         place = part.behind  # of a call with a mistake of its own
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
-    start, end = gaps.span("s") if "s" in named else (1, len(part.spans))
+    start, end = gaps.span("s") if "s" in group_names else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
     code = row.code
     assert code is not None
-    is_other = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
-    is_noted = "//" in values["fix"] or not is_other
-    if code in _MAY_BE_NOTES and part.tokens and not is_noted:
+    has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
+    is_noted = "//" in values["fix"] or not has_other_values
+    if code in _NOTE_CODES and part.tokens and not is_noted:
         values = {**values, **_as_note(part)}  # what changes no movement comes first
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     result = Diagnostic(code, span, values, place)
-    if "h" in named:
+    if "h" in group_names:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         condition = values.get("asked") or values.get("question") or "TRUE"
         return Suggestion(result, Edit(place, f"{gaps['head']}({condition})"))
@@ -343,15 +360,15 @@ class Gaps(dict[str, str]):
 def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, before = gaps.part, [item for item in gaps.part.before if item]
-    is_known = len(before) == len(part.before) <= _FARTHEST
-    if not is_known or part.is_in_block or times in ("", "0", "1"):
+    has_all_orders = len(before) == len(part.before) <= _MOST_LINES_BACK
+    if not has_all_orders or part.is_in_block or times in ("", "0", "1"):
         return ""
     messages = [item.strip() for line in (*before, part.call) for item in line.split(";")]
     orders = [item for item in messages if item.upper() not in ("", "START")]
     text = "".join(f"{order};" for order in orders)
-    if once := _ONCE.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
+    if once := _REPEATED_ORDERS.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
-    if not 0 < len(orders) <= _MOST_BEFORE:
+    if not 0 < len(orders) <= _MOST_REPEATED:
         return ""
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
@@ -360,10 +377,10 @@ def _worded_condition(gaps: Gaps) -> dict[str, str]:
     """What the words of a condition ask."""
     row, names = gaps.tokens("s"), gaps.part.names
     is_bare = [item.text for item in gaps.from_on("s")[len(row) :][:1]] != [")"]
-    is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
-    is_order |= is_bare and any("|@start|" in names.label(item) for item in row)
-    is_read = is_order or bool(_condition_tokens(gaps, "s"))
-    result = None if is_read else worded(row, names)
+    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
+    is_for_instruction |= is_bare and any("|@start|" in names.label(item) for item in row)
+    has_other_reader = is_for_instruction or bool(_condition_tokens(gaps, "s"))
+    result = None if has_other_reader else worded(row, names)
     if result is None:
         raise NoGap
     return result
@@ -415,18 +432,18 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
     text = f"{gaps.part.call},{gaps['l']}".lstrip(",")
     orders = []
-    for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", text)):
-        known = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
-        if match is None or known is None or not known.role.is_instruction:
+    for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
+        word_row = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
+        if match is None or word_row is None or not word_row.role.is_instruction:
             return ""
-        if is_exact and known.arguments and not match[2]:
+        if is_exact and word_row.arguments and not match[2]:
             return ""
-        orders.append(known.text + match[2] if match[2] else known.example)
+        orders.append(word_row.text + match[2] if match[2] else word_row.example)
     name, count = free_number_name(gaps.part.text), len(orders)
-    drawn, asked = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
+    drawn, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
-        drawn, asked = "", ["RANDOM(1, 2) = 1"]
-    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(asked, orders, strict=False)]
+        drawn, conditions = "", ["RANDOM(1, 2) = 1"]
+    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(conditions, orders, strict=False)]
     return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 
@@ -483,7 +500,7 @@ def _orders(gaps: Gaps) -> str:
 
 def _note(gaps: Gaps) -> str:
     part = gaps.part
-    return f"{part.call} // {part.words.strip(_BARE)}" if _is_last(part) else ""
+    return f"{part.call} // {part.words.strip(_NEEDLESS_SIGNS)}" if _is_last(part) else ""
 
 
 def _is_last(part: Trailing) -> bool:
@@ -501,19 +518,19 @@ def _as_note(part: Trailing) -> dict[str, str]:
         "AND",
         "OR",
     )
-    is_prose = all(it.kind is WORD or it.text in _IN_PROSE for it in part.row)
-    words = part.words.strip(_BARE)
+    is_prose = all(it.kind is WORD or it.text in _PROSE_SIGNS for it in part.row)
+    words = part.words.strip(_NEEDLESS_SIGNS)
     if is_joined or not is_prose or not words or not lines.is_right(part.tokens, part.names):
         return {}
-    is_order = any(it.text in WORDS and it.source == it.text for it in part.row)
-    is_order |= any(lexicon_meaning(it.text, "unit")[:1] in _MEASURES for it in part.row)
-    if is_order:
+    is_instruction = any(it.text in WORDS and it.source == it.text for it in part.row)
+    is_instruction |= any(lexicon_meaning(it.text, "unit")[:1] in _UNIT_MEANINGS for it in part.row)
+    if is_instruction:
         return {}
     note = f"// {words}"
     return {"note": f"{part.call} {note}"} if _is_last(part) else {"last_note": note}
 
 
-_GAPS: dict[str, Callable[[Gaps], str]] = {
+_GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
     "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
     "often": lambda gaps: _loop_over_all(gaps, "4"),

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import ENOUGH, Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import answered, bracketed
@@ -41,19 +41,19 @@ from tiniscript.recovery.shares import shares
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
 
-ROUNDS = 20  # of reading what follows a mistake from the repaired text
-_CR_ALONE = re.compile(r"\r(?!\n)")
-LONGEST = 4_000  # characters of a text that is read as a whole
+MOST_ROUNDS = 20  # of reading what follows a mistake from the repaired text
+_LONE_CR = re.compile(r"\r(?!\n)")
+MOST_CHARACTERS = 4_000  # characters of a text that is read as a whole
 
 
 class Findings(NamedTuple):
     """What is told of a text, and the edits with which the rest of it is read."""
 
-    told: list[Diagnostic]
+    diagnostics: list[Diagnostic]
     edits: list[Edit]
 
 
-class Wrong:
+class WrongText:
     """A wrong text: `diagnostics` is what parser and checker, which `check` asks, say of it."""
 
     def __init__(
@@ -68,12 +68,12 @@ class Wrong:
     def recovery(self) -> Recovery | None:
         """The readings of the text; nothing for a long one, or one that is copied again."""
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
-        if len(text) > LONGEST or SEAL in text:
+        if len(text) > MOST_CHARACTERS or SEAL in text:
             return None
-        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
+        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own_text=to == text))
 
-    def _mistakes(self, text: str, is_own: bool) -> list[Code]:
-        diagnostics = self.diagnostics if is_own else self.check(text)
+    def _mistakes(self, text: str, is_own_text: bool) -> list[Code]:
+        diagnostics = self.diagnostics if is_own_text else self.check(text)
         return [diagnostic.code for diagnostic in diagnostics if diagnostic.is_mistake]
 
 
@@ -84,156 +84,183 @@ def told_of(
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """
-    text = _CR_ALONE.sub("\n", source.text)
+    text = _LONE_CR.sub("\n", source.text)
     source = Source(text, source.name)
-    message = _read(Wrong(source, diagnostics, check, kit), ROUNDS)
-    if len(message) > ENOUGH:
-        message = sorted(message, key=lambda it: it.span)[: ENOUGH + 1]
-    message = [bracketed(item, text, kit, is_offered=True) for item in message]
-    message = drop_wrong_offers(message, text, check)  # what is offered is right
-    message = conserving(message, text, kit)  # what is made keeps what was written
-    message = [bracketed(item, text, kit, is_offered=False) for item in message]
-    message = [answered(item, text) for item in message]
-    message = with_sample(message, text, kit)  # of a distance that nobody wrote it says: an example
-    message = [invisible(item, text) for item in message]
-    return codes.in_order([pointed(item, source) for item in message])
+    diagnostics_told = _read(WrongText(source, diagnostics, check, kit), MOST_ROUNDS)
+    if len(diagnostics_told) > MOST_DIAGNOSTICS:
+        diagnostics_told = sorted(diagnostics_told, key=lambda it: it.span)[: MOST_DIAGNOSTICS + 1]
+    diagnostics_told = [bracketed(item, text, kit, is_offered=True) for item in diagnostics_told]
+    diagnostics_told = drop_wrong_offers(diagnostics_told, text, check)  # what is offered is right
+    diagnostics_told = conserving(
+        diagnostics_told, text, kit
+    )  # what is made keeps what was written
+    diagnostics_told = [bracketed(item, text, kit, is_offered=False) for item in diagnostics_told]
+    diagnostics_told = [answered(item, text) for item in diagnostics_told]
+    diagnostics_told = with_sample(
+        diagnostics_told, text, kit
+    )  # of a distance that nobody wrote it says: an example
+    diagnostics_told = [invisible(item, text) for item in diagnostics_told]
+    return codes.in_order([pointed(item, source) for item in diagnostics_told])
 
 
-def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
+def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
     """Return what the readers say of a text, and then of what their edits leave wrong."""
-    findings = (reader(wrong) for reader in READERS if rounds)
-    message, edits = next((each for each in findings if each.told), Findings([], []))
-    if not message:
-        message = with_usage(wrong.diagnostics, wrong.source, wrong.kit)
-    elif len(message) <= ENOUGH:
-        rest = apply_edits(wrong.source.text, edits)
-        left = wrong.check(rest)
-        if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
-            later = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
-            sure = {it for each in message for it in _sure_edits(each)}
-            later = [moved_back(each, edits, wrong.source) for each in later]
-            guessed = [edit for edit in edits if edit not in sure]
-            message = [*message, *(_unless_guessed(each, guessed) for each in later)]
-    return dedupe(message, wrong.source)
+    findings = (reader(wrong_text) for reader in READERS if rounds_left)
+    diagnostics, edits = next((each for each in findings if each.diagnostics), Findings([], []))
+    if not diagnostics:
+        diagnostics = with_usage(wrong_text.diagnostics, wrong_text.source, wrong_text.kit)
+    elif len(diagnostics) <= MOST_DIAGNOSTICS:
+        repaired_text = apply_edits(wrong_text.source.text, edits)
+        diagnostics_left = wrong_text.check(repaired_text)
+        if any(
+            each.is_mistake for each in diagnostics_left
+        ):  # else its warnings come when it is repaired
+            later_diagnostics = _read(
+                WrongText(
+                    Source(repaired_text), diagnostics_left, wrong_text.check, wrong_text.kit
+                ),
+                rounds_left - 1,
+            )
+            sure_edits = {it for each in diagnostics for it in _sure_edits(each)}
+            later_diagnostics = [
+                moved_back(each, edits, wrong_text.source) for each in later_diagnostics
+            ]
+            guessed_edits = [edit for edit in edits if edit not in sure_edits]
+            diagnostics = [
+                *diagnostics,
+                *(_unless_guessed(each, guessed_edits) for each in later_diagnostics),
+            ]
+    return dedupe(diagnostics, wrong_text.source)
 
 
 # -- readers --------------------------------------------------------------------------------------
 
 
-def _notes(wrong: Wrong) -> Findings:
+def _notes(wrong_text: WrongText) -> Findings:
     """Return notes that begin with another sign: nothing in them is read (`notes`)."""
-    return _with_edits(noted(wrong.source))
+    return _with_edits(noted(wrong_text.source))
 
 
-def _labels(wrong: Wrong) -> Findings:
+def _labels(wrong_text: WrongText) -> Findings:
     """Return what counts the instructions of a text, before each of them (`labels`)."""
-    return _with_edits(labelled(wrong.source))
+    return _with_edits(labelled(wrong_text.source))
 
 
-def _keys(wrong: Wrong) -> Findings:
+def _keys(wrong_text: WrongText) -> Findings:
     """Return what is wrong with keys that are asked for (`keys`).
 
     The rest is read with a key that exists.
     """
-    message = asked_keys(wrong.source, wrong.kit)
-    edits = _with_edits(message).edits
-    return Findings(message, edits + [Edit(it.span, KEYS[0]) for it in message if not it.repair])
+    diagnostics = asked_keys(wrong_text.source, wrong_text.kit)
+    edits = _with_edits(diagnostics).edits
+    return Findings(
+        diagnostics, edits + [Edit(it.span, KEYS[0]) for it in diagnostics if not it.repair]
+    )
 
 
-def _shares(wrong: Wrong) -> Findings:
+def _shares(wrong_text: WrongText) -> Findings:
     """Return what is wrong with sensors that are asked for a percentage (`shares`)."""
-    return Findings(*shares(wrong.source, wrong.kit))
+    return Findings(*shares(wrong_text.source, wrong_text.kit))
 
 
-def _beginning(wrong: Wrong) -> Findings:
+def _beginning(wrong_text: WrongText) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
-    return _with_edits(beginning(wrong.source, wrong.diagnostics, wrong.check, wrong.kit))
+    return _with_edits(
+        beginning(wrong_text.source, wrong_text.diagnostics, wrong_text.check, wrong_text.kit)
+    )
 
 
-def _calls(wrong: Wrong) -> Findings:
+def _calls(wrong_text: WrongText) -> Findings:
     """Return what is wrong with calls that have all their values in another form (`calls`)."""
-    names = Names([lexemes(line) for line in wrong.source.text.split("\n")], wrong.kit)
-    return _with_edits(misplaced_values(wrong.source) or run_on(wrong.source, names))
+    names = Names([lexemes(line) for line in wrong_text.source.text.split("\n")], wrong_text.kit)
+    return _with_edits(misplaced_values(wrong_text.source) or run_on(wrong_text.source, names))
 
 
-def _motors(wrong: Wrong) -> Findings:
+def _motors(wrong_text: WrongText) -> Findings:
     """Return what is wrong with motors that are switched on and off, or one by one (`motors`)."""
-    if moves := switched(wrong.source):
+    if moves := switched(wrong_text.source):
         return _with_edits(moves)
-    found = one_by_one(wrong.source)
-    return Findings([message for message, _ in found], [edit for _, edit in found])
+    diagnostics_and_edits = one_by_one(wrong_text.source)
+    return Findings(
+        [message for message, _ in diagnostics_and_edits],
+        [edit for _, edit in diagnostics_and_edits],
+    )
 
 
-def _turtle(wrong: Wrong) -> Findings:
+def _turtle(wrong_text: WrongText) -> Findings:
     """Return what is wrong with lines of Logo, whose words have one number each (`logo`)."""
-    return _with_edits(turtle(wrong.source, wrong.kit))
+    return _with_edits(turtle(wrong_text.source, wrong_text.kit))
 
 
-def _given_back(wrong: Wrong) -> Findings:
+def _given_back(wrong_text: WrongText) -> Findings:
     """Return what is wrong with DEFs that give a value back (`given_back`)."""
-    return Findings(*given_back(wrong.source))
+    return Findings(*given_back(wrong_text.source))
 
 
-def _counters(wrong: Wrong) -> Findings:
+def _counters(wrong_text: WrongText) -> Findings:
     """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
-    return _with_edits(counters(wrong.source))
+    return _with_edits(counters(wrong_text.source))
 
 
-def _frame(wrong: Wrong) -> Findings:
+def _frame(wrong_text: WrongText) -> Findings:
     """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
-    return _with_edits(setup_and_end_leftovers(wrong.source, wrong.kit))
+    return _with_edits(setup_and_end_leftovers(wrong_text.source, wrong_text.kit))
 
 
-def _leftovers(wrong: Wrong) -> Findings:
+def _leftovers(wrong_text: WrongText) -> Findings:
     """Return words left over in instructions, which are whole without them (`leftovers`)."""
-    return _with_edits(leftovers(wrong.source, wrong.kit))
+    return _with_edits(leftovers(wrong_text.source, wrong_text.kit))
 
 
-def _wrong_start(wrong: Wrong) -> Findings:
+def _wrong_start(wrong_text: WrongText) -> Findings:
     """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
-    begun = other_word(wrong.source, wrong.diagnostics)
-    if begun is None:
+    wrong_start = other_word(wrong_text.source, wrong_text.diagnostics)
+    if wrong_start is None:
         return Findings([], [])
-    message = with_usage([begun], wrong.source, wrong.kit)
-    return Findings(message, [Edit(begun.span, "SI")])
+    diagnostics = with_usage([wrong_start], wrong_text.source, wrong_text.kit)
+    return Findings(diagnostics, [Edit(wrong_start.span, "SI")])
 
 
-def _sure_findings(wrong: Wrong) -> Findings:
+def _sure_findings(wrong_text: WrongText) -> Findings:
     """Return what is wrong with a text that is read wholly and surely (`search`, `meant`)."""
-    recovery = wrong.recovery
+    recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=True))
+    return _with_edits(meant_in(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=True))
 
 
-def _words_after(wrong: Wrong) -> Findings:
+def _words_after(wrong_text: WrongText) -> Findings:
     """Return what words say after instructions, or in the place of one (`suggestions`)."""
-    after = suggested(wrong.source.text, wrong.kit)
-    if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
-        after = [item for item in after if not recovery.has_signs(item.passed.span.start)]
-    return Findings([item.diagnostic for item in after], [item.passed for item in after])
+    suggestions = suggested(wrong_text.source.text, wrong_text.kit)
+    if recovery := wrong_text.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
+        suggestions = [
+            item for item in suggestions if not recovery.has_signs(item.blanking_edit.span.start)
+        ]
+    return Findings(
+        [item.diagnostic for item in suggestions], [item.blanking_edit for item in suggestions]
+    )
 
 
-def _likely_findings(wrong: Wrong) -> Findings:
+def _likely_findings(wrong_text: WrongText) -> Findings:
     """Return what is wrong with the lines that are read, if not surely (`search`, `meant`)."""
-    recovery = wrong.recovery
+    recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=False))
+    return _with_edits(meant_in(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=False))
 
 
-def _words_of_blocks(wrong: Wrong) -> Findings:
+def _words_of_blocks(wrong_text: WrongText) -> Findings:
     """Return misspelt words that begin blocks or end them: the rest is read with them.
 
     Else what is inside would be told of as well.
     """
-    messages = [each for each in wrong.diagnostics if each.code is codes.UNKNOWN_WORD
-            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
-    return Findings(messages, [Edit(each.span, each.values["near"]) for each in messages])
+    diagnostics = [each for each in wrong_text.diagnostics if each.code is codes.UNKNOWN_WORD
+                   and each.values.get("near") in slips.BLOCK_WORDS]  # fmt: skip
+    return Findings(diagnostics, [Edit(each.span, each.values["near"]) for each in diagnostics])
 
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
-READERS: tuple[Callable[[Wrong], Findings], ...] = (
+READERS: tuple[Callable[[WrongText], Findings], ...] = (
     _notes, _labels, _given_back, _beginning, _keys, _shares, _motors, _turtle, _calls, _counters,
     _frame, _wrong_start, _sure_findings, _leftovers, _words_after, _likely_findings,
     _words_of_blocks,
@@ -271,14 +298,22 @@ def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
     """
     values = dict(diagnostic.values)
     for edit in edits:
-        if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
-            values = {name: text.replace(edit.text, was) for name, text in values.items()}
+        if edit.text.endswith("(TRUE)") and "TRUE" not in (original := source[edit.span].strip()):
+            values = {name: text.replace(edit.text, original) for name, text in values.items()}
     place = diagnostic.place and _original_span(diagnostic.place, edits)
     repair = diagnostic.repair
     if repair is not None:
-        own = tuple(Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits)
-        passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
-        repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
+        own_edits = tuple(
+            Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits
+        )
+        blanking_edits = [
+            edit for edit in edits if edit.text.isspace()
+        ]  # words that nothing may drop
+        repair = (
+            Repair((), False)
+            if overlap(own_edits, blanking_edits)
+            else repair._replace(edits=own_edits)
+        )
     return Diagnostic(
         diagnostic.code, _original_span(diagnostic.span, edits), values, place, repair
     )
@@ -289,12 +324,12 @@ def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
     start = end = shift = 0
     for edit in sorted(edits):
         begin = edit.span.start + shift
-        behind = begin + len(edit.text)
-        shift = behind - edit.span.end
-        if span.start >= behind:
+        edit_end = begin + len(edit.text)
+        shift = edit_end - edit.span.end
+        if span.start >= edit_end:
             start = shift
         elif span.start > begin:
             start = span.start - edit.span.start
         if span.end > begin:
-            end = shift if span.end >= behind else span.end - edit.span.end
+            end = shift if span.end >= edit_end else span.end - edit.span.end
     return Span(span.start - start, max(span.start - start, span.end - end))

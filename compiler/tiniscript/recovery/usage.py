@@ -35,11 +35,11 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.calls import likely_word, own_example, usage_with
-from tiniscript.recovery.ends import possible_places, shown
+from tiniscript.recovery.ends import places_text, possible_places
 from tiniscript.recovery.meanings import (
-    ASKING,
-    DONE,
-    LONG_S,
+    ASKING_WORDS,
+    INSTRUCTION_WORDS,
+    LONG_TIME_S,
     MOST_POWER,
     Lexeme,
     Names,
@@ -67,7 +67,7 @@ from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
-_DOTS = re.compile(
+_MEMBER_DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)"
     r"|DEF[ \t]+(?P<name>\w+)(?:[ \t]*\([^()\n]*\))?)[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
@@ -78,34 +78,49 @@ _UNTIL_BLOCK = re.compile(
 )
 _UNTIL_END = re.compile(rf"{words_of('end')}_?{words_of('until')}")
 _PLAIN_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-_TAKING = ("F", "B", "M", "BEEP", "W")  # of values alone: which way first, then the others
-_SLOW = 20  # an example of a low power
-_MANY_BELOW = 6  # instructions that an example takes into a block
-_ENDS = re.compile(rf"\b{words_of('end')}")
-_IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
-_TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
-_WORD = re.compile(r"\w")
-_MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_CALL = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
-_LONG_HEAD = 100  # characters of a DEF before the name of a value
-_TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
-_OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
-_ANGLE = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
-_FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
-_TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
-_LONGEST = 120  # characters of a sentence that a message shows
-_MANY = 30  # diagnostics of which more is said
-_OF_VALUES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
-_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_WORDS_WITH_VALUES = (
+    "F",
+    "B",
+    "M",
+    "BEEP",
+    "W",
+)  # of values alone: which way first, then the others
+_LOW_POWER = 20  # an example of a low power
+_MOST_INSTRUCTIONS = 6  # instructions that an example takes into a block
+_END_WORD = re.compile(rf"\b{words_of('end')}")
+_BLOCK_WORD = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
+_TOP_LEVEL_WORD = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
+_WORD_CHARACTER = re.compile(r"\w")
+_MEMBER_CALL = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
+_CALL_WITH_VALUES = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
+_MOST_HEADER_CHARACTERS = 100  # characters of a DEF before the name of a value
+_DEF_AT_END = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
+_OWN_WORD = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
+_ANGLE_AND_POWER = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
+_FOREVER_SECOND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
+_TURNED_CALL = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
+_MOST_CHARACTERS = 120  # characters of a sentence that a message shows
+_MOST_DIAGNOSTICS = 30  # diagnostics of which more is said
+_VALUE_CODES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
+_NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_BEGINS = (";", "newline", "|")  # what an instruction begins behind
+_INSTRUCTION_STARTS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
-_FAR_CM = 400  # more is rather in milliseconds
-_WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
-_MOST_OF_END = 4  # words: `fin del bucle`
-_NO_CALLS = ("leaves", "again", "etc", "end")
-_NUMBERED = ("unit", "value", "number", "often", "times", "to", "at", "by")  # behind a number
-_NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
+_FARTHEST_CM = 400  # more is rather in milliseconds
+_NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
+_MOST_END_WORDS = 4  # words: `fin del bucle`
+_KINDS_NO_CALL = ("leaves", "again", "etc", "end")
+_KINDS_AFTER_NUMBER = (
+    "unit",
+    "value",
+    "number",
+    "often",
+    "times",
+    "to",
+    "at",
+    "by",
+)  # behind a number
+_KINDS_NO_NAME = (*_KINDS_NO_CALL, "filler", "same")  # without values
 
 
 def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
@@ -115,19 +130,21 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
         "LOOP"
     ]
     diagnostics = text.with_name(diagnostics)
-    told: list[Diagnostic] = []
-    for item in diagnostics[:_MANY]:
-        told.append((_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item)
-    parts = [it for it in told if it.values.get("part")]
-    if parts and any(item.code is codes.TASK_NOT_TOP for item in told):  # rather an IF
+    result: list[Diagnostic] = []
+    for item in diagnostics[:_MOST_DIAGNOSTICS]:
+        result.append(
+            (_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item
+        )
+    parts = [it for it in result if it.values.get("part")]
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in result):  # rather an IF
         part = {"part": parts[0].values["part"]}
-        told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in item.values for item in told if item.code is codes.OUT_OF_RANGE):
-        told += text.turned()
+        result = [it._replace(values={**it.values, **part}) for it in result if it not in parts]
+    if any("usage" in item.values for item in result if item.code is codes.OUT_OF_RANGE):
+        result += text.turned()
     return [
         item
-        for item in (*told, *diagnostics[_MANY:])
-        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, told))
+        for item in (*result, *diagnostics[_MOST_DIAGNOSTICS:])
+        if not (item.code in _NAME_CODES and text.is_in_wrong_def(item, result))
     ]
 
 
@@ -141,19 +158,19 @@ class _Text:
     @cached_property
     def is_ended(self) -> bool:
         """Whether any block has an end."""
-        return _ENDS.search(plain(self.source.text)) is not None
+        return _END_WORD.search(plain(self.source.text)) is not None
 
-    def is_in_wrong_def(self, diagnostic: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+    def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
-        starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
+        starts = (it.span.end for it in diagnostics if it.code is codes.PARAMETER_NEEDS_NAME)
         start = max((it for it in starts if it <= diagnostic.span.start), default=-1)
         return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
         diagnostics: list[Diagnostic] = []
-        for match in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+        for match in _TURNED_CALL.finditer(self.source.text):
+            if LONG_TIME_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_TIME_S:
                 fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
                 values = {"time": match[1], "power": match[2], "fix": fix}
                 diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
@@ -165,10 +182,10 @@ class _Text:
         for line in self.source.text[:place].split("\n"):
             for part in without_note(line)[0].split(";"):
                 first = next((it.text for it in lexemes(part.rpartition("|")[2])), "")
-                meant = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
-                if meant in BLOCK_ENDS:
-                    ends.append(BLOCK_ENDS[meant])
-                elif ends and (meant in BLOCK_ENDS.values() or lexicon_meaning(first, "end")):
+                concept = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
+                if concept in BLOCK_ENDS:
+                    ends.append(BLOCK_ENDS[concept])
+                elif ends and (concept in BLOCK_ENDS.values() or lexicon_meaning(first, "end")):
                     ends.pop()
         return "".join(ends[-1:])
 
@@ -177,19 +194,23 @@ class _Text:
         nameless = [
             diagnostic for diagnostic in diagnostics if diagnostic.code is codes.DEF_NEEDS_NAME
         ]
-        unknown = (
+        unknown_calls = (
             diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNKNOWN_WORD
         )
-        wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
-        called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
+        instructions = (
+            (it, self.source[instruction_at(it.span, self.source)]) for it in unknown_calls
+        )
+        called = (
+            it.values["found"] for it, instruction in instructions if len(lexemes(instruction)) == 1
+        )
         name = next(called, "") if len(nameless) == 1 else ""
         if not name:
             return diagnostics
-        own, end = nameless[0], nameless[0].span.end
+        nameless_diagnostic, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        text = own._replace(values={"name": name}, repair=repair)
+        text = nameless_diagnostic._replace(values={"name": name}, repair=repair)
         return [
-            text if diagnostic is own else diagnostic
+            text if diagnostic is nameless_diagnostic else diagnostic
             for diagnostic in diagnostics
             if diagnostic.values.get("found") != name
         ]
@@ -220,7 +241,7 @@ class Usage:
         self.words = [token.text for token in self.row if token.kind is WORD]
         self.signs = [token.text for token in self.row]
         self.number = next((it.text for it in self.row[1:] if it.kind is NUMBER), "1")
-        self.gaps = GAPS
+        self.gaps = GAP_FUNCTIONS
         ends = [*accumulate(map(width, self.row), initial=self.piece.start)][1:]
         spans = (
             Span(end - len(it.source or ""), end) for it, end in zip(self.row, ends, strict=True)
@@ -239,25 +260,25 @@ class Usage:
         return [self._label_of_found(), *map(self._label_of, range(len(self.row)))]
 
     def _label_of_found(self) -> str:
-        code, here = self.found.code, self.source[self.found.span]
+        code, found_text = self.found.code, self.source[self.found.span]
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
         text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
-        are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
+        are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _MOST_CHARACTERS
         labels: dict[str, object] = {
             code.number: True,
             "@bare": code is codes.MISSING_OPEN and self.is_first,
-            f"@{code.number}_{here.upper()}": True,
-            "@values": code in _OF_VALUES,
+            f"@{code.number}_{found_text.upper()}": True,
+            "@values": code in _VALUE_CODES,
             "@twice": code is codes.SETUP_TWICE,
         }
         if code is codes.ODD_CHARACTER:
             after = self.behind_it[:1]
             labels |= {
-                "@upside": here in "\u00a1\u00bf" and len(self.words) > 1,
-                "@negating": here == "!" and after not in ("", "\n", " "),
-                "@brace": here in ("{", "}"),
-                "@quoted": here in QUOTES,
+                "@upside": found_text in "\u00a1\u00bf" and len(self.words) > 1,
+                "@negating": found_text == "!" and after not in ("", "\n", " "),
+                "@brace": found_text in ("{", "}"),
+                "@quoted": found_text in QUOTES,
             }
         if code is codes.RESERVED:
             labels["@clocked"] = bool(self.other_name.is_set) and self.other_name.word == "TIME"
@@ -275,16 +296,16 @@ class Usage:
 
     def _is_pressed(self) -> bool:
         """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
-        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        return len(parted) > 1 and any(self.is_button(plain(item)) for item in parted)
+        word_parts = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
+        return len(word_parts) > 1 and any(self.is_button(plain(item)) for item in word_parts)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
-        is_said = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
+        has_meaning = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
         labels = {
             "@quote": text in QUOTES,
             "@known": text in WORDS,
-            "@loose": not k and not is_said,
+            "@loose": not k and not has_meaning,
             "@button": self.is_button(text),
             "@behind": span.start >= self.found.span.start,
         }
@@ -295,17 +316,20 @@ class Usage:
     def told(self, row: Row, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
-        span = next((_PLACES[item](self) for item in row.how if item in _PLACES), self.found.span)
+        span = next(
+            (_PLACE_FUNCTIONS[item](self) for item in row.conditions if item in _PLACE_FUNCTIONS),
+            self.found.span,
+        )
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
-        place = self.piece if {*row.how} & {"offered", "whole"} else None
-        repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
-        if "everywhere" in row.how:
+        place = self.piece if {*row.conditions} & {"offered", "whole"} else None
+        repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.conditions else None
+        if "everywhere" in row.conditions:
             edits = (Edit(item, values["right"]) for item in self.renamed())
             repair = Repair(tuple(edits), False)
         diagnostic = Diagnostic(code, span, values, place, repair)
-        if "again" not in row.how:
+        if "again" not in row.conditions:
             return diagnostic
         return _usage_diagnostic(Usage(self.around, diagnostic)) or diagnostic
 
@@ -315,7 +339,7 @@ class Usage:
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
         """Return values that come together."""
-        result = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        result = _SEVERAL_FUNCTIONS[name](self, gaps.filled.get("word", ""))
         if not result:
             raise NoGap
         return result
@@ -324,16 +348,22 @@ class Usage:
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
-        if word in ASKING and (asked := self.question(word)):
-            return asked
-        if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
-            if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
+        if word in ASKING_WORDS and (question := self.question(word)):
+            return question
+        if word in ("L", "R") and (angle := _ANGLE_AND_POWER.search(self.source[self.piece])):
+            if float(angle[1]) >= LONG_TIME_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
         numbers = [token.text for token in self.row if token.kind is NUMBER]
-        if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
-            return own
-        if word == "SHOW" and (given := [it for it in self.words if it in self.names.variables]):
-            return f"{word}({given[0]})"
+        if (
+            len(numbers) == 1
+            and "(" not in self.signs
+            and (usage_with_number := usage_with(word, numbers[0]))
+        ):
+            return usage_with_number
+        if word == "SHOW" and (
+            variables_used := [it for it in self.words if it in self.names.variables]
+        ):
+            return f"{word}({variables_used[0]})"
         is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -358,7 +388,8 @@ class Usage:
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         meant = [self.names.meant(item.text) for item in behind]
         begun = (
-            it in DONE and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
+            it in INSTRUCTION_WORDS
+            and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
             for it, after in zip(meant, [*behind, made(";")][1:], strict=True)
         )
         over = [_is_over(item) or is_begun for item, is_begun in zip(behind, begun, strict=True)]
@@ -372,7 +403,9 @@ class Usage:
         """The words of no program that mean an order, and which."""
         meant = {word: self.names.meant(word) for word in self.words if word not in WORDS}
         return {
-            it: its for it, its in meant.items() if its in WORDS and WORDS[its].role.is_instruction
+            it: order_word
+            for it, order_word in meant.items()
+            if order_word in WORDS and WORDS[order_word].role.is_instruction
         }
 
     @property
@@ -401,7 +434,7 @@ class Usage:
             lexicon_meaning(each, "unit")[:1] not in ((), ("turns",)) for each in self.words
         )
         numbers = [token.text for token in self.row if token.kind is NUMBER]
-        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
+        if len(numbers) == 1 and float(numbers[0]) >= LONG_TIME_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.row, self.names)
         values = laid_out(self.row[1:])
@@ -419,14 +452,16 @@ class Usage:
     def own(self) -> _Own:
         """A word of the program's own that nothing teaches."""
         piece = plain(self.source[self.piece])
-        match = _OWN.fullmatch(piece)
+        match = _OWN_WORD.fullmatch(piece)
         name, is_call, number = match.groups() if match else ("", "", "")
-        given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
-        if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
-            call = _CALL.fullmatch(piece)
-            is_other = call is None or lexicon_meaning(call[1], *_NO_CALLS)
+        numbers_given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
+        if (
+            not name or number or len({*numbers_given}) > 1
+        ):  # seconds, or how often: who writes it knows
+            call = _CALL_WITH_VALUES.fullmatch(piece)
+            is_known_call = call is None or lexicon_meaning(call[1], *_KINDS_NO_CALL)
             is_often = bool(number and self.around.lacks_loop)
-            return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
+            return _Own("", "" if is_known_call or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):
             return _Own("", "", False, 0, False)  # a function of another language
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.text)
@@ -444,7 +479,7 @@ class Usage:
         heads = [
             self.names.meant(it.text) for it, sign in pairwise(self.before()) if sign.text == "("
         ]
-        return heads[-1] if heads and heads[-1] in ASKING else ""
+        return heads[-1] if heads and heads[-1] in ASKING_WORDS else ""
 
     @cached_property
     def amount(self) -> dict[str, str]:
@@ -457,8 +492,8 @@ class Usage:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
         before = self.before()
         calls = [one.text for one, after in pairwise(before) if after.text == "("]
-        here = self.source[self.found.span]
-        word, found = WORDS.get("".join(calls[-1:])), plain(here)
+        found_text = self.source[self.found.span]
+        word, found = WORDS.get("".join(calls[-1:])), plain(found_text)
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
@@ -469,8 +504,8 @@ class Usage:
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
         text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", text)
-            if (argument.unit in _WANTED)
+            _NoValue(word, argument, before[-1].text, found_text, unit[0] if unit else "", text)
+            if (argument.unit in _NOUN_OF_UNIT)
             else None
         )
 
@@ -491,9 +526,9 @@ class Usage:
             return {}
         number, *rest = items
         is_more = bool(rest) and (
-            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_NUMBERED)
+            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_KINDS_AFTER_NUMBER)
         )
-        if is_more or not LONG_S <= float(number.text) <= _FAR_CM:
+        if is_more or not LONG_TIME_S <= float(number.text) <= _FARTHEST_CM:
             return {}
         way = f"{word}({number.text} CM, {POWER.sample})"
         if float(number.text) > MOST_POWER:
@@ -502,7 +537,7 @@ class Usage:
 
     def bound(self) -> dict[str, str]:
         """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
-        call = _CALL.fullmatch(self.source[self.piece])
+        call = _CALL_WITH_VALUES.fullmatch(self.source[self.piece])
         word = WORDS.get(plain(call[1])) if call else None
         values = (
             [it.strip() for it in call[0][call.end(1) :].strip(" ()").split(",")] if call else []
@@ -510,14 +545,16 @@ class Usage:
         end = self.found.values["word"]
         if word is None or len(values) != len(word.arguments) or end not in ("MAX", "MIN"):
             return {}
-        of = [k for k, value in enumerate(values) if plain(value) == end]
-        if not of or any(word.arguments[k].unit != POWER.unit for k in of):
+        positions = [k for k, value in enumerate(values) if plain(value) == end]
+        if not positions or any(word.arguments[k].unit != POWER.unit for k in positions):
             return {}
-        number = as_text(POWER.high) if end == "MAX" else str(_SLOW)
-        given = ", ".join(number if k in of else value for k, value in enumerate(values))
-        low = as_text(word.arguments[of[0]].low)
-        said = {"low": low, "high": as_text(word.arguments[of[0]].high)}
-        return said | {"greatest" if end == "MAX" else "slow": f"{word.text}({given})"}
+        number = as_text(POWER.high) if end == "MAX" else str(_LOW_POWER)
+        values_text = ", ".join(
+            number if k in positions else value for k, value in enumerate(values)
+        )
+        low = as_text(word.arguments[positions[0]].low)
+        values_said = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
+        return values_said | {"greatest" if end == "MAX" else "slow": f"{word.text}({values_text})"}
 
     def reading(self, word: str) -> str:
         """The sensor on the side of an L or R that stands for a value, and is no name."""
@@ -542,7 +579,7 @@ class Usage:
 
     def dots(self) -> dict[str, str]:
         """Dots for what goes inside a block, as the poster has them."""
-        match = self.matched(_DOTS)
+        match = self.matched(_MEMBER_DOTS)
         if match is None:
             return {}
         head, end = match["head"], (match["end"] or "").upper()
@@ -560,23 +597,31 @@ class Usage:
         """Where a block ends that has no end: its indentation, or its line, says so."""
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
-        behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [item.strip() for item in behind.split("\n")[0].split(";") if _WORD.search(item)]
-        below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
+        first_line = without_note(self.behind_it[: len(rows[k])])[0]
+        rest = [
+            item.strip()
+            for item in first_line.split("\n")[0].split(";")
+            if _WORD_CHARACTER.search(item)
+        ]
+        lines_below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            begun = self.source[Span(self.found.span.start, self.piece.end)]
-            places = possible_places(tokens_of(f"{begun};{behind}"))
-            return {"behind": rest[-1], "places": shown(places)}
-        if not below:
+            block_text = self.source[Span(self.found.span.start, self.piece.end)]
+            places = possible_places(tokens_of(f"{block_text};{first_line}"))
+            return {"behind": rest[-1], "places": places_text(places)}
+        if not lines_below:
             return {"head": self.source[self.found.span]}
-        depth = [len(row) - len(row.lstrip()) for row in rows]
-        top = min((n for n in below if _TOP.match(rows[n])), default=0)  # which no block is around
-        inside = [*takewhile(lambda n: n < top if top else depth[n] > depth[k], below)]
-        if not inside:
+        indentations = [len(row) - len(row.lstrip()) for row in rows]
+        top = min(
+            (n for n in lines_below if _TOP_LEVEL_WORD.match(rows[n])), default=0
+        )  # which no block is around
+        lines_inside = [
+            *takewhile(lambda n: n < top if top else indentations[n] > indentations[k], lines_below)
+        ]
+        if not lines_inside:
             return {}
         return {
-            "line": str(inside[-1] + 1),
-            "last": without_note(rows[inside[-1]])[0].strip(" \t;"),
+            "line": str(lines_inside[-1] + 1),
+            "last": without_note(rows[lines_inside[-1]])[0].strip(" \t;"),
         }
 
     @cached_property
@@ -584,7 +629,7 @@ class Usage:
         """Another name for a word of the language that stands for one."""
         word, text, start = self.found.values["word"], self.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
-        is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
+        is_taught = _DEF_AT_END.search(text[max(0, start - _MOST_HEADER_CHARACTERS) : start])
         right = free_word_name(text, word) if is_set or is_taught else ""
         suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
@@ -662,7 +707,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
         zip([None, *tokens], tokens, tokens[1:], strict=False)
     ):
         depth += (token.kind == "(") - (token.kind == ")")
-        is_begun = before is None or (not depth and before.kind in _BEGINS)
+        is_begun = before is None or (not depth and before.kind in _INSTRUCTION_STARTS)
         is_value = not is_begun and (is_value or (token.kind == "=" and not depth))
         is_inside = (is_inside or token.text == "DEF") and token.text not in _DEF_ENDS
         if token.text != word:
@@ -676,8 +721,8 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
             yield k
         elif is_begun and not is_inside:
             count = _value_count(tokens, k + 1)
-            is_own = count == parameters and count != (len(WORDS[word].arguments) or -1)
-            if is_own or after.kind in (*_BEGINS, "end"):
+            has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
+            if has_own_values or after.kind in (*_INSTRUCTION_STARTS, "end"):
                 yield k
 
 
@@ -700,17 +745,17 @@ def _is_over(token: Lexeme) -> bool:
 def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    matches = [item.strip() for row in rows for item in row if item.strip()]
-    is_long = len(matches) > _MANY_BELOW or any(map(_IS_BLOCK.match, matches))
-    return [] if is_long else matches
+    instructions = [item.strip() for row in rows for item in row if item.strip()]
+    is_long = len(instructions) > _MOST_INSTRUCTIONS or any(map(_BLOCK_WORD.match, instructions))
+    return [] if is_long else instructions
 
 
 def _before_blocks(text: str, name: str) -> list[str]:
     """Return the instructions before the first block of a text, and before a call of a name."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
     result = (item.strip() for row in rows for item in row if item.strip())
-    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), result)]
-    return inside if len(inside) <= _MANY_BELOW else []
+    inside = [*takewhile(lambda it: not _BLOCK_WORD.match(it) and not _calls(it, name), result)]
+    return inside if len(inside) <= _MOST_INSTRUCTIONS else []
 
 
 def _calls(instruction: str, name: str) -> bool:
@@ -762,7 +807,12 @@ def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
     text = _usage_at(gaps).ordered.items()
-    return {its for word, its in text if not lexicon_meaning(word, "right")} - {"L", "R", "B", "S"}
+    return {order for word, order in text if not lexicon_meaning(word, "right")} - {
+        "L",
+        "R",
+        "B",
+        "S",
+    }
 
 
 def _forever_word(gaps: Gaps) -> str:
@@ -780,10 +830,10 @@ def _foreign_word(gaps: Gaps) -> str:
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _usage_at(gaps), _foreign_word(gaps)
-    concept = found.names.meant(word)
+    usage, word = _usage_at(gaps), _foreign_word(gaps)
+    concept = usage.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
-    is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
+    is_among = concept == "S" and {*usage.ordered.values()} != {"S"}  # `ve para adelante`
     return concept if is_order and concept != word and not is_among else ""
 
 
@@ -797,7 +847,7 @@ def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
 
 
 def _asking(word: str) -> str:
-    return word if word in ASKING else ""
+    return word if word in ASKING_WORDS else ""
 
 
 def _variable(gaps: Gaps) -> str:
@@ -820,7 +870,7 @@ def _loop_of_repeated(gaps: Gaps) -> str:
 
 def _own_name(gaps: Gaps) -> str:
     own = _usage_at(gaps).own
-    return "" if own.is_taught or lexicon_meaning(own.name, *_NO_NAMES) else own.name
+    return "" if own.is_taught or lexicon_meaning(own.name, *_KINDS_NO_NAME) else own.name
 
 
 def _end(gaps: Gaps) -> str:
@@ -834,11 +884,11 @@ def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
     thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if lexicon_meaning(thing, "device") else gaps.place.names.meant(done)
-    return right if gaps.place.names.takes(right) else ""
+    return right if gaps.place.names.takes_values(right) else ""
 
 
 def _member(usage: Usage) -> Span:
-    match = _MEMBER.match(usage.text, usage.found.span.start)
+    match = _MEMBER_CALL.match(usage.text, usage.found.span.start)
     return Span(*match.span()) if match else Span(0, 0)
 
 
@@ -918,7 +968,7 @@ def _endless_move(gaps: Gaps) -> str:
 
 def _swapped_forever(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-    match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
+    match = _FOREVER_SECOND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
         return ""
     until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
@@ -1013,7 +1063,7 @@ def _quoted_span(usage: Usage) -> Span:
 
 
 def _dotted_span(usage: Usage) -> Span:
-    match = usage.matched(_DOTS)
+    match = usage.matched(_MEMBER_DOTS)
     return Span(*match.span("here")) if match else usage.found.span
 
 
@@ -1092,13 +1142,13 @@ def _lamp_set(gaps: Gaps) -> str:
 
 def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
-    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
-    is_said = lexicon_meaning(right, "filler") or found.is_button(right)
-    return right if found.is_first and is_said else ""
+    usage, right = _usage_at(gaps), _usage_at(gaps).letters[0]
+    is_said = lexicon_meaning(right, "filler") or usage.is_button(right)
+    return right if usage.is_first and is_said else ""
 
 
 def _may_be(argument: Argument, number: float) -> bool:
-    is_long = argument.unit == "s" and number >= LONG_S
+    is_long = argument.unit == "s" and number >= LONG_TIME_S
     return argument.low <= number * ONE <= argument.high and not is_long
 
 
@@ -1108,17 +1158,22 @@ def _taking(gaps: Gaps) -> list[str]:
     values = [it.strip() for it in usage.source[usage.piece].strip("() ").split(",")]
     if not all(_PLAIN_NUMBER.fullmatch(value) for value in values):
         return []
-    known = (WORDS[word] for word in _TAKING if len(WORDS[word].arguments) == len(values))
+    words = (
+        WORDS[word] for word in _WORDS_WITH_VALUES if len(WORDS[word].arguments) == len(values)
+    )
     return [
         f"{word.text}({', '.join(values)})"
-        for word in known
-        if all(_may_be(its, float(it)) for its, it in zip(word.arguments, values, strict=True))
+        for word in words
+        if all(
+            _may_be(argument, float(it))
+            for argument, it in zip(word.arguments, values, strict=True)
+        )
     ]
 
 
 def _in_capitals(gaps: Gaps) -> str:
-    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
-    return right if found.source[found.found.span].isupper() else right.capitalize()
+    usage, right = _usage_at(gaps), _usage_at(gaps).letters[0]
+    return right if usage.source[usage.found.span].isupper() else right.capitalize()
 
 
 def _amount_place(usage: Usage) -> Span:
@@ -1136,7 +1191,7 @@ def _gap_of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
 
 
 # Where a row tells what it says, but where it was found.
-_PLACES: dict[str, Callable[[Usage], Span]] = {
+_PLACE_FUNCTIONS: dict[str, Callable[[Usage], Span]] = {
     "here": lambda it: it.piece, "behind": _following_span, "member": _member,
     "quoted": _quoted_span,
     "dots": _dotted_span,
@@ -1144,7 +1199,7 @@ _PLACES: dict[str, Callable[[Usage], Span]] = {
     "amount": _amount_place,
 }  # fmt: skip
 # Values that come together, of a place and the word that is told of.
-_SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
+_SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "bound": lambda it, _: it.bound(),
     "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
@@ -1152,7 +1207,7 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
-GAPS: dict[str, Callable[[Gaps], str]] = {
+GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "said": _gap_of(lambda it: it.source[it.piece]),
     "here": _gap_of(lambda it: it.source[it.found.span]),
     "first": _gap_of(lambda it: it.signs[0]), "sign": _gap_of(lambda it: it.signs[1]),
@@ -1198,7 +1253,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
     "way_said": _spoken_direction,
     "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
-    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _missing_value(gaps, True)) else "",
+    "wanted": lambda gaps: (
+        _NOUN_OF_UNIT[it.argument.unit] if (it := _missing_value(gaps, True)) else ""
+    ),
     "extra": lambda gaps: it.found if (it := _missing_value(gaps, False)) else "",
     "value_found": _gap_of(lambda it: it.no_value and it.no_value.found),
     "value_word": _gap_of(lambda it: it.no_value and it.no_value.word.text),

@@ -15,18 +15,18 @@ from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexicon_concept, l
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-_NOTHING = made("THE")  # a word that asks nothing: one alone may be a name
+_EMPTY_WORD = made("THE")  # a word that asks nothing: one alone may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
-_ASKED = frozenset(("little", "much", "light", "ahead", "none"))
-_FAR = 10  # centimetres, as in every example
-_MANY = 50  # of what a variable holds
-_EVEN = 100  # above it an example is a round number
+_ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
+_FAR_CM = 10  # centimetres, as in every example
+_MANY_UNITS = 50  # of what a variable holds
+_ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 
 
 def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     """Return what a condition in words asks, None where it is none or cannot be understood.
 
-    It is `asked` where it has its number, a `question` where a word says what, and else an
+    It is `question` where it has its number, a `question` where a word says what, and else an
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
     and `aside` is what looks ahead alone.
     """
@@ -38,7 +38,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
     has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
     if is_condition or (
-        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED)
+        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED_KINDS)
     ):
         return None
     if joint := _joining_word(texts, names):
@@ -46,26 +46,26 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     texts, number = _measured(row, names)
     sentence = _mentioned_words(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
-    own = [text for text in texts if names.is_name(text) and text != number]
-    if [number] == texts != [row[-1].text] or (number and not own and sentence == {"little"}):
+    own_names = [text for text in texts if names.is_name(text) and text != number]
+    if [number] == texts != [row[-1].text] or (number and not own_names and sentence == {"little"}):
         sentence.add("ahead")  # `20 cm`, `less than 10`
-    if any(names.is_yes_no(text) for text in own):
+    if any(names.is_yes_no(text) for text in own_names):
         return None  # which nothing is compared with
-    is_alone = len(texts) == 1 and not (
+    is_bare_name = len(texts) == 1 and not (
         sentence & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
     )
     is_button = any(lexicon_concept(text) == "BUTTON" for text in texts)
-    if is_alone or is_button or (numbers and not sentence & {"ahead", "light", "none"}):
+    if is_bare_name or is_button or (numbers and not sentence & {"ahead", "light", "none"}):
         return None
-    asked = [
+    question = [
         f"{name} {_sign(name, sentence)} {number or _example(names.asked.get(name), name)}"
-        for name in _subjects(own, texts, sentence, names)
+        for name in _subjects(own_names, texts, sentence, names)
     ]
-    if "ahead" in sentence and sentence & {"left", "right"} and asked[0].startswith("DISTANCE"):
+    if "ahead" in sentence and sentence & {"left", "right"} and question[0].startswith("DISTANCE"):
         return {"question": "", "aside": "DISTANCE"}  # it looks ahead
-    is_asking = bool(own or sentence & _ASKED)
+    is_asking = bool(own_names or sentence & _ASKED_KINDS)
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
-    return {"question": "", **dict(zip(kinds, asked, strict=False))}
+    return {"question": "", **dict(zip(kinds, question, strict=False))}
 
 
 def sensors_of(word: str, names: Names) -> list[str]:
@@ -75,8 +75,8 @@ def sensors_of(word: str, names: Names) -> list[str]:
 
 
 def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
-    said = [text for text in texts if not names.is_name(text)]
-    return {kind for kind in _KINDS for text in said if lexicon_meaning(text, kind)}
+    other_texts = [text for text in texts if not names.is_name(text)]
+    return {kind for kind in _KINDS for text in other_texts if lexicon_meaning(text, kind)}
 
 
 def _joining_word(texts: Sequence[str], names: Names) -> str:
@@ -94,14 +94,14 @@ def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
     places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
     pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
-    compared = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
-    if not any(compared) or all(compared):
+    are_comparisons = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
+    if not any(are_comparisons) or all(are_comparisons):
         return {}
     joint = _joint_of(row[places[0]].text, names)
     messages = []
-    for piece, is_compared in zip(pieces, compared, strict=True):
+    for piece, is_compared in zip(pieces, are_comparisons, strict=True):
         text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
-        result = {"asked": text} if is_compared else worded([_NOTHING, *piece], names) or {}
+        result = {"asked": text} if is_compared else worded([_EMPTY_WORD, *piece], names) or {}
         messages.append(result.get("asked") or result.get("question", ""))
     if not all(messages):
         return {"question": "", "joint": joint}
@@ -120,10 +120,10 @@ def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = lexicon_meaning(texts[k + 1], "unit") if k + 1 < len(texts) else ()
-        without = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
+        texts_without_unit = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
         if row[k].kind is NUMBER:
-            fits = not unit or unit[0] == "cm"
-            return without, _in_centimetres(text, unit) if fits else ""
+            is_length = not unit or unit[0] == "cm"
+            return texts_without_unit, _in_centimetres(text, unit) if is_length else ""
         if unit[:1] == ("cm",) and is_near:
             sentence = lexicon_meaning(text, "number") or (
                 ("0.5",) if lexicon_meaning(text, "half") else ()
@@ -132,7 +132,7 @@ def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
                 return [*texts[:k], *texts[k + 2 :]], _in_centimetres(sentence[0], unit)
         is_last = k == len(texts) - 1 and k > 1 and lexicon_meaning(texts[k - 1], "than")
         if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
-            return without, text
+            return texts_without_unit, text
     return texts, ""
 
 
@@ -140,15 +140,21 @@ def _in_centimetres(number: str, unit: Sequence[str]) -> str:
     return f"{float(number) * int(unit[1]) / ONE:g}" if unit else number
 
 
-def _subjects(own: Sequence[str], texts: Sequence[str], said: set[str], names: Names) -> list[str]:
+def _subjects(
+    own_names: Sequence[str], texts: Sequence[str], kinds_said: set[str], names: Names
+) -> list[str]:
     """Return the sensors that are asked, or the variable."""
-    named = [text for text in own if text in names.asked]
-    named += [meant for text in texts if (meant := names.meant(text, NEAR)) in names.asked]
-    result = named[:1] or list(own[:1])
-    if not result and "light" in said and "ahead" not in said:
+    sensors = [text for text in own_names if text in names.asked]
+    sensors += [concept for text in texts if (concept := names.meant(text, NEAR)) in names.asked]
+    result = sensors[:1] or list(own_names[:1])
+    if not result and "light" in kinds_said and "ahead" not in kinds_said:
         result = _lights(names)[:2]
-        turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in said]
-        result = [name for name in turned if name in result and len(turned) == 1] or result
+        sided_sensors = [
+            f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in kinds_said
+        ]
+        result = [
+            name for name in sided_sensors if name in result and len(sided_sensors) == 1
+        ] or result
     return result or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
 
 
@@ -156,13 +162,19 @@ def _lights(names: Names) -> list[str]:
     return sorted(name for name in names.asked if name.partition("_")[0] in ("LIGHT", "LINE"))
 
 
-def _sign(name: str, said: set[str]) -> str:
-    is_below = "little" in said or (name == "DISTANCE" and "much" not in said)
-    return "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
+def _sign(name: str, kinds_said: set[str]) -> str:
+    is_below = "little" in kinds_said or (name == "DISTANCE" and "much" not in kinds_said)
+    return "<" if is_below != bool(kinds_said & {"no", "without", "none"}) else ">"
 
 
 def _example(device: Device | None, name: str) -> int:
     if device is None:
-        return _MANY
+        return _MANY_UNITS
     middle = (device.low + device.high) // (2 * ONE)
-    return _FAR if name == "DISTANCE" else round(middle, -2) if middle > _EVEN else middle
+    return (
+        _FAR_CM
+        if name == "DISTANCE"
+        else round(middle, -2)
+        if middle > _ROUND_NUMBERS_FROM
+        else middle
+    )

@@ -11,14 +11,14 @@ from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
 # What the lexicon calls the signs that somebody says.
-SPOKEN = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
-_SPOKEN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
+SIGN_OF_NAME = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
+_SPOKEN_SIGN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
 _NAMED_LETTER = re.compile(rf"(?i)\b{words_of('spelt').replace('_', ' ')}(?=\s*\()")
-LONGEST_BLOCK = 160  # characters of one that a message shows
+MOST_BLOCK_CHARACTERS = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
 PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
-_PIECE = re.compile(r"[^;|{}]*")
-_NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
+_INSTRUCTION = re.compile(r"[^;|{}]*")
+_NOTE_START = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
 
 def laid_out(tokens: Sequence[Lexeme]) -> str:
@@ -29,7 +29,7 @@ def laid_out(tokens: Sequence[Lexeme]) -> str:
 
 def as_written(tokens: Sequence[Lexeme]) -> str:
     """Return a line as it was written, with its own spaces where nothing was changed."""
-    out, before = "", made("(")
+    line, before = "", made("(")
     for token in tokens:
         space = token.space
         if space is None:
@@ -39,9 +39,9 @@ def as_written(tokens: Sequence[Lexeme]) -> str:
             space = " "
         if before.text == "(" and before.source is None:
             space = ""
-        out += space + _source(token)
+        line += space + _source(token)
         before = token
-    return out
+    return line
 
 
 def _source(token: Lexeme) -> str:
@@ -55,7 +55,7 @@ def _source(token: Lexeme) -> str:
 
 def without_note(line: str) -> tuple[str, str]:
     """Return a line without its comment, and that with the space at the end of the line."""
-    note = _NOTE.search(line) if "//" in line else None
+    note = _NOTE_START.search(line) if "//" in line else None
     body = line[: note.start() if note else None].rstrip(" \t")
     return body, line[len(body) :]
 
@@ -68,8 +68,8 @@ def tokens_of(line: str) -> list[Lexeme]:
 def in_one_line(text: str) -> str:
     """Return the instructions of a text, laid out; nothing where they are long for a message."""
     parts = (laid_out(tokens_of(line)).strip("; ") for line in text.split("\n"))
-    whole = "; ".join(part for part in parts if part)
-    return whole if len(whole) <= LONGEST_BLOCK else ""
+    joined_text = "; ".join(part for part in parts if part)
+    return joined_text if len(joined_text) <= MOST_BLOCK_CHARACTERS else ""
 
 
 def shortened(text: str) -> str:
@@ -82,7 +82,7 @@ def instruction_at(span: Span, source: Source) -> Span:
     """Return the instruction around a place: between the separators of its line."""
     row, column = source.position(span.start)
     body = without_note(source.line_text(row))[0]
-    own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
+    own = next(it for it in _INSTRUCTION.finditer(body) if it.end() >= min(column - 1, len(body)))
     begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
     return Span(begin, begin + len(own[0].strip()))
 
@@ -95,18 +95,20 @@ def with_signs(line: str) -> str:
     text = plain(line)
     if len(text) != len(line):
         return line
-    found = [*_SPOKEN.finditer(text)]
-    said = [_meaning(match[0], "sign") for match in found]
-    is_bare = "bracket" in said
-    said = _with_closed(said)
-    is_begun = said[:1] == ["bar"] and text[: found[0].start()].strip() in ("SI", "SB")
-    names = " ".join(said).split()
-    opened, closed = names.count("open"), names.count("close")
-    if not closed <= opened <= closed + is_bare or not (opened or is_begun):
+    sign_matches = [*_SPOKEN_SIGN.finditer(text)]
+    sign_names = [_meaning(match[0], "sign") for match in sign_matches]
+    is_bare = "bracket" in sign_names
+    sign_names = _with_closed(sign_names)
+    is_begun = sign_names[:1] == ["bar"] and text[: sign_matches[0].start()].strip() in ("SI", "SB")
+    names = " ".join(sign_names).split()
+    open_count, closed_count = names.count("open"), names.count("close")
+    if not closed_count <= open_count <= closed_count + is_bare or not (open_count or is_begun):
         return line
-    for match, names in zip(found[::-1], [name.split() for name in said[::-1]], strict=True):
+    for match, names in zip(
+        sign_matches[::-1], [name.split() for name in sign_names[::-1]], strict=True
+    ):
         before, after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
-        sign = "".join(SPOKEN[name] for name in names)
+        sign = "".join(SIGN_OF_NAME[name] for name in names)
         line = f"{before}{sign}{' ' * (sign[-1] in ',;' and bool(after))}{after}"
     line += ")" * (line.count("(") - line.count(")"))
     return _NAMED_LETTER.sub(
@@ -121,9 +123,12 @@ def _meaning(words: str, kind: str) -> str:
 def is_guessed(line: str) -> bool:
     """Whether a dictated line has what may mean another sign: `ve` is a letter and a word."""
     kinds = [
-        lexicon_meaning(it[0].replace(" ", "_"), "sign")[0] for it in _SPOKEN.finditer(plain(line))
+        lexicon_meaning(it[0].replace(" ", "_"), "sign")[0]
+        for it in _SPOKEN_SIGN.finditer(plain(line))
     ]
-    return "bracket" in kinds or _NAMED_LETTER.search(_SPOKEN.sub("(", plain(line))) is not None
+    return (
+        "bracket" in kinds or _NAMED_LETTER.search(_SPOKEN_SIGN.sub("(", plain(line))) is not None
+    )
 
 
 def spoken_signs(text: str) -> list[str]:
@@ -131,19 +136,21 @@ def spoken_signs(text: str) -> list[str]:
     body = without_note(text)[0]
     if "\n" in text or with_signs(body) == body:
         return []
-    return [*dict.fromkeys(body[slice(*it.span())].lower() for it in _SPOKEN.finditer(plain(body)))]
+    return [
+        *dict.fromkeys(body[slice(*it.span())].lower() for it in _SPOKEN_SIGN.finditer(plain(body)))
+    ]
 
 
-def _with_closed(said: Sequence[str]) -> list[str]:
+def _with_closed(sign_names: Sequence[str]) -> list[str]:
     """Return signs in which a bracket that nobody says opens or closes does so in turn.
 
     One that is open at the end of its instruction is closed there.
     """
     result: list[str] = []
     is_open = False
-    for name in said:
+    for name in sign_names:
         name = ("close" if is_open else "open") if name == "bracket" else name
-        is_left = is_open and name == "semicolon" and "bracket" in said
+        is_left = is_open and name == "semicolon" and "bracket" in sign_names
         result.append("close semicolon" if is_left else name)
         is_open = name == "open" or (is_open and name not in ("close", "semicolon"))
     return result

@@ -62,35 +62,37 @@ def is_path(text: str) -> bool:
     )
 
 
-def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
-    """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises `refused`."""
+def text_of(path: str, refusal_type: type[ProfileRefused] = ProfileRefused) -> str:
+    """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises `refusal_type`."""
     from tiniscript.robots.refusals import printable_value
 
     values = {"file": printable_value(path)}
     if is_pipe(path):
-        raise refused(("file_unreadable", values))
+        raise refusal_type(("file_unreadable", values))
     try:
         with Path(path).open("rb") as file:
             result = file.read(FILE_BYTES + 1)
     except FileNotFoundError:
-        raise refused(("file_missing", values)) from None
+        raise refusal_type(("file_missing", values)) from None
     except (OSError, ValueError):  # ValueError: the name is not valid for a file
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
-        raise refused((code, values)) from None
-    return decode_profile(result, path, refused)
+        raise refusal_type((code, values)) from None
+    return decode_profile(result, path, refusal_type)
 
 
-def decode_profile(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
-    """Return the text of a file's bytes, as `text_of` does. Raises `refused`."""
+def decode_profile(
+    data: bytes, name: str, refusal_type: type[ProfileRefused] = ProfileRefused
+) -> str:
+    """Return the text of a file's bytes, as `text_of` does. Raises `refusal_type`."""
     from tiniscript.robots.refusals import printable_value
 
     values = {"file": printable_value(name)}
-    if len(found) > FILE_BYTES:
+    if len(data) > FILE_BYTES:
         limit = f"{FILE_BYTES // 1024} KB"
-        raise refused(("file_too_large", {**values, "limit": limit}))
+        raise refusal_type(("file_too_large", {**values, "limit": limit}))
     try:
-        return found.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = found.count(b"\n", 0, error.start) + 1
-        raise refused(("file_not_utf8", {**values, "line": str(line)})) from None
+        line = data.count(b"\n", 0, error.start) + 1
+        raise refusal_type(("file_not_utf8", {**values, "line": str(line)})) from None

@@ -24,7 +24,7 @@ TEN_MINUTES = 600
 NOTHING = Wiring("", {}, {})
 
 
-class Use(NamedTuple):
+class PinUse(NamedTuple):
     """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`.
 
     `shield` is what a shield calls the pin, where it decides the pin.
@@ -33,7 +33,7 @@ class Use(NamedTuple):
     table: Table
     key: str
     pin: int
-    need: str
+    ability: str
     shield: str = ""
 
 
@@ -42,10 +42,15 @@ class Pins:
 
     def __init__(self, chip: Chip | None) -> None:
         self._chip = chip
-        self._uses: list[Use] = []
+        self._pin_uses: list[PinUse] = []
 
     def take(
-        self, table: Table, key: str, need: str, is_optional: bool = False, is_motor: bool = False
+        self,
+        table: Table,
+        key: str,
+        ability: str,
+        is_optional: bool = False,
+        is_motor: bool = False,
     ) -> int | None:
         """Return the number of the pin at `key`, or None if no usable pin is given."""
         text = table.get(key, "" if is_optional else f"{key} = 5")
@@ -61,24 +66,26 @@ class Pins:
         if pin is None:
             table.complain("no_such_pin", key, found=printable_value(text), chip=chip.name)
             return None
-        named = {"pin": chip.pin_name(pin), "chip": chip.name}
-        before = next((use for use in self._uses if use.pin == pin), None)
+        texts = {"pin": chip.pin_name(pin), "chip": chip.name}
+        before = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
         if pin in chip.link_pins:
-            table.complain("pin_of_link", key, **named)
-        elif need == "count" and not chip.counting:
-            table.complain("no_discs", key, **named)
-        elif not chip.can(pin, need):
-            table.complain("pin_cannot", key, need=need, **named, choices=_choices(chip, need))
+            table.complain("pin_of_link", key, **texts)
+        elif ability == "count" and not chip.counting:
+            table.complain("no_discs", key, **texts)
+        elif not chip.can(pin, ability):
+            table.complain(
+                "pin_cannot", key, need=ability, **texts, choices=_choices(chip, ability)
+            )
         elif is_motor and pin in chip.boot_pins:
-            choices = _choices(chip, need, without_pins=chip.boot_pins)
-            table.complain("pin_at_boot", key, **named, choices=choices)
+            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            table.complain("pin_at_boot", key, **texts, choices=choices)
         elif key == "start_button" and pin == chip.reset_pin:
-            choices = _choices(chip, need, without_pins=chip.boot_pins)
-            table.complain("pin_of_reset", key, **named, choices=choices)
+            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            table.complain("pin_of_reset", key, **texts, choices=choices)
         elif before is not None:
-            table.complain("pin_twice", key, **named, first=before.table.path_of(before.key))
+            table.complain("pin_twice", key, **texts, first=before.table.path_of(before.key))
         else:
-            self._uses.append(Use(table, key, pin, need))
+            self._pin_uses.append(PinUse(table, key, pin, ability))
         return pin
 
     def take_fixed(self, table: Table, key: str, fixed: PinKey) -> int | None:
@@ -93,13 +100,13 @@ class Pins:
             if not any(code == "shield_of_uno" for code, _ in table.reasons):
                 table.complain("shield_of_uno", key, chip=chip.name)
             return None
-        before = next((use for use in self._uses if use.pin == pin), None)
+        before = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
         if before is not None:
             first = before.table.path_of(before.key)
             name = chip.pin_name(pin)
             table.complain("shield_pin_twice", key, pin=name, name=fixed.name, first=first)
         else:
-            self._uses.append(Use(table, key, pin, fixed.need, fixed.name))
+            self._pin_uses.append(PinUse(table, key, pin, fixed.ability, fixed.name))
         return pin
 
     def check_timers(self) -> None:
@@ -109,58 +116,64 @@ class Pins:
         if self._chip.pwm_timers:
             return self._check_frequencies(self._chip)
         owners = {"servo": self._chip.servo_timer, "tone": self._chip.tone_timer}
-        for need, timer in owners.items():
-            owner = next((use for use in self._uses if use.need == need), None)
+        for ability, timer in owners.items():
+            owner = next(
+                (pin_use for pin_use in self._pin_uses if pin_use.ability == ability), None
+            )
             if owner is None or timer is None:
                 continue
-            for use in self._uses:
-                if use.need == "pwm" and self._chip.pwm[use.pin] == timer:
-                    use.table.complain(
-                        "shield_timer_twice" if use.shield else "timer_twice",
-                        use.key,
-                        pin=self._chip.pin_name(use.pin),
+            for pin_use in self._pin_uses:
+                if pin_use.ability == "pwm" and self._chip.pwm[pin_use.pin] == timer:
+                    pin_use.table.complain(
+                        "shield_timer_twice" if pin_use.shield else "timer_twice",
+                        pin_use.key,
+                        pin=self._chip.pin_name(pin_use.pin),
                         timer=str(timer),
                         first=owner.table.path_of(owner.key),
-                        name=use.shield,
+                        name=pin_use.shield,
                         choices=_choices(self._chip, "pwm", frozenset(owners.values())),
                     )
 
     def _check_frequencies(self, chip: Chip) -> None:
         """Complain about the first PWM pin for which no timer is left."""
         pins = dict.fromkeys(FREQUENCIES, 0)
-        for use in self._uses:
-            if use.need not in pins:
+        for pin_use in self._pin_uses:
+            if pin_use.ability not in pins:
                 continue
-            pins[use.need] += 1
+            pins[pin_use.ability] += 1
             if sum(map(timers_of, pins.values())) > chip.pwm_timers:
-                named = {"pin": chip.pin_name(use.pin), "chip": chip.name}
+                texts = {"pin": chip.pin_name(pin_use.pin), "chip": chip.name}
                 timers = str(chip.pwm_timers)
-                use.table.complain("timers_used_up", use.key, **named, timers=timers)
+                pin_use.table.complain("timers_used_up", pin_use.key, **texts, timers=timers)
                 return
 
 
 def _choices(
-    chip: Chip, need: str, without: frozenset[int | None] = frozenset(),
+    chip: Chip, ability: str, without_timers: frozenset[int | None] = frozenset(),
     without_pins: frozenset[int] = frozenset(),
 ) -> str:  # fmt: skip
-    """Return the pins that can do `need`, except those of the timers in `without`."""
+    """Return the pins that can do `ability`, except those of the timers in `without_timers`."""
     every = sorted((chip.digital | chip.reading | chip.analog) - without_pins)
-    fit = [pin for pin in every if chip.can(pin, need) and chip.pwm.get(pin, -1) not in without]
-    return ", ".join(chip.pin_name(pin) for pin in fit)
+    fitting_pins = [
+        pin
+        for pin in every
+        if chip.can(pin, ability) and chip.pwm.get(pin, -1) not in without_timers
+    ]
+    return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 
 
 def read_board(table: Table, kit: Kit) -> Board:
     """Return the board of a kit. Complaints are added to those of `table`."""
     chip = CHIPS.get(table.choice("chip", tuple(CHIPS)))
     pins = Pins(chip)
-    most = chip.program_bytes if chip else 0
-    program_bytes = most
+    most_bytes = chip.program_bytes if chip else 0
+    program_bytes = most_bytes
     if table.has("program_bytes") and chip:
-        program_bytes = table.whole_number("program_bytes", 1, most)
+        program_bytes = table.whole_number("program_bytes", 1, most_bytes)
     baud = table.whole_number("baud", BAUDS[0], BAUDS[-1], "baud = 9600")
     if baud and baud not in BAUDS:
-        known = ", ".join(map(str, BAUDS))
-        table.complain("not_one_of", "baud", found=str(baud), choices=known)
+        bauds_text = ", ".join(map(str, BAUDS))
+        table.complain("not_one_of", "baud", found=str(baud), choices=bauds_text)
     max_run = table.whole_number("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
     start_button = pins.take(table, "start_button", "pull_up")
     buzzer = pins.take(table, "buzzer", "tone", is_optional=True)
@@ -195,12 +208,12 @@ def read_board(table: Table, kit: Kit) -> Board:
 def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str, Table]:
     """Return the table `[key.NAME]` of each device that has one. The case of NAME is ignored."""
     group = table.table(key)
-    known = tuple(device.name for device in devices if device.name)
+    device_names = tuple(device.name for device in devices if device.name)
     result: dict[str, Table] = {}
     for item in group.key_names():
         name = item.upper()
-        if name not in known:
-            group.complain_not_in_kit(item, known)
+        if name not in device_names:
+            group.complain_not_in_kit(item, device_names)
         elif name in result:
             group.complain("name_twice", item, found=name)
         else:
@@ -232,26 +245,26 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     if not name:
         return NOTHING
     driver = DRIVERS[used_by, name]
-    known = {setting.key for setting in driver.settings}
+    known_keys = {setting.key for setting in driver.settings}
     is_actuator = used_by.startswith("actuators")
-    if is_actuator and AT_STOP not in known and AT_STOP in table.key_names():
+    if is_actuator and AT_STOP not in known_keys and AT_STOP in table.key_names():
         table.has(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
-    taken = {}
-    for wanted in driver.pins:
-        key, need, is_optional, fixed, _ = wanted
+    pin_of_key = {}
+    for pin_key in driver.pins:
+        key, ability, is_optional, fixed, _ = pin_key
         if fixed is not None:
             chosen_by = driver.chosen_by(key, settings)
-            pin = pins.take_fixed(table, chosen_by, wanted) if chosen_by else None
+            pin = pins.take_fixed(table, chosen_by, pin_key) if chosen_by else None
         else:
-            has_pull_up = need == "input" and settings.get("pull_up")
-            need = "pull_up" if has_pull_up else need
-            pin = pins.take(table, key, need, is_optional, is_motor=used_by == "motors")
+            has_pull_up = ability == "input" and settings.get("pull_up")
+            ability = "pull_up" if has_pull_up else ability
+            pin = pins.take(table, key, ability, is_optional, is_motor=used_by == "motors")
         if pin is not None:
-            taken[key] = pin
+            pin_of_key[key] = pin
     table.finish()
-    return Wiring(name, taken, settings)
+    return Wiring(name, pin_of_key, settings)
 
 
 def _read_setting(table: Table, setting: Setting) -> int:

@@ -41,27 +41,27 @@ class Chip(NamedTuple):
     counting: frozenset[int] = frozenset()  # count the edges of a disc, by interrupts of their own
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
-    has: int = 0  # what its firmware has of `needs` in an image
+    capabilities: int = 0  # what its firmware has of `needs` in an image
 
-    def can(self, pin: int, need: str) -> bool:
-        """Return whether `pin` has the ability `need`, one of NEEDS."""
-        if need == "input":
+    def can(self, pin: int, ability: str) -> bool:
+        """Return whether `pin` has the ability `ability`, one of NEEDS."""
+        if ability == "input":
             return pin in self.digital or pin in self.reading
-        if need == "analog":
+        if ability == "analog":
             return pin in self.analog
-        if need == "pwm":
+        if ability == "pwm":
             return pin in self.pwm
-        if need == "echo":
+        if ability == "echo":
             return pin in self.echo
-        if need == "count":
+        if ability == "count":
             return pin in self.counting
         return pin in self.digital  # output, pull_up, servo, tone
 
-    def pin_number(self, written: object) -> int | None:
+    def pin_number(self, pin_text: object) -> int | None:
         """Return the number of `5` or `"A0"`, or None where the board has no such pin."""
-        number = written if isinstance(written, int) else None
-        if isinstance(written, str) and self.first_analog is not None:
-            letter, digits = written[:1].upper(), written[1:]
+        number = pin_text if isinstance(pin_text, int) else None
+        if isinstance(pin_text, str) and self.first_analog is not None:
+            letter, digits = pin_text[:1].upper(), pin_text[1:]
             if letter == "A" and digits in ANALOG_DIGITS:
                 number = self.first_analog + int(digits)
         every = self.digital | self.reading | self.analog | self.link_pins
@@ -98,7 +98,7 @@ _ESP32C3 = _pins(range(11))
 _TASKS, _WAYS = 1, 2
 
 
-def _avr(name: str, digital: range, analog: range, program_bytes: int, has: int) -> Chip:
+def _avr(name: str, digital: range, analog: range, program_bytes: int, capabilities: int) -> Chip:
     """Return a chip of which `ports` has the pins. Timer 0 keeps the time and also does PWM."""
     avr = AVRS[name]
     return Chip(
@@ -113,7 +113,7 @@ def _avr(name: str, digital: range, analog: range, program_bytes: int, has: int)
         servo_timer=1,
         tone_timer=2,
         counting=frozenset(avr.external),
-        has=has,
+        capabilities=capabilities,
     )
 
 
@@ -138,7 +138,7 @@ CHIPS = {
             counting=_ESP32 | _pins(34, 35, 36, 39),
             pwm_timers=8,
             pin_volts=3_300,
-            has=_TASKS | _WAYS,
+            capabilities=_TASKS | _WAYS,
         ),
         Chip(
             "esp32c3",
@@ -152,7 +152,7 @@ CHIPS = {
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,
-            has=_TASKS | _WAYS,
+            capabilities=_TASKS | _WAYS,
         ),
     )
 }

@@ -37,7 +37,7 @@ class PinKey(NamedTuple):
     """
 
     key: str
-    need: str
+    ability: str
     is_optional: bool = False
     fixed: int | None = None
     name: str = ""
@@ -76,13 +76,13 @@ class Terminal(NamedTuple):
 class Shape(NamedTuple):
     """What a part is: its icon, the key of what to buy, its terminals from top to bottom.
 
-    `need` is empty where resistors are all. `model` is printed in its title. `motors` are the
+    `need_key` is empty where resistors are all. `model` is printed in its title. `motors` are the
     terminals of the left and the right motor; `notes` are keys of what to mind, `checks` of what
     to look at before switching on. `power` is the key of which battery suits it.
     """
 
     icon: str
-    need: str
+    need_key: str
     terminals: tuple[Terminal, ...]
     model: str = ""
     motors: tuple[str, ...] = ()
@@ -150,9 +150,9 @@ class Plan:
         self.off: list[str] = []  # what a stop turns off besides the motors
         self.servo_pins: list[str] = []
 
-    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str:
+    def pin(self, name: str, number: int, mode: str = "", comment: str = "") -> str:
         """Add a pin, and return what it is called."""
-        note = f"  // {beside}" if beside else ""
+        note = f"  // {comment}" if comment else ""
         text = CHIPS[self.robot.board.chip].pin_name(number)
         self.constants.append(f"const int {name} = {text};{note}")
         if mode:
@@ -192,8 +192,8 @@ class Driver(ABC):
         """Return the key of the profile that makes it take a fixed pin, or nothing: it does not."""
         return "driver"
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        """Return what it looks like; a sensor `sees` what its place in the robot's body says."""
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        """Return what it looks like; a sensor `sensed` what its place in the robot's body says."""
         return self.looks
 
 
@@ -253,7 +253,7 @@ class SensorDriver(Driver):
 
     @abstractmethod
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         """Return the lines of a sketch that put a reading into `name`."""
 
@@ -268,7 +268,9 @@ class ActuatorDriver(Driver):
         """Return the lines that set it to `value`."""
 
     @abstractmethod
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
         """Return the function of a sketch that sets it."""
 
 
@@ -282,14 +284,14 @@ def in_limits(device: Device, low: int, high: int) -> list[str]:
     return [f"      *value = in_limits(*value, {device.low}, {device.high});"]
 
 
-def module(output: str, need: str, *notes: str) -> Shape:
+def module(output: str, need_key: str, *notes: str) -> Shape:
     """Return the shape of a sensor on a small board with three pins."""
     terminals = (
         Terminal("VCC", rail=BOARD_5V),
         Terminal(output, "pin"),
         Terminal("GND", rail=GROUND),
     )
-    return Shape("module", need, terminals, notes=notes)
+    return Shape("module", need_key, terminals, notes=notes)
 
 
 def photoresistor() -> Shape:

@@ -27,7 +27,7 @@ def remember(path: str, kit: int) -> None:
     with contextlib.suppress(OSError):
         _path().parent.mkdir(mode=files.OWNER_ONLY, parents=True, exist_ok=True)
         with files.lock_file(_path()):  # other commands do the same
-            kept = [
+            paths = [
                 entry,
                 *(
                     remembered_profile
@@ -35,7 +35,7 @@ def remember(path: str, kit: int) -> None:
                     if remembered_profile != entry
                 ),
             ][:KEPT]
-            files.keep(_path(), json.dumps(kept).encode())
+            files.keep(_path(), json.dumps(paths).encode())
 
 
 def recall(kit: int) -> Robot | None:

@@ -90,13 +90,13 @@ class Way:
             return []
         return points(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
 
-    def thin_out(self, most: int) -> None:
+    def thin_out(self, most_corners: int) -> None:
         """Drop corners too close to tell apart in a picture; if too many remain, the oldest."""
         across_cm = max(
             max(values) - min(values) for values in list(zip(*self.corners, strict=True))[:2]
         )
-        kept = self.corners[:1]
+        corners_kept = self.corners[:1]
         for corner in self.corners[1:-1]:
-            if math.dist(corner[:2], kept[-1][:2]) > across_cm / 500:
-                kept.append(corner)
-        self.corners = [*kept, self.corners[-1]][-most:]
+            if math.dist(corner[:2], corners_kept[-1][:2]) > across_cm / 500:
+                corners_kept.append(corner)
+        self.corners = [*corners_kept, self.corners[-1]][-most_corners:]

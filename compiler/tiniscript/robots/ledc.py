@@ -18,18 +18,18 @@ FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of the
 
 def channels_of(board: Board) -> dict[int, int]:
     """Return the channel of each pin that needs one."""
-    groups: dict[str, list[int]] = {need: [] for need in FREQUENCIES}
+    groups: dict[str, list[int]] = {ability: [] for ability in FREQUENCIES}
     if board.buzzer is not None:
         groups["tone"].append(board.buzzer)
-    used = chain(
+    wirings = chain(
         [("motors", board.motors)],
         (("sensors", wiring) for wiring in board.sensors),
         (("actuators", wiring) for wiring in board.actuators),
     )
-    for used_by, wiring in used:
-        for pin, need in _pin_needs(used_by, wiring):
-            if need in groups:
-                groups[need].append(pin)
+    for used_by, wiring in wirings:
+        for pin, ability in _pin_needs(used_by, wiring):
+            if ability in groups:
+                groups[ability].append(pin)
     channels = {}
     first = 0
     for pins in groups.values():
@@ -38,9 +38,9 @@ def channels_of(board: Board) -> dict[int, int]:
     return channels
 
 
-def timers_of(pins: int) -> int:
+def timers_of(pin_count: int) -> int:
     """Return how many timers so many pins of one frequency take."""
-    return -(-pins // PER_TIMER)
+    return -(-pin_count // PER_TIMER)
 
 
 def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
@@ -49,5 +49,5 @@ def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
         if name == wiring.driver and use.split()[0] == used_by:
             for pin in driver.pins:
                 if pin.key in wiring.pins:
-                    yield wiring.pins[pin.key], pin.need
+                    yield wiring.pins[pin.key], pin.ability
             return

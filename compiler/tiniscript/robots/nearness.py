@@ -28,25 +28,25 @@ def nearest_to(robot: Robot) -> Nearest:
     That is the one with the most devices in common, then with the fewest others, then on the same
     board, then with the same driver of motors; the first of those that are as near.
     """
-    here = _devices(robot.kit)
+    own_devices = _devices(robot.kit)
 
     def distance(other: Robot) -> tuple[int, int, bool, bool]:
-        there = _devices(other.kit)
+        other_devices = _devices(other.kit)
         return (
-            -len(here & there),
-            len(here ^ there),
+            -len(own_devices & other_devices),
+            len(own_devices ^ other_devices),
             other.board.chip != robot.board.chip,
             other.board.motors.driver != robot.board.motors.driver,
         )
 
     best = min(map(robots.load, robots.names()), key=distance)
-    there = _devices(best.kit)
+    best_devices = _devices(best.kit)
     return Nearest(
         best.name,
         best.kit.fingerprint == robot.kit.fingerprint,
-        _names(robot.kit, here & there),
-        _names(best.kit, there - here),
-        _names(robot.kit, here - there),
+        _names(robot.kit, own_devices & best_devices),
+        _names(best.kit, best_devices - own_devices),
+        _names(robot.kit, own_devices - best_devices),
     )
 
 

@@ -42,14 +42,14 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
 
 
 def _read_kit(table: Table) -> Kit:
-    taken: set[str] = set()
+    names_taken: set[str] = set()
 
-    def speed(key: str, most: int) -> int:
-        return table.number(key, 1, most) if table.has(key) else 0
+    def speed(key: str, highest: int) -> int:
+        return table.number(key, 1, highest) if table.has(key) else 0
 
     kit = Kit(
-        _read_devices(table, "sensors", taken),
-        _read_devices(table, "actuators", taken),
+        _read_devices(table, "sensors", names_taken),
+        _read_devices(table, "actuators", names_taken),
         speed("speed", FASTEST_CM_S),
         speed("turn", FASTEST_TURN),
     )
@@ -57,15 +57,15 @@ def _read_kit(table: Table) -> Kit:
     return kit
 
 
-def _read_devices(table: Table, key: str, taken: set[str]) -> tuple[Device, ...]:
+def _read_devices(table: Table, key: str, names_taken: set[str]) -> tuple[Device, ...]:
     tables = table.tables(key)
     if len(tables) > MOST_DEVICES:
         table.complain("too_many", key, found=str(len(tables)), most=str(MOST_DEVICES))
-    return tuple(_read_device(table, key == "actuators", taken) for table in tables)
+    return tuple(_read_device(table, key == "actuators", names_taken) for table in tables)
 
 
-def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
-    name = _read_name(table, taken)
+def _read_device(table: Table, is_actuator: bool, names_taken: set[str]) -> Device:
+    name = _read_name(table, names_taken)
     kind = table.choice("kind", (NUMBER, YES_NO), "unknown_kind")
     unit, low, high = "", 0, 1
     if kind == YES_NO:
@@ -81,7 +81,7 @@ def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
     return Device(name, kind, unit, low, high)
 
 
-def _read_name(table: Table, taken: set[str]) -> str:
+def _read_name(table: Table, names_taken: set[str]) -> str:
     text = table.text("name", 'name = "DISTANCE"')
     if text is None:
         return ""
@@ -94,9 +94,9 @@ def _read_name(table: Table, taken: set[str]) -> str:
         )
     elif name in WORDS:
         table.complain("name_is_word", "name", found=name)
-    elif name in taken:
+    elif name in names_taken:
         table.complain("name_twice", "name", found=name)
-    taken.add(name)
+    names_taken.add(name)
     return name
 
 
@@ -112,9 +112,9 @@ def _read_unit(table: Table) -> str:
 
 
 def _read_range(table: Table, example: str, is_actuator: bool) -> tuple[int, int]:
-    before = len(table.reasons)
+    reason_count_before = len(table.reasons)
     low, high = table.pair("range", example)
-    if len(table.reasons) == before and table.has("range"):
+    if len(table.reasons) == reason_count_before and table.has("range"):
         if low >= high:
             table.complain("range_empty", "range")
         elif is_actuator and (low % ONE or high % ONE):
@@ -123,8 +123,8 @@ def _read_range(table: Table, example: str, is_actuator: bool) -> tuple[int, int
 
 
 def _read_body(table: Table, kit: Kit) -> Body:
-    def size(key: str, sample: str, most: int = FARTHEST_CM) -> float:
-        return table.number(key, 1, most, f"{key} = {sample}") / ONE
+    def size(key: str, sample: str, greatest: int = FARTHEST_CM) -> float:
+        return table.number(key, 1, greatest, f"{key} = {sample}") / ONE
 
     wheel_base_cm = size("wheel_base_cm", "13.5")
     said_cm_s = 0.0
@@ -142,8 +142,8 @@ def _read_body(table: Table, kit: Kit) -> Body:
 
 
 def _read_place(table: Table, servos: Sequence[str]) -> Place:
-    def number(key: str, most: int, example: str = "") -> float:
-        return table.number(key, -most, most, example) / ONE
+    def number(key: str, greatest: int, example: str = "") -> float:
+        return table.number(key, -greatest, greatest, example) / ONE
 
     x_cm = number("x_cm", FARTHEST_CM, "x_cm = 8")
     y_cm = number("y_cm", FARTHEST_CM, "y_cm = 0")
@@ -160,25 +160,25 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     A missing one is taken from another language, or is the name itself.
     """
     devices = (*kit.sensors, *kit.actuators)
-    known = [language for language in languages() if table.has(language)]
-    written = {item: _read_language(table, item, devices) for item in known}
+    label_languages = [language for language in languages() if table.has(language)]
+    labels_read = {item: _read_language(table, item, devices) for item in label_languages}
     table.finish()
     labels: ByLanguage[dict[str, str]] = ByLanguage()
-    for language in dict.fromkeys((SOURCE_LANGUAGE, *known)):
+    for language in dict.fromkeys((SOURCE_LANGUAGE, *label_languages)):
         labels[language] = {"robot": name, **{device.name: device.name for device in devices}}
-        for item in (*known, language):
-            labels[language].update(written.get(item, {}))
+        for item in (*label_languages, language):
+            labels[language].update(labels_read.get(item, {}))
     return labels
 
 
 def _read_language(table: Table, language: str, devices: Sequence[Device]) -> dict[str, str]:
     labels = table.table(language)
-    known = {device.name: device.name for device in devices}
+    known_names = {device.name: device.name for device in devices}
     result = {}
     for key in labels.key_names():
-        name = "robot" if key == "robot" else known.get(key.upper())
+        name = "robot" if key == "robot" else known_names.get(key.upper())
         if name is None:
-            labels.complain_not_in_kit(key, tuple(known))
+            labels.complain_not_in_kit(key, tuple(known_names))
         elif (label := labels.label(key, LABEL_CHARACTERS)) is not None:
             result[name] = label
     return result

@@ -18,10 +18,10 @@ SHOWN_CHARACTERS = 40
 DEVICE = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
 
 
-def describe(refused: ProfileRefused, lang: str) -> list[str]:
+def describe(refusal: ProfileRefused, lang: str) -> list[str]:
     """Return a sentence for each reason."""
     sentences = []
-    for code, values in _causes(refused.reasons):
+    for code, values in _causes(refusal.reasons):
         words = {key: printable(value) for key, value in values.items()}
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
@@ -32,7 +32,7 @@ def describe(refused: ProfileRefused, lang: str) -> list[str]:
         key = f"{code}/near" if words.get("near") else code
         text = (
             languages.find_text(CATALOGUE, f"{kind}/{key}", lang)
-            for kind in (*refused.kinds, "profile")
+            for kind in (*refusal.kinds, "profile")
         )
         sentences.append(next(filter(None, text)).format_map(words))
     return sentences
@@ -44,16 +44,16 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     Beside a misspelt key nothing is said of the key that it should be, nor, beside the refused
     name of a device, of the tables that have this name.
     """
-    meant, is_name_refused = set(), False
+    meant_paths, is_name_refused = set(), False
     for code, values in reasons:
         parent, _, _ = values.get("path", "").rpartition(".")
         is_name_refused |= code.startswith("name_") and parent.startswith("kit.")
         if code in ("unknown_key", "not_in_kit") and values.get("near"):
-            meant.add(f"{parent}.{values['near']}".lstrip("."))
+            meant_paths.add(f"{parent}.{values['near']}".lstrip("."))
     causes = []
     for code, values in reasons:
         path = values.get("path", "")
-        is_meant = any(path == item or path.startswith(f"{item}.") for item in meant)
+        is_meant = any(path == item or path.startswith(f"{item}.") for item in meant_paths)
         is_device = code == "missing" and DEVICE.fullmatch(path) is not None
         if code == "missing" and is_meant:
             continue

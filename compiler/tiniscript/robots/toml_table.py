@@ -39,16 +39,16 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 
 
 @contextmanager
-def root_of(text: str, refused: type[ProfileRefused]) -> Iterator[Table]:
-    """Yield the table of a whole file. Raises `refused` with all that has been complained of."""
+def root_of(text: str, refusal_type: type[ProfileRefused]) -> Iterator[Table]:
+    """Yield the table of a whole file. Raises `refusal_type` with all complaints."""
     result = parse_toml(text)
     if isinstance(result, tuple):
-        raise refused(result)
+        raise refusal_type(result)
     root = Table(result, "", [])
     yield root
     root.finish()
     if root.reasons:
-        raise refused(*root.reasons)
+        raise refusal_type(*root.reasons)
 
 
 class Table:
@@ -94,11 +94,13 @@ class Table:
         self.expect("text", key, value)
         return None
 
-    def label(self, key: str, most: int, example: str = "") -> str | None:
-        """Return a text for people, at most `most` characters long."""
+    def label(self, key: str, most_characters: int, example: str = "") -> str | None:
+        """Return a text for people, at most `most_characters` characters long."""
         value = self.text(key, example)
-        if value is not None and not (value.strip() and len(value) <= most and value.isprintable()):
-            self.complain("label_bad", key, most=str(most))
+        if value is not None and not (
+            value.strip() and len(value) <= most_characters and value.isprintable()
+        ):
+            self.complain("label_bad", key, most=str(most_characters))
         return value
 
     def choice(self, key: str, choices: Sequence[str], code: str = "not_one_of") -> str:
@@ -171,8 +173,8 @@ class Table:
         if isinstance(value, dict):
             return Table(value, self.path_of(key), self.reasons)
         self.expect("table", key, value)
-        is_known = bool(example) or value is not None
-        return Table({}, self.path_of(key), [] if is_known else self.reasons)
+        is_expected = bool(example) or value is not None
+        return Table({}, self.path_of(key), [] if is_expected else self.reasons)
 
     def tables(self, key: str) -> list[Table]:
         """Return the tables at `[[key]]`; their paths count from 1."""
@@ -191,13 +193,13 @@ class Table:
                 self.expect("table", place, each)
         return tables
 
-    def expect(self, wanted: str, key: str, value: object) -> None:
+    def expect(self, expected_type: str, key: str, value: object) -> None:
         """Complain that `value` has the wrong type; a missing value has its own complaint."""
         if value is not None:
-            self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
+            self.complain("wrong_type", key, wanted=expected_type, found=_type_of(value))
 
-    def complain_not_in_kit(self, key: str, known: Sequence[str]) -> None:
-        suggestion = nearest(key.upper(), list(known)) or ""
+    def complain_not_in_kit(self, key: str, known_names: Sequence[str]) -> None:
+        suggestion = nearest(key.upper(), list(known_names)) or ""
         self.complain("not_in_kit", key, name=printable_value(key), near=suggestion)
 
     def finish(self) -> None:

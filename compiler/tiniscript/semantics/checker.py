@@ -42,12 +42,12 @@ class Checked(NamedTuple):
     diagnostics: list[Diagnostic]
 
 
-def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
+def check(source: Source, parsed_program: ast.Program, kit: Kit) -> Checked:
     """Return the IR of a program for a robot with this kit, and all its diagnostics."""
-    checker = _Checker(source, kit, parsed)
-    body = checker.body(parsed.body)
+    checker = _Checker(source, kit, parsed_program)
+    body = checker.body(parsed_program.body)
     variables, procedures = tuple(checker.variables), tuple(checker.procedures)
-    meaning = ir.Program(parsed.start, variables, procedures, body, tuple(checker.tasks))
+    meaning = ir.Program(parsed_program.start, variables, procedures, body, tuple(checker.tasks))
     if (
         meaning.tasks
         and any(procedure.values for procedure in procedures)
@@ -61,29 +61,29 @@ class _Procedure(NamedTuple):
     """What a call of a DEF brings with it."""
 
     definitely_read_mask: int
-    blocks: int
-    calls: int
+    block_depth: int
+    call_depth: int
 
 
 class _Outside(NamedTuple):
     """What is known of the program around a DEF or a task, while that is checked."""
 
     definitely_read_mask: int
-    blocks: int
-    calls: int
+    block_depth: int
+    call_depth: int
     beside_blocks: int
     beside_calls: int
 
 
 class _Checker(Scope):
-    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
-        super().__init__(source, kit, parsed)
+    def __init__(self, source: Source, kit: Kit, parsed_program: ast.Program) -> None:
+        super().__init__(source, kit, parsed_program)
         self.types = Types(self)
         self.variables: list[str] = []
         self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
         self.tasks: list[ir.Task] = []
-        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed.body)
+        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed_program.body)
         self.beside_blocks = 0  # open at once in the other tasks, all of them together,
         self.beside_calls = 0  # and their calls
         self.inside: str | None = None  # the DEF whose body is being checked
@@ -119,7 +119,7 @@ class _Checker(Scope):
 
     # -- readings -----------------------------------------------------------------------------
 
-    def take(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
+    def add_readings(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
         result = 0
         for sensor in self.unread_sensors(values, self.definitely_read_mask):
@@ -128,20 +128,20 @@ class _Checker(Scope):
         return result
 
     @staticmethod
-    def unread_sensors(values: Sequence[Value], read: int) -> tuple[int, ...]:
-        """Return the sensors in `values`, each once, in order, that `read` does not hold."""
-        expected: list[int] = []
+    def unread_sensors(values: Sequence[Value], sensors_read: int) -> tuple[int, ...]:
+        """Return the sensors in `values`, each once, in order, that are not in `sensors_read`."""
+        unread: list[int] = []
         for value in values:
             for sensor in value.sensors:
-                if not read >> sensor & 1 and sensor not in expected:
-                    expected.append(sensor)
-        return tuple(expected)
+                if not sensors_read >> sensor & 1 and sensor not in unread:
+                    unread.append(sensor)
+        return tuple(unread)
 
     # -- instructions -------------------------------------------------------------------------
 
     def assign(self, node: ast.Assign, output: list[Statement]) -> None:
         name = self.names.get(node.name)
-        if name is not None and name.what in ("sensor", "actuator"):
+        if name is not None and name.kind in ("sensor", "actuator"):
             self.wrong.report_device_set(node, name)
             return
         if node.name in self.def_names:
@@ -154,13 +154,13 @@ class _Checker(Scope):
         value = self.types.value(node.value, node.name if name is None else None)
         self.check_stack_fits([value], node.span)
         number = self.variable(node, value) if name is None else name.number
-        known = self.types.variable_names[number]
-        if ANY not in (known, value.type) and known != value.type:
+        known_type = self.types.variable_names[number]
+        if ANY not in (known_type, value.type) and known_type != value.type:
             free = self.wrong.free_name(node.name, self.procedures)
             other = f"{free} = {self.source[node.value.span]}"
             self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
-                        old="@" + known, new="@" + value.type)  # fmt: skip
-        self.take([value], node.span, output)
+                        old="@" + known_type, new="@" + value.type)  # fmt: skip
+        self.add_readings([value], node.span, output)
         output.append(ir.Assign(number, value.terms, node.span))
 
     def variable(self, node: ast.Assign, value: Value) -> int:
@@ -198,21 +198,21 @@ class _Checker(Scope):
             self.way(node, way)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
             expected = (WAYS[UNIT_OF[word.text]], *expected[1:])
-        text = len(self.diagnostics)
+        diagnostic_count = len(self.diagnostics)
         values = [
             self.types.value(argument)
             if spec is VALUE
             else self.number(argument, spec, word.text, (node, word))
             for argument, spec in zip(arguments[forever:], expected[forever:], strict=True)
         ]
-        if len(self.diagnostics) > text:
-            self.wrong.report_values(node, word, text)
+        if len(self.diagnostics) > diagnostic_count:
+            self.wrong.report_values(node, word, diagnostic_count)
         if word.stands_for:
-            if len(self.diagnostics) == text:
+            if len(self.diagnostics) == diagnostic_count:
                 self.spell_out(word, arguments, span, output)
             return
         self.check_stack_fits(values, span)
-        self.take(values, span, output)
+        self.add_readings(values, span, output)
         terms = [value.terms for value in values]
         if word.role.lasts:
             until = None if node.until is None else self.until(node.until)
@@ -227,9 +227,9 @@ class _Checker(Scope):
     ) -> None:
         """Make what the instructions make that a word stands for, with these values."""
         names = [argument.name.upper() for argument in word.arguments]
-        given = dict(zip(names, arguments, strict=True))
+        argument_of = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, given), output)
+            _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, argument_of), output)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -244,14 +244,14 @@ class _Checker(Scope):
         argument: ast.Argument,
         spec: Argument,
         word: str,
-        of: tuple[ast.Command, Word] | None = None,
+        called: tuple[ast.Command, Word] | None = None,
     ) -> Value:
-        """Check a number argument, `of` a command; a plain one must be in range."""
+        """Check a number argument, `called` a command; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not spec.low <= part.value <= spec.high:
-                self.wrong.report_out_of_range(argument.span, part.value, spec, word, of)
+                self.wrong.report_out_of_range(argument.span, part.value, spec, word, called)
         value = self.types.value(argument)
         if value.type == "yes_no":
             self.wrong.report_not_number(argument.span, word)
@@ -269,10 +269,10 @@ class _Checker(Scope):
         self.check_stack_fits([value], argument.span)
         return value
 
-    def report_not_condition(self, argument: ast.Argument, by: str) -> None:
+    def report_not_condition(self, argument: ast.Argument, asker: str) -> None:
         result = self.source[argument.span]
         values = self.types.wrong.condition(argument.span)
-        self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=result, **values)
+        self.report(codes.WANTS_CONDITION, argument.span, None, by=asker, found=result, **values)
 
     def check_stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
@@ -284,10 +284,10 @@ class _Checker(Scope):
         name = self.names.get(node.word)
         if name is None:
             self.wrong.report_unknown(node, self.inside)
-        elif node.arguments is not None and name.what not in _KINDS_WITH_VALUES:
+        elif node.arguments is not None and name.kind not in _KINDS_WITH_VALUES:
             self.wrong.report_not_callable(node)
         else:
-            _BY_NAME_KIND[name.what](self, node, name.number, output)
+            _BY_NAME_KIND[name.kind](self, node, name.number, output)
 
     def reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         output.append(ir.Read(number, node.span))
@@ -314,23 +314,25 @@ class _Checker(Scope):
         else:
             value = self.number(argument, word.arguments[0], device.name)
         self.check_stack_fits([value], node.span)
-        self.take([value], node.span, output)
+        self.add_readings([value], node.span, output)
         output.append(ir.Set(number, value.terms, node.span))
 
     def call(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         facts = self.facts[number]
-        if facts.calls + 1 + self.beside_calls > CALLS:
+        if facts.call_depth + 1 + self.beside_calls > CALLS:
             self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
-        self.calls = max(self.calls, facts.calls + 1)
-        depth = self.depth + facts.blocks
+        self.calls = max(self.calls, facts.call_depth + 1)
+        depth = self.depth + facts.block_depth
         if depth + self.beside_blocks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
-        self.give(node, self.procedures[number], output)
+        self.set_values(node, self.procedures[number], output)
         self.definitely_read_mask |= facts.definitely_read_mask
         output.append(ir.Call(number, node.span))
 
-    def give(self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]) -> None:
+    def set_values(
+        self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]
+    ) -> None:
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
@@ -351,7 +353,7 @@ class _Checker(Scope):
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
                             word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
         self.check_stack_fits(values, node.span)
-        self.take(values, node.span, output)
+        self.add_readings(values, node.span, output)
         for value, number in zip(values, procedure.values, strict=True):
             output.append(ir.Assign(number, value.terms, node.span))
 
@@ -391,21 +393,21 @@ class _Checker(Scope):
                 for sensor in reads:
                     chain |= 1 << sensor
             else:
-                chain = self.take([value], arm.span, output)
+                chain = self.add_readings([value], arm.span, output)
             body = self.nested_body(arm.body, False, arm.span)
             after &= self.definitely_read_mask
             self.definitely_read_mask = before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
-        otherwise = self.nested_body(node.otherwise, False, node.span)
+        else_body = self.nested_body(node.otherwise, False, node.span)
         self.definitely_read_mask &= after
-        output.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
+        output.append(ir.If(tuple(arms), else_body, node.span, node.has_else))
 
     def loop(self, node: ast.Loop, output: list[Statement]) -> None:
         count = None
         if node.times is not None:
             value = self.number(node.times, Argument("n", ""), "LOOP")
             self.check_stack_fits([value], node.times.span)
-            self.take([value], node.span, output)
+            self.add_readings([value], node.span, output)
             count = value.terms
         body = self.loop_body(node)
         output.append(ir.Loop(count, body, node.span))
@@ -424,14 +426,14 @@ class _Checker(Scope):
         output.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, output: list[Statement]) -> None:
-        known = self.names.get(node.name)
-        if known is not None:
-            code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
+        known_name = self.names.get(node.name)
+        if known_name is not None:
+            code = codes.DEF_TWICE if known_name.kind == "def" else codes.NAME_TAKEN
             other = self.wrong.free_name(node.name, self.procedures)
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
-        outside = self.enter_scope()
+        outer_scope = self.enter_scope()
         self.beside_blocks = self.beside_calls = 0
         self.inside = node.name
         values = self.parameters(node) if node.parameters else []
@@ -441,8 +443,8 @@ class _Checker(Scope):
                 del self.names[self.variables[number]]
         self.inside = None
         self.facts.append(_Procedure(self.definitely_read_mask, self.deepest, self.calls))
-        self.restore_scope(outside)
-        if known is None:
+        self.restore_scope(outer_scope)
+        if known_name is None:
             self.names[node.name] = Name("def", len(self.procedures))
         procedure = ir.Procedure(node.name, body, node.span, values=tuple(values))
         self.procedures.append(procedure)
@@ -454,14 +456,18 @@ class _Checker(Scope):
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
         parameters: list[int] = []
         for each, kind in zip(node.parameters, self.kinds.kinds_of(node), strict=True):
-            known = self.names.get(each.name)
-            is_free = known is None and each.name not in self.taken_names
-            parameters.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
-            if known is None:  # even if it is taken below: that is said once
+            known_name = self.names.get(each.name)
+            is_new_name = known_name is None and each.name not in self.taken_names
+            parameters.append(self.new_variable(each.name, each.span, kind if is_new_name else ANY))
+            if known_name is None:  # even if it is taken below: that is said once
                 self.names[each.name] = Name("variable", parameters[-1])
-            if is_free:
+            if is_new_name:
                 continue
-            if known is not None and known.what == "variable" and known.number in parameters:
+            if (
+                known_name is not None
+                and known_name.kind == "variable"
+                and known_name.number in parameters
+            ):
                 self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
             else:
                 other = self.wrong.free_name(each.name, self.procedures)
@@ -469,19 +475,19 @@ class _Checker(Scope):
         return parameters
 
     def task(self, node: ast.Task, output: list[Statement]) -> None:
-        outside = self.enter_scope()
-        self.beside_blocks += outside.blocks
-        self.beside_calls += outside.calls
-        look = None
+        outer_scope = self.enter_scope()
+        self.beside_blocks += outer_scope.block_depth
+        self.beside_calls += outer_scope.call_depth
+        until = None
         if node.is_when:
             nothing = ir.Until((), self.types.nothing.terms)
-            look = nothing if node.condition is None else self.until(node.condition, "WHEN")
+            until = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest, self.calls
-        self.restore_scope(outside)
+        self.restore_scope(outer_scope)
         self.beside_blocks += blocks
         self.beside_calls += calls
-        self.tasks.append(ir.Task(look, body, node.span))
+        self.tasks.append(ir.Task(until, body, node.span))
 
     def check_copies_fit(self, program: ir.Program) -> None:
         """Check that a machine has room for what each task has of its own."""
@@ -493,7 +499,7 @@ class _Checker(Scope):
 
     def enter_scope(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
-        outside = _Outside(
+        outer_scope = _Outside(
             self.definitely_read_mask,
             self.deepest,
             self.calls,
@@ -501,28 +507,28 @@ class _Checker(Scope):
             self.beside_calls,
         )
         self.definitely_read_mask = self.deepest = self.calls = 0
-        return outside
+        return outer_scope
 
-    def restore_scope(self, outside: _Outside) -> None:
+    def restore_scope(self, outer_scope: _Outside) -> None:
         (
             self.definitely_read_mask,
             self.deepest,
             self.calls,
             self.beside_blocks,
             self.beside_calls,
-        ) = outside
+        ) = outer_scope
 
 
-def _relocate(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+def _relocate(node: Any, span: Span, argument_of: Mapping[str, ast.Argument]) -> Any:
     """Return a part of a tree at another place, with what was given for the names in it."""
     if isinstance(node, Span):
         return span
     if isinstance(node, ast.Part):
         return node._replace(start=span.start, end=span.end)
-    if isinstance(node, ast.Argument) and node.expression[0].value in given:
-        return given[str(node.expression[0].value)]
+    if isinstance(node, ast.Argument) and node.expression[0].value in argument_of:
+        return argument_of[str(node.expression[0].value)]
     if isinstance(node, tuple):
-        parts = [_relocate(part, span, given) for part in node]
+        parts = [_relocate(part, span, argument_of) for part in node]
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
     return node
 

@@ -111,12 +111,12 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
         return "", ""
     is_exact = below.op == "LE" and above.op == "GE"
     if sign == "AND":
-        is_known = below.number < above.number or (below.number == above.number and not is_exact)
-        return ("answer_no", f"{one} OR {other}") if is_known else ("", "")
-    is_known = above.number < below.number or (
+        is_constant = below.number < above.number or (below.number == above.number and not is_exact)
+        return ("answer_no", f"{one} OR {other}") if is_constant else ("", "")
+    is_constant = above.number < below.number or (
         above.number == below.number and "E" in below.op + above.op
     )
-    return ("answer_yes", f"{one} AND {other}") if is_known else ("", "")
+    return ("answer_yes", f"{one} AND {other}") if is_constant else ("", "")
 
 
 def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:

@@ -24,14 +24,18 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     power = source[move.arguments[1].span]
     if not power.isdecimal():
         return {}
-    after = _after(program.body, move)
+    after = _instructions_after(program.body, move)
     first, second = (*after[:2], None, None)[:2]
     if isinstance(first, ast.Command) and first.word == "W" and _is_stop(second):
         time = source[first.arguments[0].span] if first.arguments else ""
-        until = f" UNTIL({source[first.until.span]})" if first.until else ""
-        if time and (until or time.upper() != "FOREVER"):
-            used = "; ".join(source[it.span] for it in (move, *after[:2]))
-            return {"used": used, "fix": "", "whole": f"{move.word}({time}, {power}){until}"}
+        until_text = f" UNTIL({source[first.until.span]})" if first.until else ""
+        if time and (until_text or time.upper() != "FOREVER"):
+            instructions_text = "; ".join(source[it.span] for it in (move, *after[:2]))
+            return {
+                "used": instructions_text,
+                "fix": "",
+                "whole": f"{move.word}({time}, {power}){until_text}",
+            }
     for item in after:
         if _is_stop(item):
             return {"used": source[move.span], "running": _MOTORS[move.word].format(power)}
@@ -40,7 +44,7 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     return {}
 
 
-def _after(body: Body, node: ast.Command) -> Body:
+def _instructions_after(body: Body, node: ast.Command) -> Body:
     """Return what comes after an instruction in its own block."""
     start = node.span.start
     while body:

@@ -16,13 +16,13 @@ from tiniscript.semantics.ways import way_ms
 
 
 class Duration(NamedTuple):
-    """Milliseconds from `least` to `most`, which is None without an upper bound.
+    """Milliseconds from `least_ms` to `most_ms`, which is None without an upper bound.
 
     `never_ends`: the program never ends by itself.
     """
 
-    least: int
-    most: int | None
+    least_ms: int
+    most_ms: int | None
     never_ends: bool = False
 
 
@@ -39,14 +39,14 @@ def duration(program: ir.Program, kit: Kit) -> Duration:
     result = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
     durations = [result.duration_of(body) for body in bodies]
-    least = max(one.least for one in durations)
-    if any(task.look is not None for task in program.tasks):
-        return Duration(least, None, True)
+    least_ms = max(one.least_ms for one in durations)
+    if any(task.until is not None for task in program.tasks):
+        return Duration(least_ms, None, True)
     if sum(result.drives(body) for body in bodies) > 1:
         return Duration(0, None)
-    bounds = [one.most for one in durations if one.most is not None]
-    most = max(bounds) if len(bounds) == len(durations) else None
-    return Duration(least, most, any(one.never_ends for one in durations))
+    bounds = [one.most_ms for one in durations if one.most_ms is not None]
+    most_ms = max(bounds) if len(bounds) == len(durations) else None
+    return Duration(least_ms, most_ms, any(one.never_ends for one in durations))
 
 
 class _Durations:
@@ -68,34 +68,34 @@ class _Durations:
         )
 
     def duration_of(self, body: ir.Body) -> Duration:
-        least, most = 0, 0
+        least_ms, most_ms = 0, 0
         for statement in body:
             part = self.statement(statement)
-            least += part.least
+            least_ms += part.least_ms
             if part.never_ends:
-                return Duration(least, None, True)
-            if part.most is None:
-                most = -1
-            elif most >= 0:
-                most += part.most
-        return Duration(least, None if most < 0 else most)
+                return Duration(least_ms, None, True)
+            if part.most_ms is None:
+                most_ms = -1
+            elif most_ms >= 0:
+                most_ms += part.most_ms
+        return Duration(least_ms, None if most_ms < 0 else most_ms)
 
     def statement(self, statement: ir.Statement) -> Duration:
         if isinstance(statement, ir.Move):
             if statement.time is None and statement.until is None:
                 return Duration(0, None, True)
             longest = self.way(statement) if statement.unit else _time(statement.time)
-            return longest if statement.until is None else Duration(0, longest.most)
+            return longest if statement.until is None else Duration(0, longest.most_ms)
         if isinstance(statement, ir.Beep):
             return _time(statement.time)
         if isinstance(statement, ir.Call):
             return self.known[statement.procedure]
         if isinstance(statement, ir.If):
             arms = [self.duration_of(body) for body in ir.bodies(statement)]
-            bounds = [arm.most for arm in arms if arm.most is not None]
-            most = max(bounds) if len(bounds) == len(arms) else None
+            bounds = [arm.most_ms for arm in arms if arm.most_ms is not None]
+            most_ms = max(bounds) if len(bounds) == len(arms) else None
             never_ends = all(arm.never_ends for arm in arms)
-            return Duration(min(arm.least for arm in arms), most, never_ends)
+            return Duration(min(arm.least_ms for arm in arms), most_ms, never_ends)
         if isinstance(statement, (ir.Loop, ir.While)):
             return self.loop(statement)
         return _NONE
@@ -113,15 +113,15 @@ class _Durations:
         if isinstance(loop, ir.Loop) and loop.times is None:
             return _UNKNOWN if ir.breaks_out(loop.body) else Duration(0, None, True)
         count = known_value(loop.times) if isinstance(loop, ir.Loop) else None
-        if body.least == 0 and body.most is not None:
-            body = body._replace(most=body.most + self.turn_ms)
+        if body.least_ms == 0 and body.most_ms is not None:
+            body = body._replace(most_ms=body.most_ms + self.turn_ms)
         if count is None:
-            return _UNKNOWN if isinstance(loop, ir.While) or body.most != 0 else _NONE
+            return _UNKNOWN if isinstance(loop, ir.While) or body.most_ms != 0 else _NONE
         times = max(whole(count), 0)
         if body.never_ends and times and not ir.breaks_out(loop.body):
-            return Duration(body.least, None, True)
-        most = None if body.most is None else times * body.most
-        return Duration(0 if ir.breaks_out(loop.body) else times * body.least, most)
+            return Duration(body.least_ms, None, True)
+        most_ms = None if body.most_ms is None else times * body.most_ms
+        return Duration(0 if ir.breaks_out(loop.body) else times * body.least_ms, most_ms)
 
 
 def _time(time: ir.Expression | None) -> Duration:

@@ -145,9 +145,9 @@ class Procedure(NamedTuple):
 
 
 class Task(NamedTuple):
-    """TASK, or a WHEN with the check `look`, beside the main task."""
+    """TASK, or a WHEN with the check `until`, beside the main task."""
 
-    look: Until | None
+    until: Until | None
     body: Body
     span: Span
 
@@ -234,9 +234,9 @@ def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
             result[statement.variable] = kit.readings[last.value].is_yes_no
         else:
             result[statement.variable] = last.op in _YES_NO_OPS
-    known = -1
-    while known < sum(result):  # a DEF may copy a variable that is set below it
-        known = sum(result)
+    known_count = -1
+    while known_count < sum(result):  # a DEF may copy a variable that is set below it
+        known_count = sum(result)
         for copy in copies:
             result[copy.variable] |= result[copy.value[-1].value]
     return result
@@ -259,8 +259,8 @@ def values_of(statement: Statement) -> dict[str, Expression]:
 def expressions(statement: Statement | Task) -> Iterator[Expression]:
     """Yield the expressions of a statement or a WHEN itself, not those of its blocks' bodies."""
     if isinstance(statement, Task):
-        if statement.look is not None:
-            yield statement.look.condition
+        if statement.until is not None:
+            yield statement.until.condition
         return
     yield from values_of(statement).values()
     if isinstance(statement, Move) and statement.until is not None:

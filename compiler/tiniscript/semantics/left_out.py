@@ -20,18 +20,20 @@ _MOST_CHARACTERS = 180  # characters that a message can show
 class LeftOut(NamedTuple):
     """The IF with the rest in its other branch: in one line, and as edits of the text."""
 
-    shown: str
+    text: str
     edits: tuple[Edit, ...]
 
 
-def rewrite_without_break(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | None:
+def rewrite_without_break(
+    source: Source, parsed_program: ast.Program, break_node: ast.Break
+) -> LeftOut | None:
     """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
     """
     bodies = [
-        parsed.body,
-        *(item.body for item in parsed.body if isinstance(item, (ast.Def, ast.Task))),
+        parsed_program.body,
+        *(item.body for item in parsed_program.body if isinstance(item, (ast.Def, ast.Task))),
     ]
     for body in bodies:
         for k, statement in enumerate(body):
@@ -39,49 +41,60 @@ def rewrite_without_break(source: Source, parsed: ast.Program, node: ast.Break) 
             if isinstance(statement, ast.If) and len(statement.arms) == 1 and rest:
                 if len(rest) != len(body) - k - 1:
                     continue  # a DEF among them goes into no block
-                if made := _rewrite_if(source, statement, rest, node):
-                    return made
+                if left_out := _rewrite_if(source, statement, rest, break_node):
+                    return left_out
     return None
 
 
 def _rewrite_if(
-    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], node: ast.Break
+    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], break_node: ast.Break
 ) -> LeftOut | None:
-    whole = Span(if_node.span.start, rest[-1].span.end)
+    whole_span = Span(if_node.span.start, rest[-1].span.end)
     arm = if_node.arms[0]
     branches = [[*arm.body], [*if_node.otherwise]]
-    last = [branch[-1] if branch else None for branch in branches]
-    if node not in last or arm.condition is None:
+    last_instructions = [branch[-1] if branch else None for branch in branches]
+    if break_node not in last_instructions or arm.condition is None:
         return None
-    ended = last.index(node)
-    said = [[source[each.span] for each in branch if each is not node] for branch in branches]
-    said[1 - ended] += [source[each.span] for each in rest]
-    said[0] = said[0] or ["S"]  # it stands still there
+    ended_branch = last_instructions.index(break_node)
+    branch_texts = [
+        [source[each.span] for each in branch if each is not break_node] for branch in branches
+    ]
+    branch_texts[1 - ended_branch] += [source[each.span] for each in rest]
+    branch_texts[0] = branch_texts[0] or ["S"]  # it stands still there
     head = f"IF({source[arm.condition.span]})"
-    parts = [head, *said[0], *(["ELSE", *said[1]] if said[1] else []), "ENDIF"]
-    shown = ";".join(" ".join(part.split("\n")) for part in parts)
-    if len(shown) > _MOST_CHARACTERS or any("\n" in part or "//" in part for part in parts):
+    parts = [
+        head,
+        *branch_texts[0],
+        *(["ELSE", *branch_texts[1]] if branch_texts[1] else []),
+        "ENDIF",
+    ]
+    text = ";".join(" ".join(part.split("\n")) for part in parts)
+    if len(text) > _MOST_CHARACTERS or any("\n" in part or "//" in part for part in parts):
         return None
-    if "//" in source[whole]:
-        return _with_notes(source, if_node, rest, node, shown)
-    between = "\n" if "\n" in source[whole] else "; " if "; " in source[whole] else ";"
-    return LeftOut(shown, (Edit(whole, between.join(parts)),))
+    if "//" in source[whole_span]:
+        return _with_notes(source, if_node, rest, break_node, text)
+    separator = "\n" if "\n" in source[whole_span] else "; " if "; " in source[whole_span] else ";"
+    return LeftOut(text, (Edit(whole_span, separator.join(parts)),))
 
 
 def _with_notes(
-    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], node: ast.Break, shown: str
+    source: Source,
+    if_node: ast.If,
+    rest: Sequence[ast.Instruction],
+    break_node: ast.Break,
+    text: str,
 ) -> LeftOut | None:
     """Return the same where lines have notes: each stays where it is, and ENDIF comes last."""
-    body, otherwise = if_node.arms[0].body, if_node.otherwise
+    body, else_body = if_node.arms[0].body, if_node.otherwise
     end = _END.search(source[if_node.span])
-    if node is not body[-1] or otherwise or end is None:
+    if break_node is not body[-1] or else_body or end is None:
         return None
-    here = if_node.span.start
+    start = if_node.span.start
     last = source.text.find("\n", rest[-1].span.end)
     last = last if last >= 0 else len(source.text)
     edits = (
-        Edit(node.span, "S" if len(body) == 1 else ""),
-        Edit(Span(here + end.start(), here + end.end()), "ELSE"),
+        Edit(break_node.span, "S" if len(body) == 1 else ""),
+        Edit(Span(start + end.start(), start + end.end()), "ELSE"),
         Edit(Span(last, last), "\nENDIF"),
     )
-    return LeftOut(shown, edits)
+    return LeftOut(text, edits)

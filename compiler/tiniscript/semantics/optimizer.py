@@ -42,12 +42,12 @@ def optimize_program(program: ir.Program) -> ir.Program:
     procedures = [
         procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
     ]
-    done = ir.walk_with_calls(sum((task.body for task in tasks), body), procedures)
-    called = {call.procedure for call in done if isinstance(call, ir.Call)}
-    used = tuple(
+    statements_left = ir.walk_with_calls(sum((task.body for task in tasks), body), procedures)
+    called = {call.procedure for call in statements_left if isinstance(call, ir.Call)}
+    procedures_left = tuple(
         procedure._replace(is_called=k in called) for k, procedure in enumerate(procedures)
     )
-    return program._replace(procedures=used, tasks=tasks, body=body)
+    return program._replace(procedures=procedures_left, tasks=tasks, body=body)
 
 
 def fold(expression: ir.Expression) -> ir.Expression:
@@ -65,22 +65,22 @@ def fold(expression: ir.Expression) -> ir.Expression:
             stack.append(_simplify(op, left, right))
         elif op in _UNARY:
             terms, is_safe_so_far = stack.pop()
-            folded = _calculate(op, terms, None) if _is_constant(terms) else None
-            if folded is None:
+            folded_terms = _calculate(op, terms, None) if _is_constant(terms) else None
+            if folded_terms is None:
                 terms.append(term)
-                folded, is_safe_so_far = terms, is_safe_so_far and op in SAFE_OPS
-            stack.append((folded, is_safe_so_far))
+                folded_terms, is_safe_so_far = terms, is_safe_so_far and op in SAFE_OPS
+            stack.append((folded_terms, is_safe_so_far))
         elif op in _BINARY or op == "RANDOM":
             (right_terms, right_safe), (terms, left_safe) = stack.pop(), stack.pop()
-            folded = None
+            folded_terms = None
             if op in _BINARY and _is_constant(terms) and _is_constant(right_terms):
-                folded = _calculate(op, terms, right_terms)
-            if folded is None:
+                folded_terms = _calculate(op, terms, right_terms)
+            if folded_terms is None:
                 terms.extend(right_terms)
                 terms.append(term)
                 stack.append((terms, left_safe and right_safe and op in SAFE_OPS))
             else:
-                stack.append((folded, True))
+                stack.append((folded_terms, True))
         else:
             stack.append(([term], op in SAFE_OPS))
     return tuple(stack[0][0])
@@ -167,10 +167,10 @@ def _body(body: ir.Body) -> ir.Body:
 
 
 def _task(task: ir.Task) -> ir.Task:
-    look = task.look
-    if look is not None:
-        look = look._replace(condition=fold(look.condition))
-    return task._replace(look=look, body=_body(task.body))
+    until = task.until
+    if until is not None:
+        until = until._replace(condition=fold(until.condition))
+    return task._replace(until=until, body=_body(task.body))
 
 
 def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
@@ -180,15 +180,17 @@ def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
         return _loop(statement)
     if isinstance(statement, ir.While):
         return _while(statement)
-    folded: dict[str, Any] = {name: fold(value) for name, value in ir.values_of(statement).items()}
+    folded_values: dict[str, Any] = {
+        name: fold(value) for name, value in ir.values_of(statement).items()
+    }
     if isinstance(statement, ir.Move) and statement.until is not None:
-        folded["until"] = statement.until._replace(condition=fold(statement.until.condition))
-    return (statement._replace(**folded) if folded else statement,)
+        folded_values["until"] = statement.until._replace(condition=fold(statement.until.condition))
+    return (statement._replace(**folded_values) if folded_values else statement,)
 
 
 def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
     arms: list[ir.Arm] = []
-    otherwise = _body(statement.otherwise)
+    else_body = _body(statement.otherwise)
     for arm in statement.arms:
         condition = fold(arm.condition)
         value = constant(condition)
@@ -196,22 +198,22 @@ def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
             continue
         body = _body(arm.body)
         if value == 1 and not arm.reads:
-            otherwise = body
+            else_body = body
             break
         arms.append(ir.Arm(arm.reads, condition, body, arm.span))
         if value == 1:
-            otherwise = ()
+            else_body = ()
             break
     if not arms:
-        return otherwise
+        return else_body
     if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
         reads = tuple(ir.Read(sensor, arms[0].span) for sensor in arms[0].reads)
-        rest = ir.If((arms[0]._replace(reads=()), *arms[1:]), otherwise, statement.span)
+        rest = ir.If((arms[0]._replace(reads=()), *arms[1:]), else_body, statement.span)
         return (*reads, *_optimize_if(rest))
-    if not otherwise and not any(arm.body or arm.reads for arm in arms):
+    if not else_body and not any(arm.body or arm.reads for arm in arms):
         if all(is_safe(arm.condition) for arm in arms):
             return ()
-    return (ir.If(tuple(arms), otherwise, statement.span),)
+    return (ir.If(tuple(arms), else_body, statement.span),)
 
 
 def _loop(loop: ir.Loop) -> tuple[ir.Statement, ...]:

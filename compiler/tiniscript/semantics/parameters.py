@@ -17,24 +17,24 @@ class _Place(NamedTuple):
     """An expression, and the DEF around it, where there is one."""
 
     expression: ast.Expression
-    around: ast.Def | None
+    enclosing_def: ast.Def | None
 
 
 class Kinds:
     """The kinds of the values of all DEFs of a program."""
 
-    def __init__(self, parsed: ast.Program, yes_no_sensors: frozenset[str]) -> None:
+    def __init__(self, parsed_program: ast.Program, yes_no_sensors: frozenset[str]) -> None:
         self._sensors = yes_no_sensors
         self._calls: dict[str, tuple[ast.Command, ast.Def | None]] = {}  # the first of each name
         self._set: dict[str, _Place] = {}  # what each variable gets first
-        defs = (each for each in parsed.body if isinstance(each, ast.Def))
+        defs = (each for each in parsed_program.body if isinstance(each, ast.Def))
         names = {each.name: [item.name for item in each.parameters] for each in defs}
-        for node, around in _instructions(parsed.body, None):
+        for node, enclosing_def in _instructions(parsed_program.body, None):
             if isinstance(node, ast.Command):
                 if not names_one(node, names.get(node.word, ())):  # which is told of
-                    self._calls.setdefault(node.word, (node, around))
-            elif node.value is not None and _parameter(node.name, around) is None:
-                self._set.setdefault(node.name, _Place(node.value.expression, around))
+                    self._calls.setdefault(node.word, (node, enclosing_def))
+            elif node.value is not None and _parameter(node.name, enclosing_def) is None:
+                self._set.setdefault(node.name, _Place(node.value.expression, enclosing_def))
 
     def kinds_of(self, node: ast.Def) -> list[str]:
         """Return NUMBER or YES_NO for each value of a DEF."""
@@ -42,19 +42,19 @@ class Kinds:
 
     def _kind_of(self, place: _Place | None) -> str:
         """Follow a name to what it gets its kind from; in a circle it is a number."""
-        seen: set[tuple[str, str]] = set()
+        names_followed: set[tuple[str, str]] = set()
         while place is not None:
-            last, around = place.expression[-1], place.around
+            last, enclosing_def = place.expression[-1], place.enclosing_def
             if last.op != "NAME":
                 return YES_NO if last.op in YES_NO_OPS else NUMBER
             name = str(last.value)
-            k = _parameter(name, around)
-            key = (name, "" if around is None or k is None else around.name)
-            if key in seen:
+            k = _parameter(name, enclosing_def)
+            key = (name, "" if enclosing_def is None or k is None else enclosing_def.name)
+            if key in names_followed:
                 break
-            seen.add(key)
-            if around is not None and k is not None:
-                place = self._parameter_place(around, k)
+            names_followed.add(key)
+            if enclosing_def is not None and k is not None:
+                place = self._parameter_place(enclosing_def, k)
             elif name in self._sensors:
                 return YES_NO
             else:
@@ -76,23 +76,25 @@ def names_one(call: ast.Command, names: Sequence[str]) -> bool:
     )
 
 
-def _parameter(name: str, around: ast.Def | None) -> int | None:
-    names = [] if around is None else [parameter.name for parameter in around.parameters]
+def _parameter(name: str, enclosing_def: ast.Def | None) -> int | None:
+    names = (
+        [] if enclosing_def is None else [parameter.name for parameter in enclosing_def.parameters]
+    )
     return names.index(name) if name in names else None
 
 
 def _instructions(
-    body: Sequence[ast.Instruction], around: ast.Def | None
+    body: Sequence[ast.Instruction], enclosing_def: ast.Def | None
 ) -> Iterator[tuple[ast.Command | ast.Assign, ast.Def | None]]:
     """Yield the commands and assignments of a body in the order of the text."""
     for node in body:
         if isinstance(node, (ast.Command, ast.Assign)):
-            yield node, around
+            yield node, enclosing_def
         elif isinstance(node, ast.If):
             for arm in node.arms:
-                yield from _instructions(arm.body, around)
-            yield from _instructions(node.otherwise, around)
+                yield from _instructions(arm.body, enclosing_def)
+            yield from _instructions(node.otherwise, enclosing_def)
         elif isinstance(node, ast.Def):
             yield from _instructions(node.body, node)
         elif not isinstance(node, ast.Break):
-            yield from _instructions(node.body, around)
+            yield from _instructions(node.body, enclosing_def)

@@ -24,7 +24,7 @@ MOST_SUGGESTIONS = 100  # mistakes after which a suggestion helps nobody
 class Name(NamedTuple):
     """What a name stands for: a sensor, an actuator, a variable or a DEF, by its number."""
 
-    what: str
+    kind: str
     number: int
 
 
@@ -38,7 +38,7 @@ class Operand(NamedTuple):
 
 
 class Scope:
-    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
+    def __init__(self, source: Source, kit: Kit, parsed_program: ast.Program) -> None:
         self.source = source
         self.kit = kit
         self.diagnostics: list[Diagnostic] = []
@@ -51,43 +51,44 @@ class Scope:
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self._first = {
-            assignment.name: assignment for assignment in reversed(_assignments(parsed.body))
+            assignment.name: assignment
+            for assignment in reversed(_assignments(parsed_program.body))
         }
         self.set_somewhere = self._first.keys()
-        self.parsed = parsed
-        self.def_names = {item.name for item in parsed.body if isinstance(item, ast.Def)}
+        self.parsed = parsed_program
+        self.def_names = {item.name for item in parsed_program.body if isinstance(item, ast.Def)}
         self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def report_used(self, name: str, used: Span, suggestion: str) -> None:
+    def report_used(self, name: str, use_span: Span, suggestion: str) -> None:
         """Say that `name` is used before it has a value, and how it gets one first."""
-        said = self._line_to_move_up(name, used)
+        hints = self._line_to_move_up(name, use_span)
         body = self.parsed.body
-        around = next((item for item in body if item.span.end > used.start), body[0])
-        row = self.source.position(around.span.start)[0]
-        if said["line"] and row < self.source.position(used.start)[0]:
-            said = {**said, "row": str(row)}  # inside a block it would be done again and again
-        begin = (around if said["line"] else body[0]).span.start
-        value = said["first"] or said["before"] or f"{name} = {said['zero']}"
+        enclosing = next((item for item in body if item.span.end > use_span.start), body[0])
+        row = self.source.position(enclosing.span.start)[0]
+        if hints["line"] and row < self.source.position(use_span.start)[0]:
+            hints = {**hints, "row": str(row)}  # inside a block it would be done again and again
+        begin = (enclosing if hints["line"] else body[0]).span.start
+        value = hints["first"] or hints["before"] or f"{name} = {hints['zero']}"
         between = "\n" if "\n" in self.source.text else "; "
         edits = [Edit(Span(begin, begin), value + between)]
-        if said["line"]:
-            edits.append(Edit(self.source.line_span(int(said["line"])), ""))
-        values = {"name": name, "near": suggestion, **said}
+        if hints["line"]:
+            edits.append(Edit(self.source.line_span(int(hints["line"])), ""))
+        values = {"name": name, "near": suggestion, **hints}
         repair = Repair(tuple(edits), False)
-        self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, used, values, None, repair))
+        self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, use_span, values, None, repair))
 
-    def _line_to_move_up(self, name: str, used: Span) -> dict[str, str]:
+    def _line_to_move_up(self, name: str, use_span: Span) -> dict[str, str]:
         """Return the number and the text of the later line that only gives `name` a number."""
-        here = self.source.position(used.start)[0]
+        use_line = self.source.position(use_span.start)[0]
         for node in self.parsed.body:
             if isinstance(node, ast.Assign) and node.name == name and node.value is not None:
                 line = self.source.position(node.span.start)[0]
                 text = self.source.line_text(line).strip()
-                is_alone = text == self.source[node.span].strip()
-                if line > here and is_alone and node.value.is_plain:
+                is_whole_line = text == self.source[node.span].strip()
+                if line > use_line and is_whole_line and node.value.is_plain:
                     return {"line": str(line), "first": text}
                 break
         zero = "FALSE" if self._is_yes_no(name) else "0"
@@ -110,16 +111,16 @@ class Scope:
     def is_yes_no_sensor(self, name: str) -> bool:
         return name in self.yes_no_sensors
 
-    def nearest_word(self, word: str, known: Iterable[str]) -> str:
+    def nearest_word(self, word: str, known_words: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first MOST_SUGGESTIONS mistakes.
 
-        After that `known` is not searched, so that a long program with many mistakes stays fast.
+        After that `known_words` is not searched: a long program with many mistakes stays fast.
         """
         if len(self.diagnostics) >= MOST_SUGGESTIONS:
             return ""
         from tiniscript.base.spelling import nearest
 
-        return nearest(word, known) or ""
+        return nearest(word, known_words) or ""
 
 
 def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
@@ -133,9 +134,11 @@ def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
                 assignments += _assignments(arm.body)
             assignments += _assignments(node.otherwise)
         elif isinstance(node, ast.Def):
-            own = {parameter.name for parameter in node.parameters}
+            parameter_names = {parameter.name for parameter in node.parameters}
             assignments += (
-                assignment for assignment in _assignments(node.body) if assignment.name not in own
+                assignment
+                for assignment in _assignments(node.body)
+                if assignment.name not in parameter_names
             )
         elif isinstance(node, (ast.Loop, ast.While, ast.Task)):
             assignments += _assignments(node.body)

@@ -16,33 +16,37 @@ from tiniscript.semantics import ir
 
 def copy_defs_per_task(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
-    reached = _reachable_defs(program)
+    reachable_defs = _reachable_defs(program)
     owns = _owns_values(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
-    maps = [_Numbers({}, {}) for _ in reached]
+    maps = [_Numbers({}, {}) for _ in reachable_defs]
     for k, procedure in enumerate(program.procedures):
-        its_tasks = [task for task, found in enumerate(reached) if k in found]
-        if not owns[k] or len(its_tasks) < 2:
-            for own in maps:
-                own.calls[k] = len(procedures)
+        tasks_reaching = [
+            task for task, defs_reached in enumerate(reachable_defs) if k in defs_reached
+        ]
+        if not owns[k] or len(tasks_reaching) < 2:
+            for numbers in maps:
+                numbers.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
-            procedures.append(_copy_procedure(procedure, maps[its_tasks[0] if its_tasks else 0]))
+            procedures.append(
+                _copy_procedure(procedure, maps[tasks_reaching[0] if tasks_reaching else 0])
+            )
             continue
-        for task in its_tasks:
-            own = maps[task]
-            if task != its_tasks[0]:
+        for task in tasks_reaching:
+            numbers = maps[task]
+            if task != tasks_reaching[0]:
                 for variable in procedure.values:
-                    own.variables[variable] = len(variables)
+                    numbers.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
-            own.calls[k] = len(procedures)
-            procedures.append(_copy_procedure(procedure, own))
-        for own in maps:  # of a DEF that nobody calls: it calls the first copy
-            own.calls.setdefault(k, maps[its_tasks[0]].calls[k])
+            numbers.calls[k] = len(procedures)
+            procedures.append(_copy_procedure(procedure, numbers))
+        for numbers in maps:  # of a DEF that nobody calls: it calls the first copy
+            numbers.calls.setdefault(k, maps[tasks_reaching[0]].calls[k])
     main, *others = maps
     tasks = tuple(
-        task._replace(body=_body(task.body, own))
-        for task, own in zip(program.tasks, others, strict=True)
+        task._replace(body=_body(task.body, numbers))
+        for task, numbers in zip(program.tasks, others, strict=True)
     )
     return program._replace(
         variables=tuple(variables), procedures=tuple(procedures),
@@ -55,24 +59,26 @@ class Excess(NamedTuple):
 
     procedure: int
     tasks: tuple[int, ...]
-    what: str  # "variables" or "defs"
+    resource: str  # "variables" or "defs"
     total: int  # with all copies
     limit: int
 
 
 def find_excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, reached = _owns_values(program), _reachable_defs(program)
+    owns, reachable_defs = _owns_values(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
     for k, procedure in enumerate(program.procedures):
-        its_tasks = tuple(task for task, found in enumerate(reached) if k in found)
-        if owns[k] and len(its_tasks) > 1:
-            variables += (len(its_tasks) - 1) * len(procedure.values)
-            defs += len(its_tasks) - 1
+        tasks_reaching = tuple(
+            task for task, defs_reached in enumerate(reachable_defs) if k in defs_reached
+        )
+        if owns[k] and len(tasks_reaching) > 1:
+            variables += (len(tasks_reaching) - 1) * len(procedure.values)
+            defs += len(tasks_reaching) - 1
             if variables > VARIABLES:
-                return Excess(k, its_tasks, "variables", variables, VARIABLES)
+                return Excess(k, tasks_reaching, "variables", variables, VARIABLES)
             if defs > DEFS:
-                return Excess(k, its_tasks, "defs", defs, DEFS)
+                return Excess(k, tasks_reaching, "defs", defs, DEFS)
     return None
 
 

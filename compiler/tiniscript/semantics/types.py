@@ -84,14 +84,14 @@ class Types:
         name = scope.names.get(part.value)
         if name is None:
             self.wrong.report_unknown(part, part.value, target)
-        elif name.what == "variable":
+        elif name.kind == "variable":
             value_type, term = self.variable_names[name.number], Term("VARIABLE", name.number)
-        elif name.what == "sensor":
+        elif name.kind == "sensor":
             sensors.append(name.number)
             value_type = YES_NO if self.readings[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
-            text = {"device": part.value} if name.what == "actuator" else {}
+            text = {"device": part.value} if name.kind == "actuator" else {}
             span = Span(part.start, part.end)
             scope.report(codes.NO_VALUE, span, None, word=part.value, **text)
         stack.append(Operand(value_type, 1, part.start, part.end))
@@ -132,7 +132,7 @@ class Types:
         if operand.type == YES_NO:
             self.wrong.report_not_number(op, operand)
 
-    def _require_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
+    def _require_yes_no(self, asker: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
         if operand.type == NUMBER:
-            self.wrong.report_not_yes_no(by, operand, other)
+            self.wrong.report_not_yes_no(asker, operand, other)

@@ -32,10 +32,10 @@ _TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
 MOST_REPETITIONS = 20  # that a DEF is done by hand in a class
 
 
-def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
-    """Report a command that is neither a word nor a known name; `inside` is the DEF around it."""
+def report_unknown(scope: Scope, node: ast.Command, def_name: str | None) -> None:
+    """Report a command that is neither word nor known name; `def_name` is the DEF around it."""
     word, span = node.word, node.word_span
-    if word == inside:
+    if word == def_name:
         scope.report(codes.CALLS_ITSELF, span, name=word)
     elif word in scope.def_names:
         scope.report(codes.CALL_BEFORE_DEF, span, name=word)
@@ -52,18 +52,18 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
     that is meant.
     """
     word, arguments = node.word, node.arguments or ()
-    given = [scope.source[argument.span].upper() for argument in arguments]
-    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in given]
+    value_texts = [scope.source[argument.span].upper() for argument in arguments]
+    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in value_texts]
     is_light = (
         lexicon_meaning(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
     )
     if word == _LAMP_NAME or not (lexicon_concept(word) == _LAMP_NAME or is_light):
         return False
-    said = {"lamp": word}
+    values = {"lamp": word}
     if any(device.name == _LAMP_NAME and device.is_yes_no for device in scope.kit.actuators):
         answer = answers[0] if len(answers) == 1 and answers[0] else "TRUE"
-        said |= {"switch": _LAMP_NAME, "fix": f"{_LAMP_NAME}({answer})"}
-    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **said)
+        values |= {"switch": _LAMP_NAME, "fix": f"{_LAMP_NAME}({answer})"}
+    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **values)
     return True
 
 
@@ -75,8 +75,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     suggestion = suggestion or scope.nearest_word(
         word, chain(commands, scope.names, scope.def_names)
     )
-    is_own = suggestion in scope.set_somewhere or suggestion in scope.def_names
-    if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+    is_own_name = suggestion in scope.set_somewhere or suggestion in scope.def_names
+    if is_own_name and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
@@ -94,10 +94,10 @@ def _initial(word: str, text: str) -> list[str]:
     `A(2, 70)` is F beside `D(1, 50)`, which only in Spanish and Portuguese is a command: forward is
     `adelante` there. Beside an F of its own it is none.
     """
-    said = lexicon_meaning(word, "initial")
-    calls = {match.upper() for match in _LETTER.findall(text)} if said else set()
+    commands = lexicon_meaning(word, "initial")
+    calls = {match.upper() for match in _LETTER.findall(text)} if commands else set()
     is_other = any(expand_short(other) for other in calls - {word} if other not in WORDS)
-    return [*said] if is_other and not calls.intersection(said) else []
+    return [*commands] if is_other and not calls.intersection(commands) else []
 
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int) -> None:
@@ -110,13 +110,13 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int)
 
 def report_words_shown(scope: Scope, count: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `count`."""
-    shown = dict.fromkeys(
+    words_shown = dict.fromkeys(
         diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_SUGGESTIONS]
     )
     for k, each in enumerate(scope.diagnostics[count:], count):
         if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
             name = each.values["found"]
-            number = str(len([*takewhile(name.__ne__, filter(None, shown))]) + 1)
+            number = str(len([*takewhile(name.__ne__, filter(None, words_shown))]) + 1)
             is_word = len(name) > 2 and name.isalpha() and not value_of(name)
             said_as = {"meaning": name, "number": number} if is_word else {}
             scope.diagnostics[k] = each._replace(values={**each.values, "shown": name, **said_as})
@@ -129,8 +129,8 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= MOST_SUGGESTIONS:
         return ""
-    matches = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
-    return matches[0] if len(matches) == 1 else ""
+    whole_names = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
+    return whole_names[0] if len(whole_names) == 1 else ""
 
 
 def _is_shortened(one: str, other: str) -> bool:

@@ -77,8 +77,8 @@ class WrongCalls:
         self.scope = scope
         self._free: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
 
-    def report_unknown(self, node: ast.Command, inside: str | None) -> None:
-        report_unknown(self.scope, node, inside)
+    def report_unknown(self, node: ast.Command, def_name: str | None) -> None:
+        report_unknown(self.scope, node, def_name)
 
     def report_not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
@@ -98,11 +98,11 @@ class WrongCalls:
         """A DEF with values is compiled once for each task that reaches it."""
         procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
-        begin = [program.body[0].span, *(task.span for task in program.tasks)]
-        lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
+        block_starts = [program.body[0].span, *(task.span for task in program.tasks)]
+        lines = [self.scope.source.position(block_starts[k].start)[0] for k in excess.tasks]
         values = {
             "count": str(len(lines)),
-            excess.what: str(excess.total),
+            excess.resource: str(excess.total),
             "limit": str(excess.limit),
         }
         if len({*lines}) > 1:
@@ -115,8 +115,8 @@ class WrongCalls:
         source = self.scope.source
         start = _start_of_until(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
-        own = self.scope.names.get(node.word)
-        role = word.role.name if word else own.what if own else "def"
+        own_name = self.scope.names.get(node.word)
+        role = word.role.name if word else own_name.kind if own_name else "def"
         text = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
         example = text.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
@@ -124,12 +124,12 @@ class WrongCalls:
 
     def report_break_outside(self, node: ast.Break) -> None:
         """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
-        found = rewrite_without_break(self.scope.source, self.scope.parsed, node)
-        if found is None:
+        left_out = rewrite_without_break(self.scope.source, self.scope.parsed, node)
+        if left_out is None:
             self.scope.report(codes.BREAK_OUTSIDE, node.span)
             return
-        values = {"fix": found.shown}
-        repair = Repair(found.edits, False)
+        values = {"fix": left_out.text}
+        repair = Repair(left_out.edits, False)
         self.scope.diagnostics.append(
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )
@@ -138,8 +138,8 @@ class WrongCalls:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
         fix = f"{source[node.span]} UNTIL({next_condition(source, node.span)})"
-        said = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
-        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **said)
+        values = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
+        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **values)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
         source = self.scope.source
@@ -169,34 +169,34 @@ class WrongCalls:
         start = node.span.start
         before, after = Span(start, unit.start), Span(unit.end, node.span.end)
         fix = f"{self.scope.source[before]}{right}{self.scope.source[after]}"
-        said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
+        values = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
-        said["other"] = called + self.scope.source[node.span][len(node.word) :]
-        is_early = len(self.scope.diagnostics) < MOST_SUGGESTIONS
-        pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_early else ()
-        others = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
-        for one, other in (others, others[::-1]) if len(others) == 2 else ():
+        values["other"] = called + self.scope.source[node.span][len(node.word) :]
+        is_among_first = len(self.scope.diagnostics) < MOST_SUGGESTIONS
+        pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_among_first else ()
+        wrong_pairs = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
+        for one, other in (wrong_pairs, wrong_pairs[::-1]) if len(wrong_pairs) == 2 else ():
             if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
                 rest = self.scope.source[Span(unit.end, node.span.end)]
-                said["swapped"] = f"{node.word}({other[2]} {right}{rest}"
-                said["line"] = str(self.scope.source.position(other.start())[0])
-        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **said)
+                values["swapped"] = f"{node.word}({other[2]} {right}{rest}"
+                values["line"] = str(self.scope.source.position(other.start())[0])
+        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **values)
 
-    def report_values(self, node: ast.Command, word: Word, said: int) -> None:
-        """Say more of values that have had diagnostics since there were `said`."""
+    def report_values(self, node: ast.Command, word: Word, diagnostic_count: int) -> None:
+        """Say more of values that have had diagnostics since there were `diagnostic_count`."""
         if VALUE in word.arguments:
-            report_words_shown(self.scope, said)
-        report_placeholders(self.scope, node, word, said)
+            report_words_shown(self.scope, diagnostic_count)
+        report_placeholders(self.scope, node, word, diagnostic_count)
 
     def report_out_of_range(
         self, span: Span, number: int, spec: Argument, word: str,
-        of: tuple[ast.Command, Word] | None,
+        called: tuple[ast.Command, Word] | None,
     ) -> None:  # fmt: skip
-        """`number`, in thousandths, is a value of the command `of`, if of one."""
+        """`number`, in thousandths, is a value of the command `called`, if of one."""
         low, high = as_text(spec.low), "" if spec.high == HIGHEST else as_text(spec.high)
-        text = {} if of is None else repair_values(self.scope.source, *of)
+        text = {} if called is None else repair_values(self.scope.source, *called)
         text |= {"low": low, "high": high, "found": as_text(number)}
-        place = None if of is None else _without_until(self.scope.source, of[0])
+        place = None if called is None else _without_until(self.scope.source, called[0])
         self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=spec.name,
                           unit=spec.unit, **text)  # fmt: skip
 
@@ -212,11 +212,11 @@ class WrongCalls:
     def report_device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
         value = "5" if node.value is None else self.scope.source[node.value.span]
-        said = {"name": node.name, "value": value}
-        if device.what == "actuator":
+        values = {"name": node.name, "value": value}
+        if device.kind == "actuator":
             is_yes_no = self.scope.kit.actuators[device.number].is_yes_no
-            said["value"] = (is_yes_no and yes_no_of(value.upper())) or value
-            self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
+            values["value"] = (is_yes_no and yes_no_of(value.upper())) or value
+            self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **values)
             return
         sensor = self.scope.kit.readings[device.number]
         if _NUMBER.fullmatch(value) and (travel := self._travel(node, sensor, value)):
@@ -224,8 +224,8 @@ class WrongCalls:
             return
         if value.isdecimal() and looks_ahead(sensor):
             until = f"UNTIL({node.name} < {value})"
-            said |= {"until": until, "example": f"F(5, 60) {until}"}
-        self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
+            values |= {"until": until, "example": f"F(5, 60) {until}"}
+        self.scope.report(codes.SENSOR_SET, node.name_span, None, **values)
 
     def _travel(self, node: ast.Assign, sensor: Device, value: str) -> Diagnostic | None:
         """`DISTANCE = 90;F(DISTANCE, 80)`: so many centimetres are driven, F(90 CM, 80).
@@ -233,8 +233,8 @@ class WrongCalls:
         A move that goes by another unit, or a robot that knows none, gets its own number.
         """
         text, end = self.scope.source.text, node.span.end
-        again = re.compile(rf"(?i)(?:^|[;|\n])[ \t]*{node.name}[ \t]*=").search(text, end)
-        last = again.start() if again else len(text)
+        next_match = re.compile(rf"(?i)(?:^|[;|\n])[ \t]*{node.name}[ \t]*=").search(text, end)
+        last = next_match.start() if next_match else len(text)
         pattern = re.compile(
             rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name}(?:[ \t]+(?:CM|DEG))?)[ \t]*,[^()\n]*\)"
         )
@@ -242,22 +242,29 @@ class WrongCalls:
         unit, factor = _WAY_BY_UNIT.get(sensor.unit.lower(), ("", Fraction()))
         if not uses or not unit:
             return None
-        said = {"name": node.name, "value": value, "used": uses[0][0]}
-        words = {use[1].upper() for use in uses}
+        values = {"name": node.name, "value": value, "used": uses[0][0]}
+        words = {call_match[1].upper() for call_match in uses}
         other = min((word for word in words if UNIT_OF[word] != unit), default="")
         if other or not self._has_way(unit):
-            said |= {"word": other or min(words), "unit": unit}
+            values |= {"word": other or min(words), "unit": unit}
             if other and self._has_way(UNIT_OF[other]):
-                use = next(use for use in uses if use[1].upper() == other)
-                said |= {"used": use[0], "other": _with_first(use, f"{value} {UNIT_OF[other]}")}
-            return Diagnostic(codes.SENSOR_SET, node.name_span, said)
+                call_match = next(
+                    call_match for call_match in uses if call_match[1].upper() == other
+                )
+                values |= {
+                    "used": call_match[0],
+                    "other": _with_first(call_match, f"{value} {UNIT_OF[other]}"),
+                }
+            return Diagnostic(codes.SENSOR_SET, node.name_span, values)
         way = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
-        if len({use[0] for use in uses}) > 1:
-            said["ways"] = "; ".join(dict.fromkeys(_with_first(use, way) for use in uses))
+        if len({call_match[0] for call_match in uses}) > 1:
+            values["ways"] = "; ".join(
+                dict.fromkeys(_with_first(call_match, way) for call_match in uses)
+            )
         edits = [Edit(_with_separator(self.scope.source, node.span), "")]
-        edits += [Edit(Span(*use.span(2)), way) for use in uses]
-        said["way"] = _with_first(uses[0], way)
-        return Diagnostic(codes.SENSOR_SET, node.name_span, said, None, Repair((*edits,), False))
+        edits += [Edit(Span(*call_match.span(2)), way) for call_match in uses]
+        values["way"] = _with_first(uses[0], way)
+        return Diagnostic(codes.SENSOR_SET, node.name_span, values, None, Repair((*edits,), False))
 
     def _has_way(self, unit: str) -> bool:
         return bool(self.scope.kit.speed if unit == "CM" else self.scope.kit.turn)
@@ -265,28 +272,30 @@ class WrongCalls:
     def report_named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
         texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
-        named = [_NAMED_VALUE.fullmatch(text) for text in texts]
-        given = {it[1].upper(): it[2] for it in named if it}
-        rest = [text for text, it in zip(texts, named, strict=True) if it is None]
-        free = [name for name in names if name not in given]
+        named_matches = [_NAMED_VALUE.fullmatch(text) for text in texts]
+        value_of = {it[1].upper(): it[2] for it in named_matches if it}
+        rest = [text for text, it in zip(texts, named_matches, strict=True) if it is None]
+        free_names = [name for name in names if name not in value_of]
         if (
-            not given
-            or not given.keys() <= {*names} - {*self.scope.names}
-            or len(free) != len(rest)
+            not value_of
+            or not value_of.keys() <= {*names} - {*self.scope.names}
+            or len(free_names) != len(rest)
         ):
             return False
-        given |= dict(zip(free, rest, strict=True))
-        fix = f"{node.word}({', '.join(given[name] for name in names)})"
+        value_of |= dict(zip(free_names, rest, strict=True))
+        fix = f"{node.word}({', '.join(value_of[name] for name in names)})"
         self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
         return True
 
     def report_def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
         other = self.free_name(node.name, procedures)
-        known = next((procedure for procedure in procedures if procedure.name == node.name), None)
+        called_def = next(
+            (procedure for procedure in procedures if procedure.name == node.name), None
+        )
         as_value = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
         is_value = re.search(as_value, self.scope.source.text)
-        if known is None or len(known.values) != 1 or node.value is None or is_value:
+        if called_def is None or len(called_def.values) != 1 or node.value is None or is_value:
             self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
             return
         fix = f"{node.name}({self.scope.source[node.value.span]})"
@@ -296,18 +305,18 @@ class WrongCalls:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
         if name not in self._free:
             self._free[name] = (numbered_names(self.scope.source.text, name), [])
-        others, found = self._free[name]
+        candidates, free_names = self._free[name]
         k = max(
             0, sum(procedure.name == name for procedure in procedures) - 1
         )  # these got one already
-        found += islice(others, max(0, k + 1 - len(found)))
-        return found[k]
+        free_names += islice(candidates, max(0, k + 1 - len(free_names)))
+        return free_names[k]
 
 
-def _with_first(use: re.Match[str], value: str) -> str:
+def _with_first(call_match: re.Match[str], value: str) -> str:
     """Return a call with this value in place of the group 2."""
-    start, end = (place - use.start() for place in use.span(2))
-    return use[0][:start] + value + use[0][end:]
+    start, end = (place - call_match.start() for place in call_match.span(2))
+    return call_match[0][:start] + value + call_match[0][end:]
 
 
 def _with_separator(source: Source, span: Span) -> Span:
@@ -343,10 +352,10 @@ def next_condition(source: Source, span: Span) -> str:
     """
     if match := _NEXT_QUESTION.match(source.text, span.end):
         return match[1].strip()
-    own = _NEAR_QUESTION.search(source.text, span.end) or _NEAR_QUESTION.search(
+    question_match = _NEAR_QUESTION.search(source.text, span.end) or _NEAR_QUESTION.search(
         source.text, 0, span.start
     )
-    return " ".join(own.groups()) if own else "DISTANCE < 10"
+    return " ".join(question_match.groups()) if question_match else "DISTANCE < 10"
 
 
 def _until_of(source: Source, span: Span) -> re.Match[str] | None:
@@ -380,8 +389,8 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
     elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
-            shown = ", ".join(text.lstrip("- ") for text in texts)
-            values["fix"] = f"{OPPOSITE_MOVES[word.text]}({shown})"
+            values_text = ", ".join(text.lstrip("- ") for text in texts)
+            values["fix"] = f"{OPPOSITE_MOVES[word.text]}({values_text})"
         elif word.text == "B" and is_short and _is_note(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:
@@ -399,7 +408,9 @@ def _is_note(text: str) -> bool:
     return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 
 
-def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
+def _count_values(
+    texts: Sequence[str], word: Word, until_match: re.Match[str] | None
+) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 
@@ -413,8 +424,10 @@ def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None)
         result["long"] = _call(word, [texts[0], word.arguments[1].sample])
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _HIGHEST_POWER:
         result["power"] = _call(word, [TIME.sample, texts[0]])
-        if until is not None:
-            result["endless"] = f"{word.text}(FOREVER, {texts[0]}) {until[0].strip().rstrip(';')}"
+        if until_match is not None:
+            result["endless"] = (
+                f"{word.text}(FOREVER, {texts[0]}) {until_match[0].strip().rstrip(';')}"
+            )
         result["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ

@@ -55,10 +55,12 @@ class WrongValues:
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
         names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
-        known = [each for each, meaning in names if meaning.what in ("sensor", "variable")]
+        known_names = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
-        known += ["FOREVER"] if is_forever else []
-        suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(name, known)
+        known_names += ["FOREVER"] if is_forever else []
+        suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(
+            name, known_names
+        )
         suggestion = suggestion or (
             "".join(lexicon_meaning(name, "power")) if before.rstrip().endswith("=") else ""
         )
@@ -69,35 +71,40 @@ class WrongValues:
         stem = (
             "".join(lexicon_meaning(base, "stem")) or base
         ) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
-        several = [each for each in known if each.startswith(stem)]
-        which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
-        sensors = [each for each, meaning in names if meaning.what == "sensor"]
+        similar_names = [each for each in known_names if each.startswith(stem)]
+        pair_hints = (
+            {}
+            if len(similar_names) != 2
+            else {"first": similar_names[0], "second": similar_names[1]}
+        )
+        sensors = [each for each, meaning in names if meaning.kind == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-MOST_SUGGESTIONS:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, suggestion)
         else:
-            suggestion = "" if which or is_variable else suggestion
+            suggestion = "" if pair_hints or is_variable else suggestion
             only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
             aside = only if is_aside(name.rpartition("_")[2]) else ""
             alike = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
             suggestion = "" if aside or alike else only or suggestion
-            said = {"alike": alike} if alike and not which else {}
-            is_said = not (suggestion or said or which or only or is_variable)
+            hints = {"alike": alike} if alike and not pair_hints else {}
+            is_said = not (suggestion or hints or pair_hints or only or is_variable)
             if is_said and self._is_compared(span) and (seen := self._on_side(meant)):
                 suggestion = seen
             elif is_said and meant in OPPOSITE_MOVES:
-                said = {"way": meant, "call": WORDS[meant].example}
+                hints = {"way": meant, "call": WORDS[meant].example}
             elif is_said and lexicon_meaning(name + "4", "note") and _TONE_BEFORE.search(before):
-                said = {"pitch": lexicon_meaning(name + "4", "note")[0]}
-            elif not which and not is_variable and lexicon_meaning(name, "unsensed"):
-                its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
-                said, suggestion = {"unsensed": name, "sensors": its_own}, ""
+                hints = {"pitch": lexicon_meaning(name + "4", "note")[0]}
+            elif not pair_hints and not is_variable and lexicon_meaning(name, "unsensed"):
+                sensor_names = ", ".join(sensor.name for sensor in scope.kit.sensors)
+                hints, suggestion = {"unsensed": name, "sensors": sensor_names}, ""
             elif is_said and lexicon_meaning(name, "colour"):
-                said = {"colour": name}
+                hints = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
-                         value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
+                         value=value_of(name), only=only, aside=aside, **hints,
+                         **pair_hints)  # fmt: skip
 
     def _is_compared(self, span: Span) -> bool:
         """Whether a name stands beside `<` or `>`."""
@@ -107,8 +114,8 @@ class WrongValues:
 
     def _on_side(self, way: str) -> str:
         """Return the one sensor of the robot on L or R, which measures, "" for none."""
-        found = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
-        return found[0] if len(found) == 1 and way in OPPOSITE_MOVES else ""
+        sensors = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
+        return sensors[0] if len(sensors) == 1 and way in OPPOSITE_MOVES else ""
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
@@ -127,8 +134,8 @@ class WrongValues:
             or diagnostics[0].span.start > span.start
         ):
             return False
-        between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
-        return not set(between) & set("();\r\n") and "," in between
+        text_between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
+        return not set(text_between) & set("();\r\n") and "," in text_between
 
     def report_mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""
@@ -143,10 +150,10 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
         own = value_of_def(self.scope, span)
-        found = self.scope.source[span]
-        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
+        operand_text = self.scope.source[span]
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=operand_text, **own)
 
-    def report_not_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
+    def report_not_yes_no(self, asker: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
 
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
@@ -154,28 +161,31 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         result = self.scope.source[span]
         values = self.condition(span)
-        if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
+        if asker == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
             values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
-            asked = self.scope.source[Span(other.start, other.end)]
-            before, after = _COMPARISON_BEFORE.match(asked), _COMPARISON.fullmatch(asked)
+            compared_text = self.scope.source[Span(other.start, other.end)]
+            before, after = (
+                _COMPARISON_BEFORE.match(compared_text),
+                _COMPARISON.fullmatch(compared_text),
+            )
             is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {result}"}
             elif after and result.isidentifier():
                 values = {"fix": f"{result} {after[1]}"}
-        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=result, **values)
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=asker, found=result, **values)
 
     def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
         word = self.scope.source[span].upper()
         name = self.scope.names.get(word)
         if name is not None:
-            example = f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
+            example = f"{word} < 10" if name.kind == "sensor" else f"{word} > 0"
             return {"example": example, **value_of_def(self.scope, span)}
-        meant = {"0": "FALSE", "1": "TRUE"}.get(word)
-        if meant or not word.isdecimal():
-            return {"fix": meant} if meant else {}
+        truth_word = {"0": "FALSE", "1": "TRUE"}.get(word)
+        if truth_word or not word.isdecimal():
+            return {"fix": truth_word} if truth_word else {}
         names = {device.name for device in self.scope.kit.sensors if not device.is_yes_no}
         sensor = "DISTANCE" if "DISTANCE" in names else "X"
         return {"times": word, "example": f"{sensor} < {word}"}

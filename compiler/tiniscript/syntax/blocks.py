@@ -59,7 +59,7 @@ class Block:
         return self.arms[0].span if self.arms else self.span
 
     @property
-    def here(self) -> list[Instruction]:
+    def current_body(self) -> list[Instruction]:
         """Where the next instruction belongs."""
         return self.body if self.otherwise is None else self.otherwise
 
@@ -83,9 +83,9 @@ class Blocks:
         return self.open[-1] if self.open else None
 
     @property
-    def here(self) -> list[Instruction]:
+    def current_body(self) -> list[Instruction]:
         """Where the next instruction belongs."""
-        return self.open[-1].here if self.open else self.program
+        return self.open[-1].current_body if self.open else self.program
 
     def begin(
         self,
@@ -96,8 +96,8 @@ class Blocks:
         parameters: Sequence[Parameter] = (),
     ) -> None:
         if word in TASK_WORDS and self.open:
-            around = self.open[-1].word
-            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=around)
+            enclosing = self.open[-1].word
+            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=enclosing)
         elif word in TASK_WORDS:
             self.tasks += 1
             if self.tasks == TASKS + 1:
@@ -128,7 +128,7 @@ class Blocks:
                 self.program.append(Task(block.word == "WHEN", block.head, body, span))
         else:
             if self._depth <= BLOCKS:
-                self.here.append(_node(block, span))
+                self.current_body.append(_node(block, span))
             self._depth -= 1
 
 

@@ -30,10 +30,10 @@ def with_checksum(line: str) -> str:
 
 def without_checksums(text: str) -> tuple[str, list[Diagnostic]]:
     """Return `text` with spaces in the place of checksums, and those that do not fit."""
-    wrong = []
+    diagnostics = []
     for match in _CHECKED_LINE.finditer(text):
         if checksum_of(match[1]) != int(match[2], 16):
             span = Span(match.end(1), match.end())
-            found = {"found": f"~{match[2]}"}
-            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, found))
-    return _CHECKED_LINE.sub(rf"\1{' ' * 9}", text), wrong
+            values = {"found": f"~{match[2]}"}
+            diagnostics.append(Diagnostic(codes.CHECKSUM_WRONG, span, values))
+    return _CHECKED_LINE.sub(rf"\1{' ' * 9}", text), diagnostics

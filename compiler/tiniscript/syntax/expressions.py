@@ -62,44 +62,44 @@ class ExpressionParser:
     def expression(self, in_brackets: bool) -> Argument:
         cursor = self.cursor
         first = cursor.i
-        read = Postfix(brackets=1 if in_brackets else 0)
-        while not self.operand(read) or self.operator(read):
+        postfix = Postfix(bracket_count=1 if in_brackets else 0)
+        while not self.operand(postfix) or self.operator(postfix):
             pass
-        parts = tuple(read.parts)
+        parts = tuple(postfix.parts)
         span = cursor.span_from(cursor.tokens[first])
         is_plain = len(parts) == 1 and parts[0] == ("NUMBER", parts[0].value, *span)
         return Argument(parts, span, is_plain)
 
-    def operand(self, read: Postfix) -> bool:
+    def operand(self, postfix: Postfix) -> bool:
         """Read an operand or what stands before one; return whether the operand is complete."""
         cursor = self.cursor
         token = cursor.tokens[cursor.i]
-        if token.kind is NEWLINE and read.brackets:
+        if token.kind is NEWLINE and postfix.brackets:
             cursor.to_inner()
             token = cursor.token
         kind = token.kind
         if kind is NUMBER:
-            read.parts.append(self.number(token, read))
+            postfix.parts.append(self.number(token, postfix))
             return True
         if kind is WORD:
-            return self.word(token, read)
+            return self.word(token, postfix)
         if kind == "-":
-            read.wait(MINUS, "NEG", token, cursor.i)
+            postfix.wait(MINUS, "NEG", token, cursor.i)
         elif kind == "(":
-            read.wait(OPEN, "(", token, cursor.i)
-            read.brackets += 1
-        elif not self.report_needless_plus(token, read):
+            postfix.wait(OPEN, "(", token, cursor.i)
+            postfix.brackets += 1
+        elif not self.report_needless_plus(token, postfix):
             self.report_missing_value(token)
         cursor.i += 1
         return False
 
-    def number(self, token: Token, read: Postfix) -> Part:
+    def number(self, token: Token, postfix: Postfix) -> Part:
         """A minus right before a number belongs to it."""
-        cursor, waiting = self.cursor, read.waiting
+        cursor, pending = self.cursor, postfix.waiting
         first = token
-        if waiting and waiting[-1].precedence == MINUS:
-            if waiting[-1].index == cursor.before(cursor.i):
-                first = waiting.pop().token
+        if pending and pending[-1].precedence == MINUS:
+            if pending[-1].index == cursor.before(cursor.i):
+                first = pending.pop().token
         cursor.i += 1
         value, is_exact = read_literal(token.text)
         value = value if first is token else -value
@@ -113,67 +113,67 @@ class ExpressionParser:
             self.reporter.report(codes.ROUNDED, span, **values)
         return Part("NUMBER", value, *span)
 
-    def word(self, token: Token, read: Postfix) -> bool:
+    def word(self, token: Token, postfix: Postfix) -> bool:
         cursor = self.cursor
-        known = WORDS.get(token.text)
-        if known is None or known.role.name == "value":
+        word_row = WORDS.get(token.text)
+        if word_row is None or word_row.role.name == "value":
             cursor.i += 1
             if cursor.tokens[cursor.i].kind == "(":
                 self.reporter.fail(codes.NO_FUNCTION, token.span, found=token.text)
-            op, value = ("NAME", token.text) if known is None else (token.text, 0)
-            read.parts.append(Part(op, value, token.start, token.end))
+            op, value = ("NAME", token.text) if word_row is None else (token.text, 0)
+            postfix.parts.append(Part(op, value, token.start, token.end))
             return True
         if token.text == "NOT":
-            if read.waiting and read.waiting[-1].precedence > NOT:
+            if postfix.waiting and postfix.waiting[-1].precedence > NOT:
                 self.reporter.fail(codes.NOT_NEEDS_BRACKETS, token.span)
-            read.wait(NOT, "NOT", token, cursor.i)
+            postfix.wait(NOT, "NOT", token, cursor.i)
             cursor.i += 1
         elif token.text in FUNCTIONS:
-            self.begin_call(token, known, read)
+            self.begin_call(token, word_row, postfix)
         else:
             self.report_missing_value(token)
         return False
 
-    def begin_call(self, name: Token, function: Word, read: Postfix) -> None:
+    def begin_call(self, name: Token, function: Word, postfix: Postfix) -> None:
         cursor = self.cursor
         cursor.i += 1
-        if read.brackets:
+        if postfix.brackets:
             cursor.to_inner()
         if cursor.token.kind != "(":
             self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, usage=function.usage)
-        read.wait(OPEN, name.text, name, cursor.i)
-        read.brackets += 1
+        postfix.wait(OPEN, name.text, name, cursor.i)
+        postfix.brackets += 1
         cursor.i += 1
         if cursor.take_inner(")"):
             self.report_wrong_count(function, 0, cursor.span_from(name))
 
-    def operator(self, read: Postfix) -> bool:
+    def operator(self, postfix: Postfix) -> bool:
         """Read what may follow an operand; return whether another operand is wanted then."""
         cursor = self.cursor
         tokens = cursor.tokens
         while True:
-            token = cursor.inner() if read.brackets else tokens[cursor.i]
+            token = cursor.inner() if postfix.brackets else tokens[cursor.i]
             if token.kind not in VALUE_ENDS and token.kind is not ODD:
                 binary = BINARY.get(token.text)
                 if binary is not None:
-                    if read.brackets:
+                    if postfix.brackets:
                         cursor.to_inner()
-                    self.binary(token, *binary, read)
+                    self.binary(token, *binary, postfix)
                     cursor.i += 1
                     return True
-            bracket = read.reduce() if read.waiting else None
+            bracket = postfix.reduce() if postfix.waiting else None
             if bracket is None:
                 return False
             if token.kind == ")":
                 cursor.take_inner(")")
-                read.brackets -= 1
-                read.waiting.pop()
+                postfix.brackets -= 1
+                postfix.waiting.pop()
                 if bracket.name != "(":
                     function, count = WORDS[bracket.name], bracket.arguments + 1
                     span = cursor.span_from(bracket.token)
                     if count != len(function.arguments):
                         self.report_wrong_count(function, count, span)
-                    read.parts.append(Part(bracket.name, 0, *span))
+                    postfix.parts.append(Part(bracket.name, 0, *span))
                 continue
             if token.kind == "," and bracket.name != "(":
                 bracket.arguments += 1
@@ -181,15 +181,15 @@ class ExpressionParser:
                 return True
             self.report_missing_close(bracket.index)
 
-    def binary(self, token: Token, precedence: int, name: str, read: Postfix) -> None:
-        waiting = read.waiting
-        while waiting and waiting[-1].precedence >= precedence:
-            if precedence == COMPARISON == waiting[-1].precedence:
+    def binary(self, token: Token, precedence: int, name: str, postfix: Postfix) -> None:
+        pending = postfix.waiting
+        while pending and pending[-1].precedence >= precedence:
+            if precedence == COMPARISON == pending[-1].precedence:
                 self.reporter.fail(codes.CHAINED, token.span)
-            read.apply()
+            postfix.apply()
         if precedence <= AND:  # AND and OR: the left side may decide
-            read.parts.append(Part(name + "_LEFT", 0, token.start, token.end))
-        read.wait(precedence, name, token, self.cursor.i)
+            postfix.parts.append(Part(name + "_LEFT", 0, token.start, token.end))
+        postfix.wait(precedence, name, token, self.cursor.i)
 
     # -- what is wrong ------------------------------------------------------------------------
 
@@ -199,13 +199,13 @@ class ExpressionParser:
                            example=example, wanted=str(len(word.arguments)),
                            found=str(count))  # fmt: skip
 
-    def report_needless_plus(self, token: Token, read: Postfix) -> bool:
+    def report_needless_plus(self, token: Token, postfix: Postfix) -> bool:
         """A plus before a value says nothing; return whether it is one.
 
         Not that of `X = +1`: `X += 1` may be meant.
         """
         tokens, i = self.cursor.tokens, self.cursor.i
-        if tokens[i - 1].kind == "=" and not (read.parts or read.waiting):
+        if tokens[i - 1].kind == "=" and not (postfix.parts or postfix.waiting):
             return False
         after = tokens[min(i + 1, len(tokens) - 1)]
         begins = after.kind in (NUMBER, "(", "-") or _is_name(after) or after.text in FUNCTIONS
@@ -220,19 +220,19 @@ class ExpressionParser:
 
     def report_missing_value(self, token: Token) -> NoReturn:
         """A value is expected, and this token begins none."""
-        known = WORDS.get(token.text) if token.kind is WORD else None
+        word_row = WORDS.get(token.text) if token.kind is WORD else None
         self.reject_unknown_character(token)
         if self.ends_above(token):
             last = self.cursor.last
             self.reporter.fail(codes.MISSING_VALUE, last.span, before=last.text)
-        if known is not None:
+        if word_row is not None:
             self.reject_unit(token)
             by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
-            other = codes.NO_VALUE if known.role.is_instruction else codes.RESERVED
-            self.reporter.fail(by_role.get(known.role.name, other), token.span, word=token.text)
+            other = codes.NO_VALUE if word_row.role.is_instruction else codes.RESERVED
+            self.reporter.fail(by_role.get(word_row.role.name, other), token.span, word=token.text)
         before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
-        shown = {} if before.kind is ODD else {"before": before.text}
-        self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
+        hints = {} if before.kind is ODD else {"before": before.text}
+        self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **hints)
 
     def ends_above(self, token: Token) -> bool:
         """Whether an instruction begins with this token below the line that breaks off.
@@ -241,8 +241,10 @@ class ExpressionParser:
         """
         cursor = self.cursor
         k = cursor.i if cursor.token is token else cursor.tokens.index(token, cursor.i)
-        known = WORDS.get(token.text) if token.kind is WORD else None
-        begins = known is not None and (known.role.is_instruction or known.role.is_of_blocks)
+        word_row = WORDS.get(token.text) if token.kind is WORD else None
+        begins = word_row is not None and (
+            word_row.role.is_instruction or word_row.role.is_of_blocks
+        )
         is_set = (
             token.kind is WORD and cursor.tokens[min(k + 1, len(cursor.tokens) - 1)].kind == "="
         )
@@ -314,15 +316,15 @@ class ExpressionParser:
         is_name = first.kind is WORD and not is_unit
         return first if first.kind in SIGNS or is_name else None
 
-    def report_not_only_names(self, bracket: int, more: Token, names: Sequence[str]) -> None:
+    def report_not_only_names(self, bracket: int, extra: Token, names: Sequence[str]) -> None:
         """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
         tokens = self.cursor.tokens
         header = Span(tokens[bracket - 2].start, self.cursor.last.end)
         name = tokens[bracket - 1].text
         fix = f"DEF {name}({', '.join(names)})"
         repair = Repair((Edit(header, fix),), False)
-        code = codes.MISSING_COMMA if more.kind is WORD else codes.PARAMETER_NEEDS_NAME
-        diagnostic = Diagnostic(code, more.span, {"name": name, "fix": fix}, header, repair)
+        code = codes.MISSING_COMMA if extra.kind is WORD else codes.PARAMETER_NEEDS_NAME
+        diagnostic = Diagnostic(code, extra.span, {"name": name, "fix": fix}, header, repair)
         self.reporter.diagnostics.append(diagnostic)
 
     def report_missing_close(self, bracket: int) -> NoReturn:

@@ -59,14 +59,14 @@ class Piece:
         return bool(self.tokens) and not self.is_setup
 
 
-def pieces_of(scanned: Scan) -> list[Piece]:
+def pieces_of(scan: Scan) -> list[Piece]:
     """Return the pieces of a text in their order. Empty instructions are none."""
     pieces: list[Piece] = []
     is_open = False  # whether the last piece is an instruction that has not ended
     brackets = 0  # open in it
     line = 0
     line_is_empty, after_blank = True, False
-    for token in sorted((*scanned.tokens[:-1], *scanned.comments), key=lambda item: item.start):
+    for token in sorted((*scan.tokens[:-1], *scan.comments), key=lambda item: item.start):
         kind = token.kind
         if kind is NEWLINE:
             after_blank = after_blank or (line_is_empty and not is_open)
@@ -79,10 +79,10 @@ def pieces_of(scanned: Scan) -> list[Piece]:
             is_open = False
             continue
         is_comment = kind == "comment"
-        is_behind = is_comment and any(
+        is_after_code = is_comment and any(
             item.tokens and item.last_line == line for item in pieces[-1:]
         )
-        if not is_open and not is_behind:
+        if not is_open and not is_after_code:
             pieces.append(Piece(line, after_blank))
             is_open, brackets, after_blank = not is_comment, 0, False
         piece = pieces[-1]
@@ -164,10 +164,10 @@ def lines_of(rows: list[Row]) -> list[str]:
     lines: list[str] = []
     before = ""
     for row, depth in zip(rows, _depths(rows), strict=True):
-        is_apart = (
+        is_separate = (
             row.after_blank and before not in _INDENTING_WORDS and row.word not in _DEDENTING_WORDS
         )
-        lines.append(("\n" if is_apart and lines else "") + INDENT * depth + row.text)
+        lines.append(("\n" if is_separate and lines else "") + INDENT * depth + row.text)
         before = row.word
     return lines
 

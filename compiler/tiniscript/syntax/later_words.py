@@ -23,9 +23,9 @@ def kit_for_text(text: str, kit: Kit) -> Kit:
 
 def kit_for_tokens(tokens: Sequence[Token], kit: Kit) -> Kit:
     """Return the kit as a program with these tokens has it."""
-    later = {reading.name for reading in kit.readings}.difference(kit.names)
-    given = later.intersection(own_words(tokens))
-    return kit._replace(given=frozenset(given)) if given else kit
+    later_names = {reading.name for reading in kit.readings}.difference(kit.names)
+    given_words = later_names.intersection(own_words(tokens))
+    return kit._replace(given_words=frozenset(given_words)) if given_words else kit
 
 
 def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[Diagnostic]:
@@ -37,19 +37,19 @@ def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[
             "other": next(numbered_names(source.text, name)),
         })
         for name, token in own_words(tokens).items()
-        if name in kit.given
+        if name in kit.given_words
     ]  # fmt: skip
 
 
 def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     """Return the younger words that a program names something with where they first appear."""
-    seen: set[str] = set()
+    token_of_word: set[str] = set()
     words = {}
     is_begin, is_in_def, depth = True, False, 0
     for k, token in enumerate(tokens):
         kind, text = token.kind, token.text
-        if kind is WORD and text in KIT_WORDS_SINCE and text not in seen:
-            seen.add(text)
+        if kind is WORD and text in KIT_WORDS_SINCE and text not in token_of_word:
+            token_of_word.add(text)
             is_named = tokens[k - 1].text == "DEF" if k else False
             is_set = is_begin and tokens[k + 1].kind == "=" and not _value_uses(text, tokens, k + 2)
             if is_named or is_set or is_in_def:

@@ -67,11 +67,11 @@ def scan(text: str) -> Scan:
     """Return the tokens of a text, its comments, and its checksums that do not fit."""
     tokens: list[Token] = []
     comments: list[Token] = []
-    wrong: Sequence[Diagnostic] = ()
+    wrong_checksums: Sequence[Diagnostic] = ()
     if "~" in text:
         from tiniscript.syntax.checksums import without_checksums  # few texts have any
 
-        text, wrong = without_checksums(text)
+        text, wrong_checksums = without_checksums(text)
     add = tokens.append
     new = tuple.__new__  # in half the time of Token()
     for match in _PATTERN.finditer(text):
@@ -92,4 +92,4 @@ def scan(text: str) -> Scan:
             kind, text_of = _MADE.get(group or "", (ODD, match.group()))
             add(new(Token, (kind, text_of, start, end)))
     add(Token(END, "", len(text), len(text)))
-    return Scan(tokens, comments, wrong)
+    return Scan(tokens, comments, wrong_checksums)

@@ -51,10 +51,10 @@ class Postfix:
 
     __slots__ = ("brackets", "parts", "waiting")
 
-    def __init__(self, brackets: int) -> None:
+    def __init__(self, bracket_count: int) -> None:
         self.parts: list[Part] = []
         self.waiting: list[Operator] = []
-        self.brackets = brackets
+        self.brackets = bracket_count
 
     def wait(self, precedence: int, name: str, token: Token, index: int) -> None:
         self.waiting.append(Operator(precedence, name, token, index))

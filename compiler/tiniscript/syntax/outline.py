@@ -48,11 +48,11 @@ class Failure(NamedTuple):
     at: int
 
 
-def outline(words: Sequence[tuple[str, str]], known: KnownNames) -> list[Item] | Failure:
+def outline(words: Sequence[tuple[str, str]], known_names: KnownNames) -> list[Item] | Failure:
     """Return the items of a line of tokens (kind, text), or where it is wrong."""
     tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(words)]
     tokens.append(Token(END, "", len(tokens), len(tokens)))
-    return _Line(tokens, known).items()
+    return _Line(tokens, known_names).items()
 
 
 class _Silent(Reporter):
@@ -75,20 +75,20 @@ class _Alone(Blocks):
 class _Expressions(ExpressionParser):
     values: frozenset[str] = frozenset()
 
-    def word(self, token: Token, read: Postfix) -> bool:
+    def word(self, token: Token, postfix: Postfix) -> bool:
         if token.text not in WORDS and token.text not in self.values:
             raise Failed
-        return super().word(token, read)
+        return super().word(token, postfix)
 
 
 class _Line(Parser):
-    def __init__(self, tokens: list[Token], known: KnownNames) -> None:
+    def __init__(self, tokens: list[Token], known_names: KnownNames) -> None:
         super().__init__(Source(""), Scan(tokens, [], []))
         self.reporter = _Silent([])
         self.blocks = _Alone(self.reporter)
         self.expressions = self._own = _Expressions(self.cursor, self.reporter)
-        self._own.values = known.values
-        self._known, self._called = known, known.called
+        self._own.values = known_names.values
+        self._known, self._called = known_names, known_names.called
         self._found: list[Item] = []
 
     def items(self) -> list[Item] | Failure:
@@ -123,10 +123,12 @@ class _Line(Parser):
     def close(self, word: Token) -> None:
         """The block that it ends is on other lines."""
 
-    def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
-        arguments = super().arguments_of(word, known)
+    def arguments_of(self, word: Token, word_row: Word | None) -> tuple[Argument, ...] | None:
+        arguments = super().arguments_of(word, word_row)
         count = len(arguments or ())
-        is_right = len(known.arguments) == count if known else (word.text, count) in self._called
+        is_right = (
+            len(word_row.arguments) == count if word_row else (word.text, count) in self._called
+        )
         if not is_right:
             raise Failed
         return arguments

@@ -61,9 +61,9 @@ def parse(source: Source) -> Parsed:
 
 
 class Parser:
-    def __init__(self, source: Source, scanned: Scan) -> None:
-        self.cursor = Cursor(source, scanned.tokens)
-        self.reporter = Reporter(scanned.diagnostics)
+    def __init__(self, source: Source, scan: Scan) -> None:
+        self.cursor = Cursor(source, scan.tokens)
+        self.reporter = Reporter(scan.diagnostics)
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter)
         self.variables: set[str] = set()  # those that have been set so far
@@ -77,7 +77,9 @@ class Parser:
         cursor, diagnostics = self.cursor, self.reporter.diagnostics
         tokens = cursor.tokens
         start = self.setup()
-        while (kind := tokens[cursor.i].kind) is not END and len(diagnostics) <= codes.ENOUGH:
+        while (kind := tokens[cursor.i].kind) is not END and len(
+            diagnostics
+        ) <= codes.MOST_DIAGNOSTICS:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
                 continue
@@ -142,36 +144,36 @@ class Parser:
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:  # the name has a value, whichever
-            self.blocks.here.append(Assign(name.text, name.span, None, name.span))
+            self.blocks.current_body.append(Assign(name.text, name.span, None, name.span))
             raise
         span = Span(name.start, value.span.end)
-        self.blocks.here.append(Assign(name.text, name.span, value, span))
+        self.blocks.current_body.append(Assign(name.text, name.span, value, span))
 
     def command(self, word: Token) -> None:
         cursor = self.cursor
         tokens = cursor.tokens
-        known = WORDS.get(word.text)
+        word_row = WORDS.get(word.text)
         following = tokens[cursor.i + 1]
-        if known is None:
+        if word_row is None:
             self.own_name(word, following)
-        elif not known.role.is_instruction and word.text != "START":
-            code = _NO_COMMANDS.get(known.role.name, codes.NOT_AN_INSTRUCTION)
+        elif not word_row.role.is_instruction and word.text != "START":
+            code = _NO_COMMANDS.get(word_row.role.name, codes.NOT_AN_INSTRUCTION)
             self.reporter.fail(code, word.span, word=word.text, found=word.text)
         cursor.i += 1
         arguments = until = None
         if following.kind == "(":
-            arguments = self.arguments_of(word, known)
-        elif known is not None and known.arguments:
-            self.report_missing_bracket(known)
+            arguments = self.arguments_of(word, word_row)
+        elif word_row is not None and word_row.arguments:
+            self.report_missing_bracket(word_row)
         if tokens[cursor.i].kind not in INSTRUCTION_ENDS:
             until = self.until()
         span = cursor.span_from(word)
-        self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
+        self.blocks.current_body.append(Command(word.text, word.span, arguments, until, span))
 
     def leave(self, word: Token) -> None:
         self.cursor.i += 1
         self.reject_arguments(word)
-        self.blocks.here.append(Break(word.span))
+        self.blocks.current_body.append(Break(word.span))
 
     def own_name(self, word: Token, following: Token) -> None:
         """A word that may stand for a device or a DEF of the program, if no other follows it."""
@@ -183,14 +185,14 @@ class Parser:
             self.reporter.fail(codes.VARIABLE_ALONE, span, name=word.text, fix=fix)
         self.reporter.fail(codes.UNKNOWN_WORD, word.span, found=word.text)
 
-    def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
-        if known is not None and not known.arguments:
+    def arguments_of(self, word: Token, word_row: Word | None) -> tuple[Argument, ...] | None:
+        if word_row is not None and not word_row.arguments:
             self.reject_arguments(word)
         arguments = self.expressions.arguments()
         if word.text in self.defs:
             self.reject_units_in_call(arguments, word)
         else:
-            self.reject_units(arguments[known is not None and known.role.is_move :])
+            self.reject_units(arguments[word_row is not None and word_row.role.is_move :])
         return arguments
 
     def until(self) -> Argument | None:
@@ -235,33 +237,35 @@ class Parser:
             span = Span(word.start, name.end)
             self.blocks.begin("DEF", span, name=name, parameters=parameters)
 
-    def parameters(self, of: Token, found: list[Parameter]) -> None:
+    def parameters(self, def_word: Token, result: list[Parameter]) -> None:
         """Read the `(NAME, NAME)` of a DEF; what was read stays, even if the rest is wrong."""
         cursor = self.cursor
         bracket = cursor.i
         cursor.i += 1
         if cursor.take_inner(")"):
             return
-        more = None
+        extra = None
         while True:
             name = cursor.inner()
             if name.kind is not WORD:
                 from tiniscript.syntax.unnamed import used_inside  # of a wrong program alone
 
                 inside = used_inside(cursor.source, name) if name.kind is NUMBER else {}
-                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text, **inside)
+                self.reporter.fail(
+                    codes.PARAMETER_NEEDS_NAME, name.span, name=def_word.text, **inside
+                )
             cursor.take_inner(WORD)
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)
-            found.append(Parameter(name.text, name.span))
+            result.append(Parameter(name.text, name.span))
             odd = self.expressions.after_name()
-            more = more or odd
+            extra = extra or odd
             if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
                 break
         if not cursor.take_inner(")"):
             self.expressions.report_missing_close(bracket)
-        if more is not None:
-            self.expressions.report_not_only_names(bracket, more, [each.name for each in found])
+        if extra is not None:
+            self.expressions.report_not_only_names(bracket, extra, [each.name for each in result])
 
     def task(self, word: Token) -> None:
         cursor = self.cursor
@@ -303,57 +307,66 @@ class Parser:
 
     def close(self, word: Token) -> None:
         """End the block that a word ends, and those that are still open in it."""
-        blocks, begun = self.blocks, ENDS[word.text]
-        if not any(block.word == begun for block in blocks.open):
+        blocks, begin_word = self.blocks, ENDS[word.text]
+        if not any(block.word == begin_word for block in blocks.open):
             if self.merge_swapped_ends(word):
                 return
-            around = {}
+            enclosing = {}
             if blocks.open:  # it may be the end of that
                 inner = blocks.open[-1]
                 line = str(self.cursor.source.position(inner.header.start)[0])
-                around = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
-            self.reporter.report(codes.NOT_OPEN, word.span, found=word.text, right=begun, **around)
+                enclosing = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
+            self.reporter.report(
+                codes.NOT_OPEN, word.span, found=word.text, right=begin_word, **enclosing
+            )
             return
-        inside = max(k for k, block in enumerate(blocks.open) if block.word == begun)
-        while (block := blocks.open[-1]).word != begun:
+        inner_index = max(k for k, block in enumerate(blocks.open) if block.word == begin_word)
+        while (block := blocks.open[-1]).word != begin_word:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
             values = {"found": word.text, "word": block.word, "line": line, "right": right}
-            last = block.here[-1] if len(block.here) > 1 and block.word != "LOOP" else None
+            last = (
+                block.current_body[-1]
+                if len(block.current_body) > 1 and block.word != "LOOP"
+                else None
+            )
             if last and not isinstance(last, Break):  # nothing comes after one
                 values["several"] = self.cursor.source[last.span]
-            self.early.append((len(self.reporter.diagnostics), inside))
+            self.early.append((len(self.reporter.diagnostics), inner_index))
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)
 
-    def merge_swapped_ends(self, late: Token) -> bool:
+    def merge_swapped_ends(self, late_end: Token) -> bool:
         """Whether an end is that of a block that another end has closed: these two are swapped."""
         diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open)
-        ended = (
+        ends_with_depth = (
             item
             for item in self.early
-            if ENDS[diagnostics[item[0]].values["right"]] == ENDS[late.text]
+            if ENDS[diagnostics[item[0]].values["right"]] == ENDS[late_end.text]
         )
-        place = next((item for item in ended if item[1] == depth), None)
+        place = next((item for item in ends_with_depth if item[1] == depth), None)
         if place is None:
             return False
         self.early.remove(place)
-        k, early = place[0], diagnostics[place[0]]
-        edits = (Edit(early.span, late.text), Edit(late.span, early.values["found"]))
-        values = {**early.values, "swapped": late.text, "apart": late.text}
-        diagnostics[k] = early._replace(values=values, repair=codes.Repair(edits, False))
+        k, early_end = place[0], diagnostics[place[0]]
+        edits = (
+            Edit(early_end.span, late_end.text),
+            Edit(late_end.span, early_end.values["found"]),
+        )
+        values = {**early_end.values, "swapped": late_end.text, "apart": late_end.text}
+        diagnostics[k] = early_end._replace(values=values, repair=codes.Repair(edits, False))
         return True
 
     def argument_of(self, word: Token) -> Argument:
         """Read the `(argument)` of a header, an ELSEIF or an UNTIL."""
-        cursor, known = self.cursor, WORDS[word.text]
+        cursor, word_row = self.cursor, WORDS[word.text]
         bracket = cursor.token
         if bracket.kind != "(":
-            self.report_missing_bracket(known)
+            self.report_missing_bracket(word_row)
         arguments = self.expressions.arguments()
         if len(arguments) != 1:
-            self.expressions.report_wrong_count(known, len(arguments), cursor.span_from(bracket))
+            self.expressions.report_wrong_count(word_row, len(arguments), cursor.span_from(bracket))
         self.reject_units(arguments)
         return arguments[0]
 
@@ -379,12 +392,12 @@ class Parser:
 
     # -- what is wrong ------------------------------------------------------------------------
 
-    def report_missing_bracket(self, known: Word) -> None:
+    def report_missing_bracket(self, word_row: Word) -> None:
         """After a word its values are expected, in brackets."""
         token = self.cursor.token
         self.expressions.reject_unknown_character(token)
         word = self.cursor.last
-        self.reporter.fail(codes.MISSING_OPEN, word.span, word=known.text, usage=known.usage)
+        self.reporter.fail(codes.MISSING_OPEN, word.span, word=word_row.text, usage=word_row.usage)
 
     def report_missing_separator(self, first: Token) -> None:
         """The end of an instruction is expected."""

@@ -20,13 +20,13 @@ def used_inside(source: Source, number: Token) -> dict[str, str]:
     text = source.text
     head = re.compile(r"[^;\r\n]*").match(text, number.end)
     end = _DEF_END.search(text, number.end)
-    is_alone = text[number.end :].lstrip(" \t")[:1] == ")"
-    if head is None or end is None or not is_alone:
+    is_only_number = text[number.end :].lstrip(" \t")[:1] == ")"
+    if head is None or end is None or not is_only_number:
         return {}
     for each in re.compile(r"[^;\r\n]+").finditer(text, head.end(), end.start()):
-        said = each[0].partition("//")[0].strip()
+        instruction = each[0].partition("//")[0].strip()
         pattern = rf"(?<![\w.]){re.escape(number.text)}(?![\w.])"
-        inside = re.sub(pattern, _PLACEHOLDER_NAME, said.upper(), count=1)
-        if inside != said.upper() and len(said) <= _LONGEST:
+        inside = re.sub(pattern, _PLACEHOLDER_NAME, instruction.upper(), count=1)
+        if inside != instruction.upper() and len(instruction) <= _LONGEST:
             return {"number": number.text, "inside": inside}
     return {}

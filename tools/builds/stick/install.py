@@ -51,19 +51,24 @@ def main(words: list[str]) -> int:
         return _fail("no_venv")
     programs = folder / "tsc" / ("Scripts" if IS_WINDOWS else "bin")
     python = programs / ("python.exe" if IS_WINDOWS else "python")
-    pip = [str(python), "-m", "pip", "--isolated", "--disable-pip-version-check", "install"]
-    pip += ["--quiet", "--no-index", "--find-links", str(STICK / "wheels")]
-    pip += ["--upgrade"]
+    pip_command = [str(python), "-m", "pip", "--isolated", "--disable-pip-version-check", "install"]
+    pip_command += ["--quiet", "--no-index", "--find-links", str(STICK / "wheels")]
+    pip_command += ["--upgrade"]
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PIP_")}
-    first = subprocess.run([*pip, "tiniscript[radio,virtual]"], env=variables, capture_output=True)
-    if first.returncode and subprocess.run([*pip, "tiniscript[virtual]"], env=variables).returncode:
+    first = subprocess.run(
+        [*pip_command, "tiniscript[radio,virtual]"], env=variables, capture_output=True
+    )
+    if (
+        first.returncode
+        and subprocess.run([*pip_command, "tiniscript[virtual]"], env=variables).returncode
+    ):
         return _fail("failed", system=sys.platform, version=version)
     for name in ("pages", "examples"):
         shutil.copytree(STICK / name, folder / name, dirs_exist_ok=True)
-    tried = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
-    ran = subprocess.run(tried, env=variables, capture_output=True)
-    if ran.returncode:
-        why = ran.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
+    command = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
+    completed = subprocess.run(command, env=variables, capture_output=True)
+    if completed.returncode:
+        why = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
         _say("no_robot", why=why[0])
     activate = f'. "{programs}/activate"'
     if IS_WINDOWS:

@@ -29,9 +29,9 @@ def run(options: Namespace, language: str) -> int:
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.write_output(options.output, header.encode()):
         return 0
-    now = _next(options.robot, Path(options.output), robot.board.chip, language)
+    next_command = _next(options.robot, Path(options.output), robot.board.chip, language)
     say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
-        chip=robot.board.chip, now=now)  # fmt: skip
+        chip=robot.board.chip, now=next_command)  # fmt: skip
     return 0
 
 
@@ -41,8 +41,12 @@ def _compare(robot: Robot, language: str) -> None:
     if nearest.is_same:
         say_aside("board_same_kit", language, kit=nearest.name)
         return
-    lists = {"shared": nearest.shared, "there": nearest.only_there, "here": nearest.only_here}
-    values = {key: ", ".join(names) or "–" for key, names in lists.items()}
+    names_by_place = {
+        "shared": nearest.shared,
+        "there": nearest.only_there,
+        "here": nearest.only_here,
+    }
+    values = {key: ", ".join(names) or "–" for key, names in names_by_place.items()}
     say_aside("board_nearest_kit", language, kit=nearest.name, **values)
 
 

@@ -26,56 +26,63 @@ def run(options: Namespace, language: str) -> int:
     if len(names) > 1:
         raise CommandError(2, "two_programs")
     options.program = names[0] if names else None
-    given = inputs.program(options)
-    inputs.robot_for(given, options, language)
+    program_input = inputs.program(options)
+    inputs.robot_for(program_input, options, language)
     robot = _robot(options, language)
     if options.fix or options.diff:
-        compiled, is_right = _repair(options, given, robot, language)
+        compilation, is_right = _repair(options, program_input, robot, language)
     else:
-        compiled = compiling.compile_input(given, robot, is_strict=False)
-        compiled = compiling.for_level(compiled, robot, options.text_level)
-        is_right = compiled.is_right
+        compilation = compiling.compile_input(program_input, robot, is_strict=False)
+        compilation = compiling.for_level(compilation, robot, options.text_level)
+        is_right = compilation.is_right
     if options.json:
         messages = [
-            message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
+            message(diagnostic, compilation.source, language)
+            for diagnostic in compilation.diagnostics
         ]
         print(json.dumps(as_json(messages), indent=2))
     else:
-        outputs.print_diagnostics(compiled, language)
-        if compiled.is_right and not options.diff and (given.path is not None or not options.fix):
-            say("no_mistakes", language, file=inputs.printable_name(given.name))
+        outputs.print_diagnostics(compilation, language)
+        if (
+            compilation.is_right
+            and not options.diff
+            and (program_input.path is not None or not options.fix)
+        ):
+            say("no_mistakes", language, file=inputs.printable_name(program_input.name))
     return 0 if is_right else 1
 
 
-def _repair(options: Namespace, given: Input, robot: Robot, language: str) -> tuple[Compiled, bool]:
+def _repair(
+    options: Namespace, program_input: Input, robot: Robot, language: str
+) -> tuple[Compiled, bool]:
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
     from tiniscript.cli.repairing import print_difference, repair
 
-    result = repair(given, robot)
-    name = inputs.printable_name(given.name)
-    says = not options.json
+    result = repair(program_input, robot)
+    name = inputs.printable_name(program_input.name)
+    is_talkative = not options.json
     if options.diff:
-        if says and result.repairs:
-            print_difference(given.data, result.data, given.name)
-        key = "would_repair" if result.repairs else "nothing_repaired"
-        if says and (result.repairs or not result.compiled.is_right):
-            key += "_one" if result.repairs == 1 else ""
-            say_aside(key, language, file=name, n=result.repairs)
-        return result.compiled, result.compiled.is_right and not result.repairs
-    if given.path is None:
-        if says:
+        if is_talkative and result.repair_count:
+            print_difference(program_input.data, result.data, program_input.name)
+        key = "would_repair" if result.repair_count else "nothing_repaired"
+        if is_talkative and (result.repair_count or not result.compilation.is_right):
+            key += "_one" if result.repair_count == 1 else ""
+            say_aside(key, language, file=name, n=result.repair_count)
+        return result.compilation, result.compilation.is_right and not result.repair_count
+    if program_input.path is None:
+        if is_talkative:
             outputs.write_output(None, result.data)
-    elif result.repairs:
-        outputs.write(given.path, result.data, "unwritable_source")
-    if says and result.repairs and given.path is not None:
-        print_difference(given.data, result.data, given.name)
-        key = "repaired_one" if result.repairs == 1 else "repaired"
-        say_aside(key, language, file=name, n=result.repairs)
-    if says and not result.compiled.is_right:
-        key = "not_repaired" if result.repairs else "nothing_repaired"
+    elif result.repair_count:
+        outputs.write(program_input.path, result.data, "unwritable_source")
+    if is_talkative and result.repair_count and program_input.path is not None:
+        print_difference(program_input.data, result.data, program_input.name)
+        key = "repaired_one" if result.repair_count == 1 else "repaired"
+        say_aside(key, language, file=name, n=result.repair_count)
+    if is_talkative and not result.compilation.is_right:
+        key = "not_repaired" if result.repair_count else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compiled = compiling.for_level(result.compiled, robot, options.text_level)
-    return compiled, compiled.is_right
+    compilation = compiling.for_level(result.compilation, robot, options.text_level)
+    return compilation, compilation.is_right
 
 
 def _robot(options: Namespace, language: str) -> Robot:

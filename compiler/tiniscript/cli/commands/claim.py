@@ -20,13 +20,13 @@ def run(options: Namespace, language: str) -> int:
     with connect(options, language) as connection:
         connection.meet()
         _refuse_at_once(connection)
-        which = KEY_TEACHER if options.teacher else KEY_OWNER
-        _claim(connection, which)
+        key_kind = KEY_TEACHER if options.teacher else KEY_OWNER
+        _claim(connection, key_kind)
     return 0
 
 
-def _claim(connection: Connection, which: int) -> None:
-    request = connection.line.begin(lambda session: session.claim(which))
+def _claim(connection: Connection, key_kind: int) -> None:
+    request = connection.line.begin(lambda session: session.claim(key_kind))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
     sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
@@ -38,7 +38,7 @@ def _claim(connection: Connection, which: int) -> None:
     elif reply.status:
         raise connection.failure(reply)
     else:
-        key = "claimed" if which == KEY_OWNER else "claimed_teacher"
+        key = "claimed" if key_kind == KEY_OWNER else "claimed_teacher"
     connection.say(key)
 
 

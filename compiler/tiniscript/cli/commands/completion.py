@@ -17,7 +17,7 @@ from tiniscript.cli.texts.options import (
     VERB,
     Kind,
     choosers_of,
-    chosen,
+    command_of,
     first_word,
     options_of,
 )
@@ -88,9 +88,9 @@ def run(options: Namespace, language: str) -> int:
         last = ""
     kind, rows = _completions([word for word in before if word != "="], last, language)
     print("files" if kind in FILE_KINDS else "words")
-    for word, says in rows:
+    for word, summary in rows:
         if word.startswith(last):
-            print(f"{word}\t{says}")
+            print(f"{word}\t{summary}")
     return 0
 
 
@@ -99,7 +99,7 @@ def _completions(before: list[str], last: str, language: str) -> tuple[str, list
     verb, before = _verb(before)
     if verb not in ("tsc", *VERBS):
         return "", []
-    command, _ = chosen(verb, before)
+    command, _ = command_of(verb, before)
     options = [*options_of(command), *choosers_of(command)]
     flags = {
         flag: option
@@ -116,7 +116,7 @@ def _completions(before: list[str], last: str, language: str) -> tuple[str, list
     if kind is None:
         return "", [(flag, _first_clause(option.help(language))) for flag, option in flags.items()]
     begin = f"{name}=" if equals else ""
-    return kind.name, [(begin + word, says) for word, says in _values_of_kind(kind, language)]
+    return kind.name, [(begin + word, summary) for word, summary in _values_of_kind(kind, language)]
 
 
 def _verb(before: list[str]) -> tuple[str, list[str]]:
@@ -134,11 +134,17 @@ def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
         return [(item.port, item.description) for item in ports.list_ports()]
-    named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
-             "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
-    return [(word, "") for word in named.get(kind.name, kind.choices)]
+    names_of_kind = {
+        "robot": robots.names(),
+        "world": worlds.names(),
+        "chip": BOARDS,
+        "code": CODES,
+        "action": LESSON_ACTIONS,
+        "hurry": ("max",),
+    }
+    return [(word, "") for word in names_of_kind.get(kind.name, kind.choices)]
 
 
-def _first_clause(says: str) -> str:
+def _first_clause(summary: str) -> str:
     """Return the first part of what an option or a verb does, in one line."""
-    return re.split(r"; |\. |: `", says)[0].replace("`", "")
+    return re.split(r"; |\. |: `", summary)[0].replace("`", "")

@@ -37,7 +37,8 @@ from tiniscript.link.wire import Wire
 PATIENCE_S = 10
 MOST_ROWS = 20
 CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
-BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+# An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
+BOOT_WAIT_MS = 1700
 CASES_BUILDER = "tools.builds.conformance"  # which no package brings
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
@@ -98,7 +99,7 @@ def _port(options: Namespace, language: str) -> int:
     robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
     verdicts: list[Verdict] = []
     try:
-        wire.receive(0 if is_radio else BOOT_MS)
+        wire.receive(0 if is_radio else BOOT_WAIT_MS)
         hello = port_checks.greet(robot)
         if not hello.status and hello.number("features") & OWNED:
             raise CommandError(3, "conform_owned")
@@ -121,7 +122,7 @@ def _port(options: Namespace, language: str) -> int:
 
 
 def report(
-    found: Iterable[Verdict],
+    verdicts: Iterable[Verdict],
     count: int,
     facts: dict[str, str],
     end: str,
@@ -130,29 +131,29 @@ def report(
     language: str,
 ) -> int:
     """Print what differs, and the sum; return the exit code."""
-    found = list(found)
-    lacking = sum(verdict.what == LACKS for verdict in found)
-    found = [verdict for verdict in found if verdict.what != LACKS]
-    count -= lacking
-    differing = [verdict for verdict in found if verdict.what != AGREES]
-    good = len(found) - len(differing)
+    verdicts = list(verdicts)
+    lacking_count = sum(verdict.what == LACKS for verdict in verdicts)
+    verdicts = [verdict for verdict in verdicts if verdict.what != LACKS]
+    count -= lacking_count
+    differing_verdicts = [verdict for verdict in verdicts if verdict.what != AGREES]
+    agreeing_count = len(verdicts) - len(differing_verdicts)
     if options.json:
-        rows = [verdict._asdict() for verdict in differing]
-        sums = {**facts, "cases": count, "agree": good, "differ": len(differing)}
-        sums |= {"left_out": lacking} if lacking else {}
+        rows = [verdict._asdict() for verdict in differing_verdicts]
+        sums = {**facts, "cases": count, "agree": agreeing_count, "differ": len(differing_verdicts)}
+        sums |= {"left_out": lacking_count} if lacking_count else {}
         sums["found"] = rows
         print(json.dumps(sums, indent=2, ensure_ascii=False))
-        return int(bool(differing))
-    for verdict in differing[:MOST_ROWS]:
+        return int(bool(differing_verdicts))
+    for verdict in differing_verdicts[:MOST_ROWS]:
         print("\n".join(_rows(verdict, timeout_s, language)))
-    if len(differing) > MOST_ROWS:
-        say("conform_others", language, n=len(differing) - MOST_ROWS)
-    if len(found) < count:
+    if len(differing_verdicts) > MOST_ROWS:
+        say("conform_others", language, n=len(differing_verdicts) - MOST_ROWS)
+    if len(verdicts) < count:
         say("conform_given_up", language)
-    if lacking:
-        say("conform_left_out", language, n=lacking)
-    say(end, language, good=good, all=count, **facts)
-    return int(bool(differing))
+    if lacking_count:
+        say("conform_left_out", language, n=lacking_count)
+    say(end, language, good=agreeing_count, all=count, **facts)
+    return int(bool(differing_verdicts))
 
 
 def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
@@ -163,8 +164,10 @@ def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
         rows.append(sentence.format(detail=printable_name(verdict.detail), seconds=timeout_s))
     if verdict.line:
         nothing = text("conform_nothing", language)
-        got, want = (
+        row_got, wanted_row = (
             nothing if row is None else printable_name(row) for row in (verdict.got, verdict.want)
         )
-        rows.append(text("conform_line", language).format(line=verdict.line, got=got, want=want))
+        rows.append(
+            text("conform_line", language).format(line=verdict.line, got=row_got, want=wanted_row)
+        )
     return rows

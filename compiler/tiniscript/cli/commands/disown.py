@@ -9,12 +9,12 @@ from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNED
 
 
 def run(options: Namespace, language: str) -> int:
-    which = KEY_TEACHER if options.teacher else KEY_OWNER
+    key_kind = KEY_TEACHER if options.teacher else KEY_OWNER
     with connect(options, language) as connection:
         info = connection.meet()
-        if which == KEY_OWNER and not info.values.features & OWNED:
+        if key_kind == KEY_OWNER and not info.values.features & OWNED:
             connection.say("not_owned")
             return 0
-        connection.request(lambda session: session.disown(which))
-        connection.say("disowned" if which == KEY_OWNER else "disowned_teacher")
+        connection.request(lambda session: session.disown(key_kind))
+        connection.say("disowned" if key_kind == KEY_OWNER else "disowned_teacher")
     return 0

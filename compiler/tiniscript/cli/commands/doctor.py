@@ -32,7 +32,7 @@ from tiniscript.cli.texts import Sentence, text
 from tiniscript.cli.texts.causes import as_data, sentences_of
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis
-from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers
+from tiniscript.doctor.examination import PING_COUNT, Expectations, RobotAnswers
 from tiniscript.doctor.findings import OPEN
 from tiniscript.library import opening
 from tiniscript.link.authority import ownership_of
@@ -48,19 +48,19 @@ FORM_STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "p
 
 
 def run(options: Namespace, language: str) -> int:
-    count = whole_number("--count", options.count, PINGS, 1, 10_000, language)
+    count = whole_number("--count", options.count, PING_COUNT, 1, 10_000, language)
     expected = expected_of(options, language, count)
     if select_port(options):
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
         work = partial(_examine_member, expected)
         return run_together(options, inputs.robot(options, language), language, work)
-    told: dict[str, str] = {}  # by a robot, of itself
-    heard: list[RobotAnswers] = []
+    robot_facts: dict[str, str] = {}  # by a robot, of itself
+    answers: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
-    expected = expected._replace(note=told.update, hear=heard.append)
+    expected = expected._replace(note=robot_facts.update, hear=answers.append)
     diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
-    robot = _description(diagnosis.port or "", heard[-1], language) if heard else None
+    robot = _description(diagnosis.port or "", answers[-1], language) if answers else None
     if robot is not None:
         opening.remember(robot.port, robot.device_info.name)
         remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
@@ -68,18 +68,18 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         fields = {**_fields(diagnosis, language), "ports": rows, "robot": None}
         if robot is not None:
-            fields["robot"] = {**robot.fields(), **trips_as_data([*heard[-1].trips_ms])}
+            fields["robot"] = {**robot.fields(), **trips_as_data([*answers[-1].trips_ms])}
         print(json.dumps(fields, indent=2))
     else:
         lines = _lines(diagnosis, language)
         if robot is not None:
             lines += ["", robot.text()]
-            if heard[-1].trips_ms:
-                lines.append(trips_in_words([*heard[-1].trips_ms], language))
+            if answers[-1].trips_ms:
+                lines.append(trips_in_words([*answers[-1].trips_ms], language))
         lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
         print(Sentence("\n".join(lines)), flush=True)
     if options.report is not None:
-        data = "\n".join(_report(diagnosis, told, language)) + "\n"
+        data = "\n".join(_report(diagnosis, robot_facts, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
         sentence = text("doctor_report", language).format(file=printable_name(options.report))
         print(sentence, file=sys.stderr if options.json else sys.stdout)
@@ -100,26 +100,26 @@ def _examine_member(expected: Expectations, connection: Connection, member: Memb
     """Examine one of many robots as if it were the only one."""
     member.meet(connection)
     language = connection.language
-    findings, heard = examination_of(
+    findings, answers = examination_of(
         connection, expected, lambda what: member.tell(f"doing_{what}", n=expected.pings)
     )
-    wrong = [finding for finding in findings if finding.is_wrong]
-    rows, fields = [sentences_of(finding, language).what for finding in wrong], {}
-    if heard is not None:
-        robot, trips_ms = _description(connection.port, heard, language), [*heard.trips_ms]
+    wrong_findings = [finding for finding in findings if finding.is_wrong]
+    rows, fields = [sentences_of(finding, language).finding for finding in wrong_findings], {}
+    if answers is not None:
+        robot, trips_ms = _description(connection.port, answers, language), [*answers.trips_ms]
         rows.append(robot.line())
         if trips_ms:
             rows.append(trips_in_words(trips_ms, language))
         fields = {**robot.fields(), **trips_as_data(trips_ms)}
     fields["findings"] = [as_data(finding, language) for finding in findings]
-    return Result(not wrong, "; ".join(rows), fields)
+    return Result(not wrong_findings, "; ".join(rows), fields)
 
 
-def _description(port: str, heard: RobotAnswers, language: str) -> Description:
+def _description(port: str, answers: RobotAnswers, language: str) -> Description:
     """Return what a robot says about itself, of what it has answered."""
-    info = device_info_of(heard.hello)
-    trim = None if heard.trim is None else trim_from_reply(heard.trim)
-    return Description(port, info, heard.status, trim, ownership_of(info), language)
+    info = device_info_of(answers.hello)
+    trim = None if answers.trim is None else trim_from_reply(answers.trim)
+    return Description(port, info, answers.status, trim, ownership_of(info), language)
 
 
 def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
@@ -127,15 +127,15 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
     rows = []
     for number, finding in enumerate(diagnosis.findings, 1):
         values = report.values_of(finding) if is_private else None
-        what, seen, then = sentences_of(finding, language, values)
-        how = "doctor_sure" if finding.is_sure else "doctor_probably"
+        meaning, evidence, then = sentences_of(finding, language, values)
+        certainty_key = "doctor_sure" if finding.is_sure else "doctor_probably"
         if finding.verdict == OPEN:
-            how = "doctor_note"
+            certainty_key = "doctor_note"
         rows += [
             text("doctor_finding", language).format(
-                number=str(number), what=what, how=text(how, language)
+                number=str(number), what=meaning, how=text(certainty_key, language)
             ),
-            text("doctor_seen", language).format(seen=seen),
+            text("doctor_seen", language).format(seen=evidence),
             text("doctor_next", language).format(next=then),
         ]
     return rows
@@ -148,25 +148,25 @@ def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
     return head + _rows(diagnosis, language, is_private=False)
 
 
-def _form(told: Mapping[str, str], language: str) -> list[str]:
+def _form(robot_facts: Mapping[str, str], language: str) -> list[str]:
     """Return the form of a bring-up, filled as far as a computer can."""
-    known = dict(told)
-    if known.get("reset") in dict(RESETS):
-        known["reset"] = text(f"reset_{known['reset']}", language)
+    facts = dict(robot_facts)
+    if facts.get("reset") in dict(RESETS):
+        facts["reset"] = text(f"reset_{facts['reset']}", language)
     rows = [text("bring_up_about", language), text("bring_up_person", language)]
-    rows.append(text("bring_up_robot", language).format(**known) if known
+    rows.append(text("bring_up_robot", language).format(**facts) if facts
                 else text("bring_up_no_robot", language))  # fmt: skip
     for number, step in enumerate(FORM_STEPS, 1):
-        seen = BLANK_FIELD
-        if step == "answers" and "good" in known:
-            seen = text("bring_up_answers", language).format(**known)
-        rows.append(f"{number}. {text(f'step_{step}', language)}: {seen}")
-        does, sees = (text(f"{kind}_{step}", language) for kind in ("do", "see"))
-        rows.append(text("bring_up_step", language).format(do=does, see=sees))
+        answers_text = BLANK_FIELD
+        if step == "answers" and "good" in facts:
+            answers_text = text("bring_up_answers", language).format(**facts)
+        rows.append(f"{number}. {text(f'step_{step}', language)}: {answers_text}")
+        instruction, expectation = (text(f"{kind}_{step}", language) for kind in ("do", "see"))
+        rows.append(text("bring_up_step", language).format(do=instruction, see=expectation))
     return rows
 
 
-def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
+def _report(diagnosis: Diagnosis, robot_facts: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
     rows = report.head(report.REPORT_MARK, text("report_about", language),
                        report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
@@ -174,7 +174,13 @@ def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> lis
         f"{finding.cause} {'sure' if finding.is_sure else 'probably'}"
         for finding in diagnosis.findings
     ]
-    return [*rows, "", *_rows(diagnosis, language, is_private=True), "", *_form(told, language)]
+    return [
+        *rows,
+        "",
+        *_rows(diagnosis, language, is_private=True),
+        "",
+        *_form(robot_facts, language),
+    ]
 
 
 def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:

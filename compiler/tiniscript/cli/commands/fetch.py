@@ -16,16 +16,16 @@ def run(options: Namespace, language: str) -> int:
         connection.meet()
         data = connection.request(lambda session: session.fetch()).values.image
         name = connection.name
-    given = inputs.Input(name, data, Path("fetched.bin"))
+    program_input = inputs.Input(name, data, Path("fetched.bin"))
     if options.robot is None:
-        robot = images.robot_for(given, robot)
-    ready = images.ready(given, robot, language)
-    assert ready is not None  # an image has no mistakes
+        robot = images.robot_for(program_input, robot)
+    ready_program = images.ready_program(program_input, robot, language)
+    assert ready_program is not None  # an image has no mistakes
     if options.output is not None:
         outputs.write(Path(options.output), data, "unwritable")
         connection.say("fetched", target=inputs.printable_name(options.output), image=len(data),
-                       code=len(ready.image.code),
-                       checksum=f"{ready.image.checksum:08x}")  # fmt: skip
+                       code=len(ready_program.image.code),
+                       checksum=f"{ready_program.image.checksum:08x}")  # fmt: skip
     else:
-        print_disassembly(ready, robot, name, language)
+        print_disassembly(ready_program, robot, name, language)
     return 0

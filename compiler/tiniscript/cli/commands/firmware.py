@@ -79,13 +79,13 @@ def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Boo
         raise bad_choice("--chip", list(BOARDS), options.chip, language)
     robot = inputs.robot(options, language)
     board, bootloaders = BOARDS[options.chip or robot.board.chip]
-    there = firmware_build.on_boards(options.robot, language, [board])
-    if not there:
-        fits = ", ".join(
+    fitting_robots = firmware_build.on_boards(options.robot, language, [board])
+    if not fitting_robots:
+        fitting_boards = ", ".join(
             board.board.chip for board in firmware_build.on_boards(options.robot, language)
         )
-        raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
-    return there[0], bootloaders
+        raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fitting_boards)
+    return fitting_robots[0], bootloaders
 
 
 def _port(options: Namespace) -> str:
@@ -111,16 +111,16 @@ def _write(
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
             say_aside("flash_older", language)
-        ended = _write_firmware(command, bootloader, port, firmware, language)
-        if ended.how != avrdude.NOBODY:
+        result = _write_firmware(command, bootloader, port, firmware, language)
+        if result.outcome != avrdude.NOBODY:
             break
-    if ended.how != avrdude.DONE:
+    if result.outcome != avrdude.DONE:
         values = {
             "port": printable_name(port),
             "board": firmware.board,
-            "why": printable_name(ended.said),
+            "why": printable_name(result.output),
         }
-        raise CommandError(3, f"flash_{ended.how}", **values)
+        raise CommandError(3, f"flash_{result.outcome}", **values)
 
 
 def _write_firmware(
@@ -129,14 +129,14 @@ def _write_firmware(
     progress = Progress(language, 100)
     has_begun = False
 
-    def look(seen: StepProgress | None) -> None:
+    def look(step: StepProgress | None) -> None:
         nonlocal has_begun
-        if seen is not None:
+        if step is not None:
             has_begun = True
             silence.cancel()
-            label = "flash_writing" if seen.phase == avrdude.WRITING else "flash_reading"
+            label = "flash_writing" if step.phase == avrdude.WRITING else "flash_reading"
             progress.label = text(label, language)
-            progress.draw(seen.percent)
+            progress.draw(step.percent)
 
     try:
         with show_wait("flash_waits", language, port) as silence:

@@ -13,25 +13,29 @@ from tiniscript.syntax.formatter import format_source
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    if given.is_image:
-        raise CommandError(2, "needs_text", file=inputs.printable_name(given.name), verb="fmt")
-    parsed = compiling.parse_input(given, inputs.robot(options, language).kit)
-    if not parsed.is_right:
-        outputs.print_diagnostics(parsed, language)
+    program_input = inputs.program(options)
+    if program_input.is_image:
+        raise CommandError(
+            2, "needs_text", file=inputs.printable_name(program_input.name), verb="fmt"
+        )
+    parsed_program = compiling.parse_input(program_input, inputs.robot(options, language).kit)
+    if not parsed_program.is_right:
+        outputs.print_diagnostics(parsed_program, language)
         return 1
-    laid_out = format_source(parsed.source)
+    laid_out = format_source(parsed_program.source)
     if len(laid_out.encode()) > LARGEST_SOURCE_BYTES:
-        raise CommandError(2, "fmt_too_large", file=inputs.printable_name(given.name))
-    name = inputs.printable_name(given.name)
-    is_same = laid_out.encode() == given.data
+        raise CommandError(2, "fmt_too_large", file=inputs.printable_name(program_input.name))
+    name = inputs.printable_name(program_input.name)
+    is_formatted = laid_out.encode() == program_input.data
     if options.check:
-        key = "is_formatted" if is_same else "would_format"
-        print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
-        return 0 if is_same else 1
-    if given.path is None:
+        key = "is_formatted" if is_formatted else "would_format"
+        print(
+            text(key, language).format(file=name), file=sys.stdout if is_formatted else sys.stderr
+        )
+        return 0 if is_formatted else 1
+    if program_input.path is None:
         outputs.write_output(None, laid_out.encode())
-    elif not is_same:
-        outputs.write(given.path, laid_out.encode(), "unwritable_source")
+    elif not is_formatted:
+        outputs.write(program_input.path, laid_out.encode(), "unwritable_source")
         say("formatted", language, file=name)
     return 0

@@ -14,20 +14,20 @@ from tiniscript.cli.verbless import guess_verb, refuse, verbs_for
 
 
 def run(options: Namespace, language: str) -> int:
-    about = " ".join(options.about)
-    if not about:
+    topic = " ".join(options.about)
+    if not topic:
         show(overview, language)
-    elif any(about in verb_text("all", language).split() for language in languages()):
+    elif any(topic in verb_text("all", language).split() for language in languages()):
         show(full_help, language)
     elif command := next(
-        (item for item in COMMANDS if command_words(item) == about), FORMER_COMMANDS.get(about)
+        (item for item in COMMANDS if command_words(item) == topic), FORMER_COMMANDS.get(topic)
     ):
         show(partial(help_of, command), language)
     else:
-        result = [] if guess_verb(about) else verbs_for(about)
-        if not result and " " in about:
-            raise CommandError(2, "none_does", found=printable_name(about))
+        result = [] if guess_verb(topic) else verbs_for(topic)
+        if not result and " " in topic:
+            raise CommandError(2, "none_does", found=printable_name(topic))
         if not result:
-            refuse(about, [], language)
+            refuse(topic, [], language)
         show(partial(list_commands, result), language)
     return 0

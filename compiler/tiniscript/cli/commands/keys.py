@@ -23,22 +23,22 @@ def run(options: Namespace, language: str) -> int:
     ways = options.list or None, options.export, options.bring, options.forget, options.accept
     if sum(way is not None for way in ways) > 1:
         raise CommandError(2, "one_way")
-    own = KeyFile()
+    key_file = KeyFile()
     try:
-        robot_keys = own.all()
+        robot_keys = key_file.all()
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_bad", why) from None
-    if keys.is_shared(own.path):
-        warning = CommandError(0, "keys_shared", file=printable_name(str(own.path)))
+        raise _key_file_error(key_file, "own_keys_bad", why) from None
+    if keys.is_shared(key_file.path):
+        warning = CommandError(0, "keys_shared", file=printable_name(str(key_file.path)))
         print(warning.sentence(language), file=sys.stderr)
     if options.export is not None:
         _export(robot_keys, options.export, language)
     elif options.bring is not None:
-        _import(own, options.bring, language)
+        _import(key_file, options.bring, language)
     elif options.forget is not None:
-        _forget(own, robot_keys, options.forget, language)
+        _forget(key_file, robot_keys, options.forget, language)
     elif options.accept is not None:
-        _accept(own, options.accept, language)
+        _accept(key_file, options.accept, language)
     elif options.json:
         print(json.dumps([_fields(key) for key in robot_keys], indent=2))
     else:
@@ -50,52 +50,58 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     path = Path(name)
     if path.exists():
         raise CommandError(2, "export_there", file=printable_name(name))
-    taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
-    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.FILE_MODE)
-    say("keys_exported", language, n=len(taken), file=printable_name(name))
+    exported_keys = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
+    outputs.write(path, keys.encode_keys(exported_keys), "unwritable_more --export", keys.FILE_MODE)
+    say("keys_exported", language, n=len(exported_keys), file=printable_name(name))
 
 
-def _import(own: KeyFile, name: str, language: str) -> None:
+def _import(key_file: KeyFile, name: str, language: str) -> None:
     try:
-        brought = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
+        imported_keys = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
         raise CommandError(2, "bad_keys", file=printable_name(name)) from None
     try:
-        changed = own.add(brought)
+        changed_count = key_file.add(imported_keys)
     except TooManyKeys:
         raise CommandError(
             2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
         ) from None
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_full", why) from None
-    say("keys_imported", language, n=changed, all=len(brought), file=printable_name(name))
+        raise _key_file_error(key_file, "own_keys_full", why) from None
+    say(
+        "keys_imported",
+        language,
+        n=changed_count,
+        all=len(imported_keys),
+        file=printable_name(name),
+    )
 
 
-def _forget(own: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
-    gone = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
-    gone = gone or [key for key in robot_keys if robot == key.name]
-    if len({key.id for key in gone}) != 1:
+def _forget(key_file: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
+    forgotten_keys = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
+    forgotten_keys = forgotten_keys or [key for key in robot_keys if robot == key.name]
+    if len({key.id for key in forgotten_keys}) != 1:
         raise CommandError(2, "no_such_key", robot=printable_name(robot))
     try:
-        own.forget(gone[0].id)
+        key_file.forget(forgotten_keys[0].id)
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_full", why) from None
+        raise _key_file_error(key_file, "own_keys_full", why) from None
     say("keys_forgotten", language, robot=printable_name(robot))
 
 
-def _accept(own: KeyFile, robot: str, language: str) -> None:
+def _accept(key_file: KeyFile, robot: str, language: str) -> None:
     if not re.fullmatch("[0-9a-fA-F]{8}", robot):
         raise CommandError(2, "no_id", robot=printable_name(robot))
     try:
-        own.accept(int(robot, 16))
+        key_file.accept(int(robot, 16))
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_full", why) from None
+        raise _key_file_error(key_file, "own_keys_full", why) from None
     say("robot_accepted", language, robot=robot.lower())
 
 
-def _key_file_error(own: KeyFile, key: str, why: BadKeys) -> CommandError:
+def _key_file_error(key_file: KeyFile, key: str, why: BadKeys) -> CommandError:
     return CommandError(
-        2, key, file=printable_name(str(own.path)), why=f": {why.why}" if why.why else ""
+        2, key, file=printable_name(str(key_file.path)), why=f": {why.why}" if why.why else ""
     )
 
 
@@ -108,8 +114,8 @@ def _print(robot_keys: list[RobotKey], language: str) -> None:
             id=f"{key.id:08x}", kind=kind, name=printable_name(key.name)
         )
         marks = [name for name in ("pending", "stale") if getattr(key, f"is_{name}")]
-        more = "".join(f"   ({text(f'key_{name}', language)})" for name in marks)
-        print(row.rstrip() + more)
+        marks_text = "".join(f"   ({text(f'key_{name}', language)})" for name in marks)
+        print(row.rstrip() + marks_text)
 
 
 def _fields(key: RobotKey) -> dict[str, object]:

@@ -23,9 +23,9 @@ LIST = "list"
 def run(options: Namespace, language: str) -> int:
     action = options.action or LIST
     if action != LIST and action not in ACTIONS:
-        known = f"{', '.join(list(ACTIONS)[:-1])} {text('or', language)} {list(ACTIONS)[-1]}"
+        actions_text = f"{', '.join(list(ACTIONS)[:-1])} {text('or', language)} {list(ACTIONS)[-1]}"
         raise CommandError(
-            2, "lesson_action", known=known, found=inputs.printable_name(action) or "''"
+            2, "lesson_action", known=actions_text, found=inputs.printable_name(action) or "''"
         )
     _refuse_others(options, action)
     if action == LIST:
@@ -41,8 +41,8 @@ def run(options: Namespace, language: str) -> int:
             return _show(folder, options.teacher, language)
         return _sheet(folder, lesson, options, language)
     except LessonRefused as refused:
-        alone, file = ("no_such_lesson", "no_page"), inputs.printable_name(options.number)
-        raise inputs.refusal(refused, language, "lesson_refused", alone, file=file) from None
+        full_reasons, file = ("no_such_lesson", "no_page"), inputs.printable_name(options.number)
+        raise inputs.refusal(refused, language, "lesson_refused", full_reasons, file=file) from None
 
 
 def _refuse_others(options: Namespace, action: str) -> None:
@@ -71,12 +71,12 @@ def _page(folder: Path, is_teachers: bool, language: str) -> str:
     page = catalogue.page(folder, catalogue.TEACHER if is_teachers else catalogue.PUPIL, language)
     if not is_teachers:
         return page
-    right, wrong = catalogue.answers(folder)
+    right_answers, wrong_answers = catalogue.answers(folder)
     parts = [page.rstrip("\n"), f"## {text('lesson_answers', language)}"]
-    for answer in right:
+    for answer in right_answers:
         parts += [f"{answer.labels[language]}:", _fence(answer.program)]
     parts.append(f"## {text('lesson_wrong', language)}")
-    for answer in wrong:
+    for answer in wrong_answers:
         parts += [f"{answer.labels[language]}:", _fence(answer.program), answer.said[language]]
     return "\n\n".join(parts) + "\n"
 

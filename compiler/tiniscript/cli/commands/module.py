@@ -38,14 +38,16 @@ def run(options: Namespace, language: str) -> int:
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
-        return _print_finding(open_failure(System(), port, failure)._replace(of="module"), language)
+        return _print_finding(
+            open_failure(System(), port, failure)._replace(part_name="module"), language
+        )
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, expected, language, steps).run()
     except OSError:
-        code = _print_finding(sure("port_gone")._replace(of="module"), language)
+        exit_code = _print_finding(sure("port_gone")._replace(part_name="module"), language)
         print(_speed_after_abort(steps, language))
-        return code
+        return exit_code
     except KeyboardInterrupt:
         raise CommandError(2, "module_stopped", left=_speed_after_abort(steps, language)) from None
     finally:
@@ -76,13 +78,13 @@ def _wanted_settings(options: Namespace) -> WantedSettings:
         name = set_up.name_for(int(options.id, 16))
     baud = None
     if options.baud is not None:
-        known = {str(item): item for item in BAUDS}
-        if options.baud not in known:
+        baud_of_text = {str(item): item for item in BAUDS}
+        if options.baud not in baud_of_text:
             raise CommandError(
                 2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
                 found=printable_name(options.baud) or "''",
             )  # fmt: skip
-        baud = known[options.baud]
+        baud = baud_of_text[options.baud]
     result = WantedSettings(name, options.pin, baud)
     misfits = [set_up.misfit(result, dialect) for dialect in DIALECTS]
     if all(misfits):
@@ -90,15 +92,15 @@ def _wanted_settings(options: Namespace) -> WantedSettings:
     return result
 
 
-def _refuse(wanted: WantedSettings, dialect: Dialect, what: str) -> None:
-    if what == NAME:
+def _refuse(wanted_settings: WantedSettings, dialect: Dialect, setting: str) -> None:
+    if setting == NAME:
         raise CommandError(
             2,
             "module_bad_name",
             most=str(dialect.name_bytes),
-            found=printable_name(wanted.name or "") or "''",
+            found=printable_name(wanted_settings.name or "") or "''",
         )
-    if what == PIN:
+    if setting == PIN:
         raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
 
 
@@ -116,31 +118,32 @@ class _SetUp:
         self,
         wire: Wire,
         options: Namespace,
-        wanted: WantedSettings,
+        wanted_settings: WantedSettings,
         language: str,
-        begun: list[Step],
+        begun_steps: list[Step],
     ) -> None:
-        self.wire, self.options, self.wanted = wire, options, wanted
-        self.language, self.begun = language, begun
+        self.wire, self.options, self.wanted_settings = wire, options, wanted_settings
+        self.language, self.begun_steps = language, begun_steps
         self.port = printable_name(options.port)
 
     def run(self) -> int:
-        doing = Doing()
+        status_line = Doing()
         module = find_module(
-            self.wire, look=lambda baud: doing.tell(self._text("module_looking", baud=str(baud)))
+            self.wire,
+            look=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
         )
-        doing.end()
+        status_line.end()
         if module is None:
             return _print_finding(sure("module_silent"), self.language)
-        what = set_up.misfit(self.wanted, module.dialect)
-        if what:
-            _refuse(self.wanted, module.dialect, what)
-        plan = set_up.steps(self.wanted, module.dialect)
-        now = self._values(module)
-        self._introduce(module, now)
+        misfit = set_up.misfit(self.wanted_settings, module.dialect)
+        if misfit:
+            _refuse(self.wanted_settings, module.dialect, misfit)
+        plan = set_up.steps(self.wanted_settings, module.dialect)
+        settings_now = self._values(module)
+        self._introduce(module, settings_now)
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
-            self.begun += [step for step in plan if step.what == BAUD]
+            self.begun_steps += [step for step in plan if step.what == BAUD]
             outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
@@ -161,8 +164,8 @@ class _SetUp:
         dialect = module.dialect
         questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
         values = {
-            what: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
-            for what, question in questions.items()
+            setting: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
+            for setting, question in questions.items()
             if question
         }
         if BAUD in values:
@@ -170,28 +173,30 @@ class _SetUp:
             values[BAUD] = next(
                 (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
             )
-        return {what: printable_name(value) for what, value in values.items() if value}
+        return {setting: printable_name(value) for setting, value in values.items() if value}
 
-    def _introduce(self, module: Module, now: dict[str, str]) -> None:
+    def _introduce(self, module: Module, settings_now: dict[str, str]) -> None:
         version = printable_name(module.version) or self._text("module_no_version")
         print(
             self._text("module_found", module=module.dialect.name, port=self.port,
                        version=version, baud=str(module.baud))
         )  # fmt: skip
-        if now:
-            values = (self._text(f"module_what_{item}", value=now[item]) for item in now)
+        if settings_now:
+            values = (
+                self._text(f"module_what_{item}", value=settings_now[item]) for item in settings_now
+            )
             print(self._text("module_now", values=", ".join(values)), flush=True)
 
     def _show(self, plan: list[Step]) -> None:
         for step in plan:
-            what = self._text(f"module_what_{step.what}", value=step.value)
+            description = self._text(f"module_what_{step.what}", value=step.value)
             commands = self._text("module_plan_or").join(step.commands)
-            print(f"{what}: " + self._text("module_plan", commands=commands))
+            print(f"{description}: " + self._text("module_plan", commands=commands))
 
     def _print_outcome(self, outcome: Outcome) -> None:
-        step, how, text = outcome
+        step, outcome_name, text = outcome
         name = self._text(f"module_what_{step.what}", value=step.value)
-        if step.what == BAUD and how == DONE:
-            how = "done_baud" if text == step.value else "done_later"
+        if step.what == BAUD and outcome_name == DONE:
+            outcome_name = "done_baud" if text == step.value else "done_later"
         text = printable_name(text) or self._text("module_no_word")
-        _print_finding(sure(f"module_{how}", name=name, said=text), self.language)
+        _print_finding(sure(f"module_{outcome_name}", name=name, said=text), self.language)

@@ -28,8 +28,14 @@ def run(options: Namespace, language: str) -> int:
             print(connection.text("watching"), file=sys.stderr)
             if options.plot and sys.stderr.isatty():
                 with Board(text("plot_waiting", language)) as board:
-                    printer = EventPrinter(language, options.json, has_times=True, rows=add,
-                                    out=board.say, err=board.warn)  # fmt: skip
+                    printer = EventPrinter(
+                        language,
+                        options.json,
+                        has_times=True,
+                        rows=add,
+                        print_line=board.say,
+                        print_error=board.warn,
+                    )
                     _watch(connection, printer, seconds, board)
             else:
                 printer = EventPrinter(language, options.json, has_times=True, rows=add)

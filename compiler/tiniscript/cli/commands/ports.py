@@ -26,7 +26,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKING_VERB
 from tiniscript.robots.profile import Robot
 
-OPEN_S = 12.0
+OPEN_LIMIT_S = 12.0
 
 
 def run(options: Namespace, language: str) -> int:
@@ -39,12 +39,12 @@ def run(options: Namespace, language: str) -> int:
             print(note, file=sys.stderr, flush=True)
     rows = list_rows(language, options.port, in_reach)
     if options.ask:
-        absent: Row = {"answer": None, "said": text("out_of_reach", language)}
+        absent_row: Row = {"answer": None, "said": text("out_of_reach", language)}
 
         def ask(row: Row) -> Row:
             port = str(row["port"])
-            is_absent = port in in_reach.absent and row["held_by"] is None
-            return absent if is_absent else _ask(port, baud, robot, language)
+            is_absent = port in in_reach.absent_ports and row["held_by"] is None
+            return absent_row if is_absent else _ask(port, baud, robot, language)
 
         with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
             for row, answer in zip(rows, pool.map(ask, rows), strict=True):
@@ -59,10 +59,12 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
+        with closing(
+            open_client(port, robot, LOOKING_VERB, baud, language, OPEN_LIMIT_S)
+        ) as client:
             reply = client.hello()
-            device_info, heard = client.line.robot, client.line.heard
-            found = stranger(client.line)
+            device_info, has_bytes = client.line.robot, client.line.heard
+            foreign_board = stranger(client.line)
     except CommandError as failure:
         return {"answer": None, "said": failure.plain(language)}
     except RobotError as gone:
@@ -86,6 +88,6 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "owner": owner,
             "said": sentence,
         }
-    if found is not None and (found.has_row or found.is_sure):
-        return {"answer": None, "said": Sentence(explain(found, language).said.rstrip("."))}
-    return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}
+    if foreign_board is not None and (foreign_board.has_row or foreign_board.is_sure):
+        return {"answer": None, "said": Sentence(explain(foreign_board, language).said.rstrip("."))}
+    return {"answer": None, "said": text("port_other" if has_bytes else "port_quiet", language)}

@@ -36,15 +36,15 @@ if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
 MOST_MEMORY_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
-SAVE_S = 1.0  # between two looks at what the robot keeps
+SAVE_INTERVAL_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
 
 
 def run(options: Namespace, language: str) -> int:
     profile = inputs.robot(options, language)
     port = whole_number("--listen", options.listen, 0, 0, 65535, language)
-    usual, most = profile.board.baud, opening.FASTEST_BAUD
-    baud = whole_number("--baud", options.baud, usual, 0, most, language)
+    usual_baud, fastest_baud = profile.board.baud, opening.FASTEST_BAUD
+    baud = whole_number("--baud", options.baud, usual_baud, 0, fastest_baud, language)
     pushes = sorted(
         [(time_ms, PUSH_MS) for time_ms in _pushes_ms("--button-at", options.button_at)]
         + [(time_ms, HOLD_MS) for time_ms in _pushes_ms("--hold-at", options.hold_at)]
@@ -104,9 +104,9 @@ class _Stage:
         robot = self.simulator.robot
         self._introduce()
         try:
-            with Keys() as keys, handle_signals() as ended:
+            with Keys() as keys, handle_signals() as end_request:
                 self._begin()
-                while not ended.is_set and (end_ms is None or robot.now_ms < end_ms):
+                while not end_request.is_set and (end_ms is None or robot.now_ms < end_ms):
                     if pushes and robot.now_ms >= pushes[0][0]:
                         self.simulator.push(pushes.pop(0)[1])
                     self.simulator.turn(self._limit_s(pushes, end_ms))
@@ -195,7 +195,9 @@ class _Stage:
 
     def _save(self, is_due: bool) -> None:
         """Write the robot's EEPROM to its file, if it has changed."""
-        if self.options.memory is None or not (is_due or monotonic() > self._look_s + SAVE_S):
+        if self.options.memory is None or not (
+            is_due or monotonic() > self._look_s + SAVE_INTERVAL_S
+        ):
             return
         self._look_s = monotonic()
         memory = self.simulator.robot.memory
@@ -217,9 +219,11 @@ def _announcement(name: str, number: int) -> Announcement:
     try:
         from tiniscript.virtual.announcement import Announcement, NameTaken
     except ImportError as missing:
-        how = install_advice.command(install_advice.RADIO)
+        install_command = install_advice.command(install_advice.RADIO)
         why = missing.name or ""
-        raise CommandError(2, "port_not_installed", port="--announce", why=why, how=how) from None
+        raise CommandError(
+            2, "port_not_installed", port="--announce", why=why, how=install_command
+        ) from None
     try:
         return Announcement(name, number)
     except NameTaken:
@@ -228,14 +232,14 @@ def _announcement(name: str, number: int) -> Announcement:
         raise CommandError(3, "no_announcement", why=why) from None
 
 
-def _pushes_ms(option: str, found: str | None) -> list[int]:
-    if found is None:
+def _pushes_ms(option: str, typed: str | None) -> list[int]:
+    if typed is None:
         return []
-    values = [decimal(part.strip()) for part in found.split(",")]
-    known = [value for value in values if value is not None and value >= 0]
-    if len(known) != len(values):
-        raise CommandError(2, "bad_button", option=option, found=printable_name(found) or "''")
-    return known
+    values = [decimal(part.strip()) for part in typed.split(",")]
+    pushes_ms = [value for value in values if value is not None and value >= 0]
+    if len(pushes_ms) != len(values):
+        raise CommandError(2, "bad_button", option=option, found=printable_name(typed) or "''")
+    return pushes_ms
 
 
 def _memory(name: str | None) -> bytes | None:

@@ -23,30 +23,32 @@ LONGEST = 10**12  # milliseconds
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    if is_recording(given.data):
+    program_input = inputs.program(options)
+    if is_recording(program_input.data):
         from tiniscript.cli.robot.recorded_run import play
 
-        return play(given, options, language)
+        return play(program_input, options, language)
     if options.record is not None:
         from tiniscript.cli.robot.recorded_run import record
 
-        return record(given, options, language)
+        return record(program_input, options, language)
     if options.world is not None:
         raise CommandError(2, "world_alone")
     max_ms = thousandths("--max-time", options.max_time, 60_000, 0, LONGEST, language)
     pace = thousandths("--pace", options.pace, 1000, 0, 10**9, language)
     max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    robot = inputs.robot_for(given, options, language)
-    lists = sensor_lists(options.sensor, robot, language)
-    ready = images.ready(given, robot, language)
-    if ready is None:
+    robot = inputs.robot_for(program_input, options, language)
+    reading_lists = sensor_lists(options.sensor, robot, language)
+    ready_program = images.ready_program(program_input, robot, language)
+    if ready_program is None:
         return 1
-    machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    begins = iter_actions(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
-    read: set[int] = set()
-    events = _recording_reads(begins, read)
+    machine_of = _cpp_machine(ready_program.image, robot) if options.machine == "cpp" else None
+    begins = iter_actions(
+        ready_program.image, robot, reading_lists, max_ms, max_steps, seed, machine_of
+    )
+    sensors_read: set[int] = set()
+    events = _recording_reads(begins, sensors_read)
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.terminal.run_drawing import watch
 
@@ -54,13 +56,15 @@ def run(options: Namespace, language: str) -> int:
     else:
         ending = _print(events)
     sys.stdout.flush()
-    for sensor in sorted(read.difference(lists)):
+    for sensor in sorted(sensors_read.difference(reading_lists)):
         device = robot.kit.readings[sensor]
         values = {"sensor": device.name, "zero": device.text(0), "readings": _readings(device)}
         say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":
         return 0
-    text = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
+    text = fault_text(
+        ending.fault, ending.offset, ready_program.places, program_input.is_image, language
+    )
     print(text, file=sys.stderr)
     return 1
 
@@ -73,11 +77,13 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
         raise missing_package_error("no_wasmtime", why) from None
 
 
-def _recording_reads(events: Iterator[Event | Ending], read: set[int]) -> Iterator[Event | Ending]:
+def _recording_reads(
+    events: Iterator[Event | Ending], sensors_read: set[int]
+) -> Iterator[Event | Ending]:
     """Yield the events of a run, and note the numbers of the sensors that it reads."""
     for event in events:
         if isinstance(event, Event) and event.what == "READ":
-            read.add(event.values[0])
+            sensors_read.add(event.values[0])
         yield event
 
 

@@ -61,10 +61,10 @@ def _without_robot(
     """
     may_open = port is not None
     findings = diagnosis_of(options, port, expected, language, may_open=may_open).findings
-    wrong = [finding for finding in findings if finding.is_wrong]
-    if not wrong:  # it has come meanwhile
+    wrong_findings = [finding for finding in findings if finding.is_wrong]
+    if not wrong_findings:  # it has come meanwhile
         return [sure("plain", said=failure.sentence(language))]
-    return [finding._replace(of=finding.part or "answers") for finding in wrong]
+    return [finding._replace(part_name=finding.part or "answers") for finding in wrong_findings]
 
 
 def _print(
@@ -81,27 +81,36 @@ def _print(
         say("selftest_head", language, robot=name, port=printable_name(port or ""))
     print("\n".join(rows(findings, language)))
     counts = {item: sum(row.verdict == item for row in findings) for item in (OK, WRONG, OPEN)}
-    good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
-    say("selftest_end", language, good=good, all=len(findings), wrong=wrong, open=left)
+    good_count, wrong_count, open_count = counts[OK], counts[WRONG], counts[OPEN]
+    say(
+        "selftest_end",
+        language,
+        good=good_count,
+        all=len(findings),
+        wrong=wrong_count,
+        open=open_count,
+    )
 
 
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    hidden = [(item, report.shown_port(port)) for item in (port, printable_name(port)) if port]
+    hidden_names = [
+        (item, report.shown_port(port)) for item in (port, printable_name(port)) if port
+    ]
     if name and name not in robots.names():  # a shipped one's says what it is, not whose
-        hidden.append((name, report.HIDDEN))
+        hidden_names.append((name, report.HIDDEN))
 
     def without_names(row: str) -> str:
-        for private, public in hidden:
-            row = row.replace(private, public)
+        for private_findings, public in hidden_names:
+            row = row.replace(private_findings, public)
         return row
 
     head = report.head(report.SELFTEST_MARK, text("selftest_about", language),
                        [("system", sys.platform)], port)  # fmt: skip
-    private = [
+    private_findings = [
         finding
         if CAUSES[finding.cause].part
         else finding._replace(values=report.values_of(finding))
         for finding in findings  # what is of no part is of the computer and its port
     ]
-    return [*head, "", *map(without_names, rows(private, language))]
+    return [*head, "", *map(without_names, rows(private_findings, language))]

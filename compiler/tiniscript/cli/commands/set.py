@@ -11,5 +11,5 @@ from tiniscript.cli.texts.verbs import settings
 
 def run(options: Namespace, language: str) -> int:
     *known, last = settings()
-    named = f"{', '.join(known)} {text('or', language)} {last}"
-    raise CommandError(2, "set_what", known=named)
+    settings_text = f"{', '.join(known)} {text('or', language)} {last}"
+    raise CommandError(2, "set_what", known=settings_text)

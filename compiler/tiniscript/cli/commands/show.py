@@ -13,40 +13,42 @@ from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    robot = inputs.robot_for(given, options, language)
+    program_input = inputs.program(options)
+    robot = inputs.robot_for(program_input, options, language)
     if options.arduino:
-        return _sketch(options, given, robot, language)
+        return _sketch(options, program_input, robot, language)
     if options.output is not None:
         raise CommandError(2, "output_needs_arduino", file=inputs.printable_name(options.output))
-    if given.is_image and options.robot is None:
-        robot = images.robot_for(given, robot)
-    ready = images.ready(given, robot, language)
-    if ready is None:
+    if program_input.is_image and options.robot is None:
+        robot = images.robot_for(program_input, robot)
+    ready_program = images.ready_program(program_input, robot, language)
+    if ready_program is None:
         return 1
     if options.json:
-        print_json(ready, robot)
+        print_json(ready_program, robot)
     else:
-        print_disassembly(ready, robot, inputs.printable_name(given.name), language)
+        print_disassembly(ready_program, robot, inputs.printable_name(program_input.name), language)
     return 0
 
 
-def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str) -> int:
+def _sketch(options: Namespace, program_input: inputs.Input, robot: Robot, language: str) -> int:
     if options.json:
         raise CommandError(2, "sketch_or_json")
-    if given.is_image:
-        raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(given.name))
+    if program_input.is_image:
+        raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(program_input.name))
     if robot.board.chip not in BOARD_TITLES:
-        known = ", ".join(BOARD_TITLES)
-        raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
-    compiled = compiling.compile_input(given, robot, is_strict=False)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+        boards_text = ", ".join(BOARD_TITLES)
+        raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=boards_text)
+    compilation = compiling.compile_input(program_input, robot, is_strict=False)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return 1
-    assert compiled.program is not None
-    if missing := missing_feature(compiled.program, robot.kit):
-        raise CommandError(2, f"sketch_no_{missing}", file=inputs.printable_name(given.name))
-    sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
+    assert compilation.program is not None
+    if missing := missing_feature(compilation.program, robot.kit):
+        raise CommandError(
+            2, f"sketch_no_{missing}", file=inputs.printable_name(program_input.name)
+        )
+    sketch = sketch_of(compilation.source, compilation.program, robot, language).encode()
     if outputs.write_output(options.output, sketch):
         name = inputs.printable_name(robot.labels[language]["robot"])
         say("sketch", language, file=inputs.printable_name(options.output), robot=name)

@@ -49,14 +49,14 @@ def run(options: Namespace, language: str) -> int:
 
 def _serve(
     options: Namespace, language: str, place: tuple[str, int], hosting: Hosting,
-    taught: _Class | None = None,
+    class_: _Class | None = None,
 ) -> int:  # fmt: skip
-    went_on = _resume_class(taught) if taught else 0
+    resumed_count = _resume_class(class_) if class_ else 0
     if not serving.is_built() or building.is_possible():
         page_build.prepare(options, language)
     host, port = place
     try:
-        server = _server(port, host, hosting, taught.room if taught else None)
+        server = _server(port, host, hosting, class_.room if class_ else None)
     except OSError as why:
         address = f"http://{host}:{port}/"
         key = "studio_no_address" if options.is_class else "studio_taken"
@@ -69,11 +69,11 @@ def _serve(
             thread.start()
             entrance = server.entrance()
             print(entrance, flush=True)
-            key = "studio_class" if taught else "studio_here"
-            values = {"address": server.address, "code": taught.room.code if taught else ""}
+            key = "studio_class" if class_ else "studio_here"
+            values = {"address": server.address, "code": class_.room.code if class_ else ""}
             say_aside(key, language, **values)
-            if went_on:
-                say_aside("studio_goes_on", language, pupils=went_on)
+            if resumed_count:
+                say_aside("studio_goes_on", language, pupils=resumed_count)
             if not options.no_browser:
                 webbrowser.open(server.entrance(is_for_here=True))
             while thread.is_alive():
@@ -82,10 +82,10 @@ def _serve(
                     entrance = server.entrance()
                     say_aside("studio_opened", language)
                     print(entrance, flush=True)
-                if taught is not None:
-                    taught.room.tend()
-                    taught.keeper.keep(taught.room.state_to_keep())
-                    if taught.room.has_ended:
+                if class_ is not None:
+                    class_.room.tend()
+                    class_.keeper.keep(class_.room.state_to_keep())
+                    if class_.room.has_ended:
                         break
     except KeyboardInterrupt:
         pass
@@ -107,11 +107,11 @@ def _class_keeper() -> class_keeping.Keeper:
         raise CommandError(3, "studio_two_classes") from None
 
 
-def _resume_class(taught: _Class) -> int:
+def _resume_class(class_: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
-    kept = taught.keeper.read()
-    pupils = taught.room.go_on(*kept) if kept is not None else 0
-    taught.room.tidy()
+    saved_class = class_.keeper.read()
+    pupils = class_.room.go_on(*saved_class) if saved_class is not None else 0
+    class_.room.tidy()
     return pupils
 
 

@@ -20,15 +20,15 @@ from tiniscript.link.trim import MOST_PACE, Pace, Trim, trim_from_reply
 
 
 def run(options: Namespace, language: str) -> int:
-    given = _trim_options(options, language)
+    typed_values = _trim_options(options, language)
     with connect(options, language) as connection:
         connection.meet()
         before = trim_from_reply(connection.request(lambda session: session.trim()).values)
         if options.show:
             _print(connection, "trim_tells", before, options.json)
             return 0
-        if options.reset or given:
-            trim = _change_trim(before, given, options.reset)
+        if options.reset or typed_values:
+            trim = _change_trim(before, typed_values, options.reset)
         else:
             trim = guide(connection, before)
         # This trim may be set already; the status OK means that it is saved.
@@ -37,17 +37,17 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _change_trim(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
+def _change_trim(before: Trim, typed_values: dict[str, Any], is_reset: bool) -> Trim:
     """Return a trim with what the options say."""
-    paces = {name: given.pop(name) for name in Pace._fields if name in given}
+    paces = {name: typed_values.pop(name) for name in Pace._fields if name in typed_values}
     if paces and before.pace is None:
         raise CommandError(1, "trim_no_pace")
     if before.pace is not None:
         pace = (Pace() if is_reset else before.pace)._replace(**paces)
         if not pace.rises:
             raise CommandError(2, "trim_not_faster")
-        given["pace"] = pace
-    return (Trim() if is_reset else before)._replace(**given)
+        typed_values["pace"] = pace
+    return (Trim() if is_reset else before)._replace(**typed_values)
 
 
 def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
@@ -68,8 +68,8 @@ def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     for name in Pace._fields:
         text: str | None = getattr(options, name)
         if text is not None:
-            option, most = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
-            size = thousandths(option, text.replace(",", "."), 0, 0, most, language)
+            option, most_thousandths = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
+            size = thousandths(option, text.replace(",", "."), 0, 0, most_thousandths, language)
             result[name] = size / ONE
     if options.least is not None:
         result["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)

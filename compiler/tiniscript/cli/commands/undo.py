@@ -54,7 +54,7 @@ def _undo_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
     receipt = UndoReceipt(connection)
     member.tell("crew_saving")
-    quiet = EventPrinter(connection.language, False, out=lambda line: None)
+    quiet = EventPrinter(connection.language, False, print_line=lambda line: None)
     UndoSaving(connection, quiet, receipt.values).wait()
     return Result(True, receipt.line(), receipt.program_fields())
 

@@ -29,91 +29,103 @@ from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    robot = inputs.robot_for(given, options, language)
-    is_many = select_port(options)
+    program_input = inputs.program(options)
+    robot = inputs.robot_for(program_input, options, language)
+    is_for_many = select_port(options)
     # the robot that answers may not be the default one
-    is_open = options.robot is None and not is_many and not given.is_image
-    ready = _ready(given, robot, options, is_open)
-    if ready is None:
+    may_choose_robot = options.robot is None and not is_for_many and not program_input.is_image
+    ready_program = _ready(program_input, robot, options, may_choose_robot)
+    if ready_program is None:
         return 1
-    is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
-    if options.record is not None and (is_many or not is_followed):
+    is_followed = ready_program.image.start == "SI" and not (options.no_run or options.detach)
+    if options.record is not None and (is_for_many or not is_followed):
         raise CommandError(2, "record_follows")
     if options.record is not None:
         from tiniscript.cli.robot.recorded_run import require_known_robot, source_text
 
         require_known_robot(robot)
-        options.recorded_text = source_text(given)
-    if options.breaks and (is_many or not is_followed):
+        options.recorded_text = source_text(program_input)
+    if options.breaks and (is_for_many or not is_followed):
         raise CommandError(2, "break_follows")
-    if is_many:
+    if is_for_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
-        return upload_to_many(options, robot, language, ready, inputs.printable_name(given.name))
+        return upload_to_many(
+            options, robot, language, ready_program, inputs.printable_name(program_input.name)
+        )
     with Connection(options, robot, language) as connection:
         if connection.simulator is not None and options.detach:
             raise CommandError(2, "virtual_and_detach")
-        if ready.image.start == "PING":  # a program that asks who is there
+        if ready_program.image.start == "PING":  # a program that asks who is there
             from tiniscript.cli.robot.description import introduce
 
             return introduce(connection, options.json)
         connection.meet()
-        is_kit_wrong = ready.image.devices and connection.device_info.kit != robot.kit.fingerprint
-        if is_open and is_kit_wrong and own_kit.use_answering_profile(connection, options):
-            ready = images.ready(given, connection.profile, language, is_strict=True)
-            if ready is None:
+        is_kit_wrong = (
+            ready_program.image.devices and connection.device_info.kit != robot.kit.fingerprint
+        )
+        if may_choose_robot and is_kit_wrong and own_kit.use_answering_profile(connection, options):
+            ready_program = images.ready_program(
+                program_input, connection.profile, language, is_strict=True
+            )
+            if ready_program is None:
                 return 1
         try:
-            return _upload(connection, ready, inputs.printable_name(given.name), options)
+            return _upload(
+                connection, ready_program, inputs.printable_name(program_input.name), options
+            )
         except KeyboardInterrupt:
             return stop_and_say(connection)
 
 
 def _ready(
-    given: inputs.Input, robot: Robot, options: Namespace, is_open: bool
-) -> images.Ready | None:  # fmt: skip
+    program_input: inputs.Input, robot: Robot, options: Namespace, may_choose_robot: bool
+) -> images.ReadyProgram | None:  # fmt: skip
     """Return the program, or None where its mistakes have just been printed.
 
     One with words of another robot is compiled for the robot that answers, if there is one.
     """
     language: str = options.language
-    if not is_open:
-        return images.ready(given, robot, language, is_strict=True)
+    if not may_choose_robot:
+        return images.ready_program(program_input, robot, language, is_strict=True)
     try:
-        return images.ready(given, robot, language, is_strict=True, is_open=True)
+        return images.ready_program(
+            program_input, robot, language, is_strict=True, may_choose_robot=True
+        )
     except images.OtherRobot as other:
         result = own_kit.find_answering_robot(options, robot, language)
         if result is not None:
-            return images.ready(given, result, language, is_strict=True)
+            return images.ready_program(program_input, result, language, is_strict=True)
         outputs.print_diagnostics(other.compiled, language)
         return None
 
 
 def _upload(
-    connection: Connection, ready: images.Ready, name: str, options: Namespace
+    connection: Connection, ready_program: images.ReadyProgram, name: str, options: Namespace
 ) -> int:  # fmt: skip
     language = connection.language
-    progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
+    progress = Progress(
+        language, 1 + len(ready_program.image.later) + len(ready_program.image.code)
+    )
     connection.quiet.before = progress.end
 
-    def draw(done: int) -> None:
-        if done and progress.draw(done):  # before that, it is what is waited for
+    def draw_progress(done_bytes: int) -> None:
+        if done_bytes and progress.draw(done_bytes):  # before that, it is what is waited for
             connection.quiet.note_words()
 
     try:
-        values = send_program(connection, ready, options, draw)
+        values = send_program(connection, ready_program, options, draw_progress)
         began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
-    printer = printer_of(connection, options.json, ready.places, values.program)
+    printer = printer_of(connection, options.json, ready_program.places, values.program)
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder
         from tiniscript.studio import recordings
 
-        own = connection.simulator
-        robot_ms = None if own is None else own.event_ms
+        simulator = connection.simulator
+        robot_ms = None if simulator is None else simulator.event_ms
         text, robot = options.recorded_text, connection.profile
         head = recordings.head(recordings.REAL, text, robot, values.program)
         recorder = Recorder(options.record, head, began_s, robot_ms)
@@ -121,12 +133,12 @@ def _upload(
     saving = Saving(connection, printer, values)
     try:
         if options.json:
-            print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
+            print(json.dumps(receipt(connection, ready_program, name, values, options)), flush=True)
         else:
-            print(_receipt_line(connection, ready, name, values, options), flush=True)
+            print(_receipt_line(connection, ready_program, name, values, options), flush=True)
         connection.quiet.note_words()
-        images.keep_map(ready)  # only now, so that the robot starts earlier
-        return follow_run(connection, ready, saving, options, printer)
+        images.keep_map(ready_program)  # only now, so that the robot starts earlier
+        return follow_run(connection, ready_program, saving, options, printer)
     except KeyboardInterrupt:
         code = stop_and_say(connection)
         try:
@@ -152,15 +164,15 @@ def _upload(
 
 
 def _receipt_line(
-    connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
+    connection: Connection, ready_program: images.ReadyProgram, name: str, values: ReceiptReply,
     options: Namespace,
 ) -> str:  # fmt: skip
-    how = "how_waits"
-    if is_running(ready, options):
-        how = "how_detached" if options.detach else "how_running"
-    elif has_button(connection, ready, options):
-        how = "how_key" if has_keys(connection) else "how_pushed"
-    sentence = connection.text(how, start=ready.image.start)
+    how_key = "how_waits"
+    if is_running(ready_program, options):
+        how_key = "how_detached" if options.detach else "how_running"
+    elif has_button(connection, ready_program, options):
+        how_key = "how_key" if has_keys(connection) else "how_pushed"
+    sentence = connection.text(how_key, start=ready_program.image.start)
     saved = saved_name(values.saved)
     if not options.verbose:
         if saved != "SAVING":  # else it is told once it is saved
@@ -170,8 +182,8 @@ def _receipt_line(
     return connection.text(
         "receipt_whole",
         program=name,
-        image=ready.image_bytes,
-        code=len(ready.image.code),
+        image=ready_program.image_bytes,
+        code=len(ready_program.image.code),
         checksum=f"{values.program:08x}",
         saved=connection.text(f"saved_{saved}", slot=values.slot),
         how=sentence,

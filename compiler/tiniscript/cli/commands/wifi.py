@@ -50,7 +50,7 @@ def run(options: Namespace, language: str) -> int:
         if not features & OWNED:
             raise CommandError(3, "wifi_unowned", robot=connection.name)
         if is_about_broker:
-            robot_broker.use(connection, broker, options)
+            robot_broker.use_broker(connection, broker, options)
             return 0
         if options.forget or name is not None:
             _refuse_itself(connection)

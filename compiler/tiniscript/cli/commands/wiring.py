@@ -41,21 +41,23 @@ def run(options: Namespace, language: str) -> int:
 
 def _merge_by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return the rows of power and GND with one row for a tag."""
-    found: dict[tuple[str, ...], list[str]] = {}
+    ends_by_tag: dict[tuple[str, ...], list[str]] = {}
     for *tag, end in rows:
-        found.setdefault(tuple(tag), []).append(end)
-    return [(*tag, ", ".join(ends)) for tag, ends in found.items()]
+        ends_by_tag.setdefault(tuple(tag), []).append(end)
+    return [(*tag, ", ".join(ends)) for tag, ends in ends_by_tag.items()]
 
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:
     """Print a table; on a terminal its last column is broken where the lines end."""
-    shown = [[inputs.printable_name(cell) for cell in row] for row in rows]
-    widths = [max(cell_len(row[k]) for row in shown) for k in range(len(shown[0]))]
+    printable_rows = [[inputs.printable_name(cell) for cell in row] for row in rows]
+    widths = [
+        max(cell_len(row[k]) for row in printable_rows) for k in range(len(printable_rows[0]))
+    ]
     indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     room = widths[-1]
     if sys.stdout.isatty():
         room = min(room, max(LEAST_COLUMN_WIDTH, get_terminal_size().columns - indent - 1))
-    for *row, last in shown:
+    for *row, last in printable_rows:
         cells = GAP.join(
             set_cell_size(cell, width) for cell, width in zip(row, widths, strict=False)
         )

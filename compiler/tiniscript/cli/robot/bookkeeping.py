@@ -22,10 +22,10 @@ class Bookkeeping:
             self.is_on = True
         return self.is_on
 
-    def hides_trace(self, what: str, values: tuple[int, ...]) -> bool:
+    def hides_trace(self, name: str, values: tuple[int, ...]) -> bool:
         """The same for an action in the trace of a virtual robot."""
-        if what in ("START", "DONE", "FAULT", "STOP", "OFF"):
+        if name in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False
-        elif what == "SHOW" and values == (BOOKKEEPING_MARK,):
+        elif name == "SHOW" and values == (BOOKKEEPING_MARK,):
             self.is_on = True
-        return self.is_on and what == "SHOW"
+        return self.is_on and name == "SHOW"

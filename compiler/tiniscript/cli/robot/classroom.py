@@ -80,41 +80,50 @@ class Classroom:
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return result
 
-    def targets(self, found: list[Present], verb: str = "class") -> Namespace:
+    def targets(self, present_robots: list[Present], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
 
         Only who has them drive has to attend to them.
         """
         from tiniscript.link.transports.broker import port_of
 
-        ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
+        ports = [
+            port_of(*self.place, self.group, item.id) for item in present_robots if item.is_here
+        ]
         fleet_defaults = {option.name: option.unset for option in options_of(UPLOAD_VERB)}
-        own = Namespace(**{**fleet_defaults, "port": None, **vars(self.options)})
-        own.ports, own.verb = ports, verb
+        target_options = Namespace(**{**fleet_defaults, "port": None, **vars(self.options)})
+        target_options.ports, target_options.verb = ports, verb
         if verb == UPLOAD_VERB:
-            own.attend = self.broker.attend
-        return own
+            target_options.attend = self.broker.attend
+        return target_options
 
 
 def list_robots(room: Classroom) -> int:
     result = room.present()
-    own = room.targets(result)
-    code = run_together(own, inputs.robot(own, room.language), room.language, describe_in_a_line)
+    target_options = room.targets(result)
+    code = run_together(
+        target_options,
+        inputs.robot(target_options, room.language),
+        room.language,
+        describe_in_a_line,
+    )
     for item in result:
-        if not item.is_here and not own.json:
+        if not item.is_here and not target_options.json:
             say("class_gone", room.language, robot=printable_name(item.name), id=item.id)
     return code
 
 
 def upload(room: Classroom) -> int:
     """Send a program to all at once, and follow it until it ends on each."""
-    own = room.targets(room.present(), UPLOAD_VERB)
-    given = inputs.program(own)
-    robot = inputs.robot_for(given, own, room.language)
-    ready = images.ready(given, robot, room.language, is_strict=True)
-    if ready is None:
+    target_options = room.targets(room.present(), UPLOAD_VERB)
+    program_input = inputs.program(target_options)
+    robot = inputs.robot_for(program_input, target_options, room.language)
+    ready_program = images.ready_program(program_input, robot, room.language, is_strict=True)
+    if ready_program is None:
         return 1
-    return upload_to_many(own, robot, room.language, ready, printable_name(given.name))
+    return upload_to_many(
+        target_options, robot, room.language, ready_program, printable_name(program_input.name)
+    )
 
 
 def stop(room: Classroom) -> int:
@@ -129,20 +138,24 @@ def stop(room: Classroom) -> int:
         if is_published:
             say_aside("class_stop_sent", room.language, group=printable_name(room.group))
         raise
-    own = room.targets(result, "stop")
-    return run_together(own, inputs.robot(own, room.language), room.language, stop_one)
+    target_options = room.targets(result, "stop")
+    return run_together(
+        target_options, inputs.robot(target_options, room.language), room.language, stop_one
+    )
 
 
 def show(room: Classroom) -> int:
     """Print what the robots show, until Ctrl-C or for some seconds."""
     options, language = room.options, room.language
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
-    own = room.targets(room.present())
+    target_options = room.targets(room.present())
     end_s = monotonic() + seconds if seconds else None
     rows = Rows(options.csv, CLASS_ROWS) if options.csv is not None else None
-    listener = Listener(own.json, end_s, rows)
+    listener = Listener(target_options.json, end_s, rows)
     try:
-        code = run_together(own, inputs.robot(own, language), language, listener.listen)
+        code = run_together(
+            target_options, inputs.robot(target_options, language), language, listener.listen
+        )
     finally:
         if rows is not None:
             rows.close()
@@ -163,16 +176,17 @@ class Listener:
 
     def listen(self, connection: Connection, member: Member) -> Result:
         member.meet(connection)
-        about = {"port": connection.port, "robot": connection.name}
+        robot_fields = {"port": connection.port, "robot": connection.name}
 
-        def out(line: str) -> None:
+        def print_line(line: str) -> None:
             member.print(line if self.is_json else f"{connection.name}: {line}")
 
         add = self.rows.add if self.rows is not None else None
         who = escape_formula(printable_name(connection.name)), f"{connection.device_info.id:08x}"
         printer = EventPrinter(
-            connection.language, self.is_json, about=about, has_times=self.is_json, out=out,
-            err=out, rows=partial(add, *who) if add is not None else None,
+            connection.language, self.is_json, robot_fields=robot_fields, has_times=self.is_json,
+            print_line=print_line, print_error=print_line,
+            rows=partial(add, *who) if add is not None else None,
             began_ms=self.began_ms,
         )  # fmt: skip
         try:

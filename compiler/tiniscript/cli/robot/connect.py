@@ -47,7 +47,7 @@ T = TypeVar("T")
 
 # verbs that stay on a port, and share it
 SHARED_VERBS = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
-STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
+STOP_LIMIT_S = 1.5  # timeout for a stop when the command ends and may have no reader
 OWN_VIRTUAL_ROBOT = ""  # no port: this command starts its own virtual robot
 
 
@@ -118,7 +118,7 @@ class Connection(Client):
             if kind is None or issubclass(kind, (CommandError, OSError)):
                 self._hold_for_others()
         finally:
-            self.close(STOP_S)
+            self.close(STOP_LIMIT_S)
             self._end_simulator()
 
     def _hold_for_others(self) -> None:
@@ -144,7 +144,7 @@ class Connection(Client):
         if self._is_stopped_unseen or not self.drives or self.drives_another:
             return False
         self._is_stopped_unseen = True
-        is_confirmed = self.stop(STOP_S)
+        is_confirmed = self.stop(STOP_LIMIT_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             say_aside(key, self.language, port=printable_name(self.port))
@@ -175,7 +175,9 @@ class Connection(Client):
             self._tell_stale_key(device_info)
         return device_info
 
-    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+    def wait(
+        self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
+    ) -> Reply[T]:
         """Wait for the outcome of a request, and say so where that takes long."""
         arrived = request.done_bytes
 
@@ -184,12 +186,12 @@ class Connection(Client):
             if request.done_bytes != arrived:
                 arrived = request.done_bytes
                 self.quiet.note_news()
-            if look is not None:
-                look()
+            if on_wait is not None:
+                on_wait()
             self.quiet.look()
 
         if self._is_meeting:
-            return super().wait(request, look)
+            return super().wait(request, on_wait)
         self.quiet.begin()
         return super().wait(request, watch)
 
@@ -292,25 +294,29 @@ class Connection(Client):
         if reason == "status":
             return CommandError(3, "plain", said=self.refusal_text(reply))
         if reason == FOREIGN:
-            what, then = self.foreign()
+            explanation, advice = self.foreign()
             return CommandError(
-                3, reason, port=printable_name(self.port), what=Sentence(what), then=Sentence(then)
+                3,
+                reason,
+                port=printable_name(self.port),
+                what=Sentence(explanation),
+                then=Sentence(advice),
             )
         return CommandError(3, reason, port=printable_name(self.port), id=f"{reply.detail:08x}")
 
     def refusal_text(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""
-        said, advice = sentence(reply.status, reply.detail, self.language)
+        meaning, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
             name = shipped_name_of_kit(reply.detail)
             if name is not None:
                 advice = text("choose_kit", self.language).format(robot=name)
-        return f"{said} {advice}".strip()
+        return f"{meaning} {advice}".strip()
 
     def error_for_loss(self, loss: ConnectionLost) -> CommandError:
         """Return the sentence for a connection that has ended."""
-        lost = self.robot_error_for_loss(loss)
-        return CommandError(3, lost.key, **lost.values)
+        loss_error = self.robot_error_for_loss(loss)
+        return CommandError(3, loss_error.key, **loss_error.values)
 
 
 def name_of(info: DeviceInfo, language: str) -> str:
@@ -380,8 +386,8 @@ def _select_port(options: Namespace, language: str) -> str:
             raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
         return inputs.port(port)
-    if (there := opening.last_port()) is not None:
-        return there
+    if (last_port := opening.last_port()) is not None:
+        return last_port
     last = known_ports.remembered_ports().last
     virtual = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if len(virtual) == 1:
@@ -431,13 +437,14 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRob
             if offer_virtual_robot(language):
                 return OWN_VIRTUAL_ROBOT
         raise CommandError(3, "no_ports")
-    about = {item.port: describe_port(item, language) for item in result}
-    about |= {item.address: describe_virtual_robot(item, language) for item in virtual}
+    descriptions = {item.port: describe_port(item, language) for item in result}
+    descriptions |= {item.address: describe_virtual_robot(item, language) for item in virtual}
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
-        more = "   ".join(filter(None, (names.get(port), about.get(port))))
+        details = "   ".join(filter(None, (names.get(port), descriptions.get(port))))
         print(
-            f"  {number}  {printable_name(port)}   {printable_name(more)}".rstrip(), file=sys.stderr
+            f"  {number}  {printable_name(port)}   {printable_name(details)}".rstrip(),
+            file=sys.stderr,
         )
     if can_bring:
         choices.append(OWN_VIRTUAL_ROBOT)

@@ -80,19 +80,21 @@ class Conversation:
                 values.append(event.value)
             return event.name in ("SHOW", "DONE")
 
-        printer = EventPrinter(self.language, out=messages.append, err=messages.append)
+        printer = EventPrinter(
+            self.language, print_line=messages.append, print_error=messages.append
+        )
         if follow_line(self.connection, line, printer, hold):
             raise CommandError(3, "plain", said=" ".join(messages))
         return values
 
-    def ask_what_was_seen(self, line: str, key: str, again: int, **values: str) -> int:
-        """Let the robot do a line, and ask what the person saw; `again` shows it once more."""
-        result = again
-        while result == again:
+    def ask_what_was_seen(self, line: str, key: str, repeat_choice: int, **values: str) -> int:
+        """Let the robot do a line, and ask what was seen; `repeat_choice` shows it once more."""
+        result = repeat_choice
+        while result == repeat_choice:
             if not self.is_asking:
                 raise NoPerson
             self.run_line(line)
-            result = self.choice(key, again, **values)
+            result = self.choice(key, repeat_choice, **values)
         return result
 
     def lift(self) -> None:
@@ -115,8 +117,8 @@ def trim_from_answers(before: Trim, left: WheelTurn, right: WheelTurn) -> Trim |
         return None
     was_reversed = (before.is_left_reversed, before.is_right_reversed)
     reversed_now = {
-        turned.wheel: was != (not turned.is_forward)
-        for turned, was in zip((left, right), was_reversed, strict=True)
+        turned.wheel: is_reversed_now != (not turned.is_forward)
+        for turned, is_reversed_now in zip((left, right), was_reversed, strict=True)
     }
     return before._replace(
         is_exchanged=before.is_exchanged != (left.wheel == "right"),

@@ -62,7 +62,7 @@ def lines_of(given: Sequence[str], language: str) -> tuple[int, ...]:
 def places_of(lines: Sequence[int], halting: Halting) -> tuple[int, ...]:
     """Return the offset of the first statement from each line on. Raises CommandError."""
     statements = statement_starts(halting.code)
-    matches = []
+    offsets = []
     for line in lines:
         places = [
             statement_of(statements, place.offset)
@@ -71,8 +71,8 @@ def places_of(lines: Sequence[int], halting: Halting) -> tuple[int, ...]:
         ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
-        matches.append(min(places))
-    return tuple(sorted(set(matches)))
+        offsets.append(min(places))
+    return tuple(sorted(set(offsets)))
 
 
 def require_breakpoints(connection: Connection) -> None:
@@ -134,14 +134,14 @@ class Debugger:
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = letters_of(self.keys.read_pressed()) if self.has_keys else ""
-        key = next((key for key in pressed if key in STEP + GO), "")
+        letters = letters_of(self.keys.read_pressed()) if self.has_keys else ""
+        key = next((key for key in letters if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
-    def _resume(self, how: int) -> None:
-        self.is_halted, self.is_stepping = False, how == RESUME_STEP
-        self.connection.request(lambda session: session.resume(how))
+    def _resume(self, resume_kind: int) -> None:
+        self.is_halted, self.is_stepping = False, resume_kind == RESUME_STEP
+        self.connection.request(lambda session: session.resume(resume_kind))
 
     def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language
@@ -171,19 +171,19 @@ class Debugger:
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
             reply = self.connection.request(partial(Requester.read_variables, first=len(values)))
-            piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
-            if not piece:
+            values_part = [value for (value,) in iter_unpack("<i", reply.values.values)]
+            if not values_part:
                 break
-            values += piece
+            values += values_part
         yes_no = self.map.yes_no or [False] * len(names)  # of a map of an earlier version
         return list(zip(names, values, yes_no, strict=False))
 
-    def _tasks(self, halted: int) -> list[tuple[int, int]]:
+    def _tasks(self, halted_task: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
         reply = self.connection.request(lambda session: session.read_tasks())
         result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)
-            if number != halted and state and place is not None:
+            if number != halted_task and state and place is not None:
                 result.append((state, place.line - self.halting.first + 1))
         return result

@@ -91,25 +91,30 @@ class Description(NamedTuple):
 
     def text(self) -> str:
         """Return it as lines."""
-        say, status, fields = self._text, self.status, self.fields()
+        format_text, status, fields = self._text, self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
-        state, reset = say(f"state_{fields['state']}"), say(f"reset_{fields['reset']}")
+        state, reset = (
+            format_text(f"state_{fields['state']}"),
+            format_text(f"reset_{fields['reset']}"),
+        )
         lines = [
-            say("info_robot", id=fields["id"], whose=say(f"whose_{self.owner}")),
-            say("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
+            format_text("info_robot", id=fields["id"], whose=format_text(f"whose_{self.owner}")),
+            format_text("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
             self._reader(),
             self._program(),
-            say("info_state", state=state, reset=reset),
+            format_text("info_state", state=state, reset=reset),
         ]
         if self.trim not in (None, Trim(), Trim(pace=Pace())):
-            lines.append(say("info_trim", trim=trim_in_words(self.trim or Trim(), self.language)))
+            lines.append(
+                format_text("info_trim", trim=trim_in_words(self.trim or Trim(), self.language))
+            )
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
-            lines.append(say("info_hearing", **status._asdict()))
+            lines.append(format_text("info_hearing", **status._asdict()))
         if any(status.noise):
             left, right = status.noise
-            lines.append(say("info_noise", left=left, right=right))
+            lines.append(format_text("info_noise", left=left, right=right))
         return "\n".join(lines)
 
     def _text(self, key: str, **values: object) -> str:
@@ -192,7 +197,7 @@ def measure_line(connection: Connection, member: Member) -> Result:
     result = describe_in_a_line(connection, member)
     member.tell("crew_pinging")
     trips = _trips(connection, ROUND_TRIPS)
-    text = f"{result.said}; {trips_in_words(trips, connection.language)}"
+    text = f"{result.sentence}; {trips_in_words(trips, connection.language)}"
     return Result(True, text, {**result.fields, **trips_as_data(trips)})
 
 
@@ -222,12 +227,12 @@ def trim_in_words(trim: Trim, language: str) -> str:
     """Return a trim in words."""
     result = [
         text(key, language)
-        for key, is_so in (
+        for key, is_set in (
             ("trim_exchanged", trim.is_exchanged),
             ("trim_left_reversed", trim.is_left_reversed),
             ("trim_right_reversed", trim.is_right_reversed),
         )
-        if is_so
+        if is_set
     ] or [text("trim_as_wired", language)]
     key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
     balance = key if trim.balance else "trim_even"

@@ -17,7 +17,7 @@ from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers, examine
+from tiniscript.doctor.examination import PING_COUNT, Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -55,18 +55,18 @@ def diagnosis_of(
         watch_ms,
         tuple(item.address for item in directory.unclaimed_robots()),
     )
-    doing = Doing(not options.json)
+    status_line = Doing(not options.json)
     try:
-        return diagnose(_doors(options, language, doing, expected.pings, may_open), question)
+        return diagnose(_doors(options, language, status_line, expected.pings, may_open), question)
     finally:
-        doing.end()
+        status_line.end()
 
 
-def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expectations:
+def expected_of(options: Namespace, language: str, ping_count: int = PING_COUNT) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=ping_count)
 
 
 def examination_of(
@@ -78,13 +78,13 @@ def examination_of(
     reply = robot.hello()
     if reply is None:
         raise connection.failure(Reply(LOST))
-    heard: list[RobotAnswers] = []
-    findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
-    return findings, heard[-1] if heard else None
+    answers: list[RobotAnswers] = []
+    findings = examine(robot, reply, expected._replace(hear=answers.append), on_step=on_step)
+    return findings, answers[-1] if answers else None
 
 
-def _has_key(robot: int) -> bool:
-    return bool(KeyFile().of_robot(robot))
+def _has_key(robot_id: int) -> bool:
+    return bool(KeyFile().of_robot(robot_id))
 
 
 def _doubt(port: str, hello: HelloReply) -> str:
@@ -96,7 +96,9 @@ def _doubt(port: str, hello: HelloReply) -> str:
     return "unproven" if has_to_seal(keys, info) and not is_right else ""
 
 
-def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agreed: bool) -> Doors:
+def _doors(
+    options: Namespace, language: str, status_line: Doing, ping_count: int, is_agreed: bool
+) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.open_port(port, baud))
 
@@ -105,17 +107,19 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             return True
         if options.json or not can_ask():
             return False
-        doing.end()
+        status_line.end()
         return confirm(text("doctor_yes", language).format(port=printable_name(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:
-        given = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
-        with Connection(given, inputs.robot(options, language), language) as connection:
+        connection_options = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
+        with Connection(
+            connection_options, inputs.robot(options, language), language
+        ) as connection:
             connection.meet()
             yield connection.line
 
     return Doors(
         System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
-        share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
+        share, lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
     )  # fmt: skip

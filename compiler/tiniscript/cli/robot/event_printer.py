@@ -44,10 +44,10 @@ def _err(line: str) -> None:
 class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
-    `places` is the map of the program that is followed, `program` its checksum, and `whole` its map
-    with what a person has not typed, if there is such a thing. `rows` gets the
-    cells of each event, for a CSV file. `out` and `err` replace `print` while a picture
-    is on the terminal. JSON lines also get the fields of `about`.
+    `places` is the map of the program that is followed, `program` its checksum, and `whole_map` its
+    map with what a person has not typed, if there is such a thing. `rows` gets the cells of each
+    event, for a CSV file. `print_line` and `print_error` replace `print` while a picture is on the
+    terminal. JSON lines also get the `robot_fields`.
     """
 
     def __init__(
@@ -57,24 +57,24 @@ class EventPrinter:
         has_times: bool = False,
         places: Map | None = None,
         rows: Callable[[int, str, str, str], None] | None = None,
-        out: Callable[[str], None] | None = None,
-        err: Callable[[str], None] | None = None,
-        about: Mapping[str, object] | None = None,
+        print_line: Callable[[str], None] | None = None,
+        print_error: Callable[[str], None] | None = None,
+        robot_fields: Mapping[str, object] | None = None,
         began_ms: int | None = None,
         program: int | None = None,
-        whole: Map | None = None,
+        whole_map: Map | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
         self.has_times = has_times
         self.places = places
-        shown = whole or places
-        self.shows = Finder({} if shown is None or program is None else {program: shown})
-        self.has_lines = whole is None  # whose numbers a person knows
+        shown_map = whole_map or places
+        self.shows = Finder({} if shown_map is None or program is None else {program: shown_map})
+        self.has_lines = whole_map is None  # whose numbers a person knows
         self.rows = rows
-        self.out = out or _print_line
-        self.err = err or _err
-        self.about = about or {}
+        self.out = print_line or _print_line
+        self.err = print_error or _err
+        self.about = robot_fields or {}
         self.began_ms = began_ms
 
     def tell(self, time_ms: int, event: Event) -> None:
@@ -116,12 +116,12 @@ class EventPrinter:
 
     def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
-        what, show = value_text(*value), self.shows.show_of(event)
+        value_shown, show = value_text(*value), self.shows.show_of(event)
         if show is None:
-            self.say(since_ms, "SHOW", what, value=value_of(*value))
+            self.say(since_ms, "SHOW", value_shown, value=value_of(*value))
             return
-        text = f"{self._name_with_place(show, str(show.line))} {what}"
-        self.say(since_ms, "SHOW", what, text, self.name_of(event), value=value_of(*value),
+        text = f"{self._name_with_place(show, str(show.line))} {value_shown}"
+        self.say(since_ms, "SHOW", value_shown, text, self.name_of(event), value=value_of(*value),
                  name=show.text, line=show.line, column=show.column)  # fmt: skip
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
@@ -129,9 +129,9 @@ class EventPrinter:
         sentence = fault_sentence(number, at, program, self.places, self.language)
         places = self.places or source_map.recall(program)
         place = places.at(at) if places is not None else None
-        more = {} if place is None else {"line": place.line}
+        place_fields = {} if place is None else {"line": place.line}
         self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=at,
-                 program=f"{program:08x}", **more)  # fmt: skip
+                 program=f"{program:08x}", **place_fields)  # fmt: skip
 
     def say(
         self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,
@@ -156,11 +156,19 @@ def printer_of(
     is_json: bool = False,
     places: Map | None = None,
     program: int | None = None,
-    whole: Map | None = None,
+    whole_map: Map | None = None,
 ) -> EventPrinter:
     """Return the printer of a connection's events, above the picture of its virtual robot."""
     simulator = connection.simulator
-    out, err = (None, None) if simulator is None else (simulator.say, simulator.complain)
+    print_line, print_error = (
+        (None, None) if simulator is None else (simulator.say, simulator.complain)
+    )
     return EventPrinter(
-        connection.language, is_json, places=places, out=out, err=err, program=program, whole=whole
+        connection.language,
+        is_json,
+        places=places,
+        print_line=print_line,
+        print_error=print_error,
+        program=program,
+        whole_map=whole_map,
     )

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import FleetTable
 
 
-LOOK_S = 0.1
-STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot
+LOOK_INTERVAL_S = 0.1
+STRANGER_LIMIT_S = 4.0  # timeout for a port that the user has not named and that never had a robot
 # failures that may only mean that a port that the user has not named has no robot
 ABSENT_REASONS = (
     "port_missing", "port_missing_but", "port_unreachable", "port_not_found", "port_not_found_but",
@@ -104,13 +104,13 @@ class Fleet:
         end_s: float | None = None
         while untold and (end_s is None or monotonic() < end_s):
             self._attend()
-            if monotonic() - begin_s > STRANGER_S and all(map(_is_stranger, untold)):
+            if monotonic() - begin_s > STRANGER_LIMIT_S and all(map(_is_stranger, untold)):
                 self._give_up(untold)
             try:
                 if table is not None:
                     table.draw()
                 else:
-                    self._news.wait(LOOK_S)
+                    self._news.wait(LOOK_INTERVAL_S)
                     self._news.clear()
                 self._refuse_unread()
                 self._print_results(untold, table)
@@ -121,9 +121,11 @@ class Fleet:
                 streams.drop_unread()
                 end_s = monotonic() + opening.CONFIRM_S + 1
         if table is not None:
-            there = [member for member in self.in_order() if not member.is_absent]
-            there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
-            table.end(member.row for member in there)
+            present_members = [member for member in self.in_order() if not member.is_absent]
+            present_members.sort(
+                key=lambda member: member.mark == "bad"
+            )  # failures are printed last
+            table.end(member.row for member in present_members)
         self._print_sum()
 
     def _refuse_unread(self) -> None:
@@ -153,7 +155,7 @@ class Fleet:
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
-            self._news.wait(LOOK_S)
+            self._news.wait(LOOK_INTERVAL_S)
             self._news.clear()
 
     def interrupt(self) -> None:
@@ -198,8 +200,10 @@ class Fleet:
         self._news.set()
 
     def _connect(self, member: Member, work: Work) -> None:
-        own = Namespace(**{**vars(self.options), "port": member.target.port})
-        with Connection(own, self.robot, self.language, is_one_of_many=True) as connection:
+        member_options = Namespace(**{**vars(self.options), "port": member.target.port})
+        with Connection(
+            member_options, self.robot, self.language, is_one_of_many=True
+        ) as connection:
             member.connection = connection
             if self.is_interrupted:
                 connection.interrupt()
@@ -256,15 +260,15 @@ class Fleet:
 
     def _print_sum(self) -> None:
         """Print the number of successes, and the ports without a robot."""
-        absent = [member for member in self.in_order() if member.is_absent]
-        there = len(self.members) - len(absent)
-        if self.options.json or not there:
+        absent_members = [member for member in self.in_order() if member.is_absent]
+        present_count = len(self.members) - len(absent_members)
+        if self.options.json or not present_count:
             return
         sys.stdout.flush()
-        done = sum(member.mark == "ok" for member in self.members)
-        lines = [text("crew_sum", self.language).format(done=done, all=there)]
-        if absent:
-            ports = ", ".join(printable_name(member.target.port) for member in absent)
+        done_count = sum(member.mark == "ok" for member in self.members)
+        lines = [text("crew_sum", self.language).format(done=done_count, all=present_count)]
+        if absent_members:
+            ports = ", ".join(printable_name(member.target.port) for member in absent_members)
             lines.append(text("crew_absent", self.language).format(ports=ports))
         print("\n".join(lines), file=sys.stderr, flush=True)
 

@@ -8,7 +8,7 @@ from argparse import Namespace
 from functools import partial
 
 from tiniscript.cli import images
-from tiniscript.cli.images import Ready
+from tiniscript.cli.images import ReadyProgram
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import measure_line
@@ -22,55 +22,69 @@ from tiniscript.robots.profile import Robot
 
 
 def upload_to_many(
-    options: Namespace, robot: Robot, language: str, ready: Ready, name: str
+    options: Namespace, robot: Robot, language: str, ready_program: ReadyProgram, name: str
 ) -> int:  # fmt: skip
     """Send a program to many robots, keep its source map; return the exit code."""
-    images.keep_map(ready)
-    is_ping = ready.image.start == "PING"  # a program that asks who is there
-    work = measure_line if is_ping else partial(_upload, options, ready, name)
+    images.keep_map(ready_program)
+    is_ping = ready_program.image.start == "PING"  # a program that asks who is there
+    work = measure_line if is_ping else partial(_upload, options, ready_program, name)
     return run_together(options, robot, language, work)
 
 
 def _upload(
-    options: Namespace, ready: Ready, name: str, connection: Connection, member: Member
+    options: Namespace,
+    ready_program: ReadyProgram,
+    name: str,
+    connection: Connection,
+    member: Member,
 ) -> Result:
     language = connection.language
-    whole = max(1, len(ready.image.code))
+    code_bytes = max(1, len(ready_program.image.code))
     member.meet(connection)
 
-    def draw(done: int) -> None:
-        member.tell("crew_sending", percent=min(100 * done // whole, MOST_PERCENT))
+    def draw_progress(done_bytes: int) -> None:
+        member.tell("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
 
-    draw(0)
-    values = program_upload.send_program(connection, ready, options, draw)
-    receipt = program_upload.receipt(connection, ready, name, values, options)
+    draw_progress(0)
+    values = program_upload.send_program(connection, ready_program, options, draw_progress)
+    receipt = program_upload.receipt(connection, ready_program, name, values, options)
     if options.json:
         member.print(json.dumps(receipt))
-    runs = program_upload.is_running(ready, options)
+    runs = program_upload.is_running(ready_program, options)
     member.tell("crew_running" if runs and not options.detach else "crew_saving")
-    printer = MemberPrinter(connection, ready, member, options.json, values.program)
+    printer = MemberPrinter(connection, ready_program, member, options.json, values.program)
     saving = Saving(connection, printer, values)
-    code = program_upload.follow_run(connection, ready, saving, options, printer)
+    exit_code = program_upload.follow_run(connection, ready_program, saving, options, printer)
     if not runs or options.detach:
         key = "how_waits" if not runs else "how_detached"
-        printer.end = text(key, language).format(start=ready.image.start)
+        printer.end = text(key, language).format(start=ready_program.image.start)
     sentence = printer.end
     if options.verbose:
         sentence = text("crew_uploaded", language).format(
             checksum=receipt["checksum"], code=receipt["code_bytes"], how=sentence
         )
-    return Result(code == 0, sentence, {"checksum": receipt["checksum"]})
+    return Result(exit_code == 0, sentence, {"checksum": receipt["checksum"]})
 
 
 class MemberPrinter(EventPrinter):
     """Prints the events of one of many robots. `end` is the end of its program, in one line."""
 
     def __init__(
-        self, connection: Connection, ready: Ready, member: Member, is_json: bool, program: int
+        self,
+        connection: Connection,
+        ready_program: ReadyProgram,
+        member: Member,
+        is_json: bool,
+        program: int,
     ) -> None:
-        about = {"port": connection.port}
-        super().__init__(connection.language, is_json, places=ready.places, about=about,
-                         out=member.print, program=program)  # fmt: skip
+        super().__init__(
+            connection.language,
+            is_json,
+            places=ready_program.places,
+            robot_fields={"port": connection.port},
+            print_line=member.print,
+            program=program,
+        )
         self.member = member
         self.end = ""
 

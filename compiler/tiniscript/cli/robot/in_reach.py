@@ -31,21 +31,22 @@ from tiniscript.virtual import directory
 
 
 class InReach(NamedTuple):
-    """`about` maps ports to descriptions; `others` are ports that mean one of these, too;
-    `absent` are known ports without a robot; `notes` say what was not searched, and why."""
+    """`descriptions` maps ports to descriptions; `other_ports` are ports that mean one of these,
+    too; `absent_ports` are known ports without a robot; `notes` say what was not searched, and
+    why."""
 
-    about: dict[str, str]
-    others: list[str]
-    absent: list[str]
+    descriptions: dict[str, str]
+    other_ports: list[str]
+    absent_ports: list[str]
     notes: list[str]
 
 
-def find_robots(known: list[str], language: str) -> InReach:
-    """Search for some seconds. A robot that is known by a port of `known` keeps it."""
+def find_robots(known_ports: list[str], language: str) -> InReach:
+    """Search for some seconds. A robot that is known by a port of `known_ports` keeps it."""
     result = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
     with ThreadPoolExecutor(2) as pool:
-        searches = [(kind, pool.submit(search, known, language))
+        searches = [(kind, pool.submit(search, known_ports, language))
                     for kind, search in ((BLE, _find_by_radio), (TCP, _find_by_name))]  # fmt: skip
         for kind, search in searches:
             try:
@@ -55,48 +56,50 @@ def find_robots(known: list[str], language: str) -> InReach:
                     result.notes.append(port_failure(kind, failure).sentence(language))
                 reasons.add(failure.reason)
                 continue
-            result.about.update(part.about)
-            result.others.extend(part.others)
-            result.absent.extend(part.absent)
+            result.descriptions.update(part.descriptions)
+            result.other_ports.extend(part.other_ports)
+            result.absent_ports.extend(part.absent_ports)
     return result
 
 
-def _find_by_radio(known: list[str], language: str) -> InReach:
-    seen = ports.find_in_reach()
-    names = [canonical(each.name) for each in seen]
+def _find_by_radio(known_ports: list[str], language: str) -> InReach:
+    devices = ports.find_in_reach()
+    names = [canonical(each.name) for each in devices]
     rows = []
-    for each, name in zip(seen, names, strict=True):
+    for each, name in zip(devices, names, strict=True):
         sentence = text("radio_port", language)
         sentence = f"{each.name}, {sentence}" if each.name else sentence
         means = {canonical(each.address)} | ({name} if names.count(name) == 1 else set())
         rows.append((BLE + each.address, {BLE + each for each in means}, sentence))
-    ours = {port: BLE + name_in(port) for port in known if is_bluetooth(port)}
-    return _rows(rows, ours)
+    canonical_of = {port: BLE + name_in(port) for port in known_ports if is_bluetooth(port)}
+    return _rows(rows, canonical_of)
 
 
-def _find_by_name(known: list[str], language: str) -> InReach:
-    there = ports.find_announced()
+def _find_by_name(known_ports: list[str], language: str) -> InReach:
+    announced_robots = ports.find_announced()
     rows = []
-    for announced in there:
+    for announced in announced_robots:
         name = TCP + announced.name if announced.name.isprintable() else announced.port
         sentence = text("announced_port", language).format(port=announced.port)
         rows.append((name, {canonical_port(name), canonical_port(announced.port)}, sentence))
-    ours = {port: canonical_port(port) for port in known if is_network_name(port)}
-    reach = _rows(rows, ours)
-    reach.others.extend(announced.port for announced in there if announced.port not in reach.about)
+    canonical_of = {port: canonical_port(port) for port in known_ports if is_network_name(port)}
+    reach = _rows(rows, canonical_of)
+    reach.other_ports.extend(
+        announced.port for announced in announced_robots if announced.port not in reach.descriptions
+    )
     return reach
 
 
-def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReach:
+def _rows(rows: list[tuple[str, set[str], str]], canonical_of: dict[str, str]) -> InReach:
     """Name each robot by the port that the user knows: `rows` have a port, all that mean it, and a
-    description; `ours` maps known ports to what they mean."""
-    reach = InReach({}, [], list(ours), [])
-    for port, means, said in rows:
-        known = [value for value, meant in ours.items() if meant in means]
-        reach.about[known[0] if known else port] = said
-        reach.others.extend(known[1:])
-        for item in known:
-            reach.absent.remove(item)
+    description; `canonical_of` maps known ports to what they mean."""
+    reach = InReach({}, [], list(canonical_of), [])
+    for port, names, description in rows:
+        known_ports = [value for value, canonical in canonical_of.items() if canonical in names]
+        reach.descriptions[known_ports[0] if known_ports else port] = description
+        reach.other_ports.extend(known_ports[1:])
+        for item in known_ports:
+            reach.absent_ports.remove(item)
     return reach
 
 
@@ -105,12 +108,12 @@ MOST_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
 
 def ports_in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    held = [registration.port for registration in running_servers()]
-    result = [] if is_virtual else held[:]
+    ports_in_use = [registration.port for registration in running_servers()]
+    result = [] if is_virtual else ports_in_use[:]
     for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
-        through = [port for port in names if canonical_port(port) in held]
-        result.append(through[0] if through else robot.address)  # one robot, one port
+        shared_ports = [port for port in names if canonical_port(port) in ports_in_use]
+        result.append(shared_ports[0] if shared_ports else robot.address)  # one robot, one port
     return _unique_ports(result)
 
 

@@ -84,46 +84,46 @@ class LiveState:
         """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
         match = _HEADER.match(text)
         body = " " * match.end() + text[match.end() :] if match else text
-        parsed = parse(Source(body)).program.body
-        own = {node.name: body[node.span.start : node.span.end] for node in parsed
-               if isinstance(node, ast.Def)}  # fmt: skip
-        values, defs = self._definitions_for(body, own)
+        instructions = parse(Source(body)).program.body
+        own_texts = {node.name: body[node.span.start : node.span.end] for node in instructions
+                     if isinstance(node, ast.Def)}  # fmt: skip
+        values, defs = self._definitions_for(body, own_texts)
         before = values + defs
         plain = compile_text(f"{before}{body}", self.kit)
         if not plain.is_right:
-            return Line(_compiled_part(plain, len(before)), (), own)
+            return Line(_compiled_part(plain, len(before)), (), own_texts)
         shown = _assigned_variables(plain, len(values))
-        if all(isinstance(node, ast.Def) for node in parsed):
-            return Line(_compiled_part(plain, len(before)), (), own, does_nothing=True)
+        if all(isinstance(node, ast.Def) for node in instructions):
+            return Line(_compiled_part(plain, len(before)), (), own_texts, does_nothing=True)
         if shown:
             after = "".join(f"\nSHOW({name})" for name in (as_text(BOOKKEEPING_MARK), *shown))
             full = compile_text(f"{before}{body}{after}", self.kit)
             if full.is_right and len(full.code) <= room:
                 line = _compiled_part(full, len(before), len(before + body))
                 whole = _map_of(full, len(before + body))
-                return Line(line, shown, own, whole=whole, before=before.count("\n"))
+                return Line(line, shown, own_texts, whole=whole, before=before.count("\n"))
         line = _compiled_part(plain, len(before))
         whole = _map_of(plain, len(before + body))
-        return Line(line, (), own, False, bool(shown), whole, before.count("\n"))
+        return Line(line, (), own_texts, False, bool(shown), whole, before.count("\n"))
 
-    def _definitions_for(self, text: str, own: dict[str, str]) -> tuple[str, str]:
+    def _definitions_for(self, text: str, own_texts: dict[str, str]) -> tuple[str, str]:
         """Return the variables and the DEFs that a line needs, as text."""
-        used: set[str] = set()
+        names_used: set[str] = set()
         texts = [text]
         while texts:
             words = {token.text for token in scan(texts.pop()).tokens if token.kind is WORD}
-            texts += [self.defs[name] for name in words - used if name in self.defs]
-            used |= words
+            texts += [self.defs[name] for name in words - names_used if name in self.defs]
+            names_used |= words
         values = "".join(f"{name} = {value_text(*value)}\n" for name, value in self.values.items()
-                         if name in used)  # fmt: skip
+                         if name in names_used)  # fmt: skip
         defs = "".join(f"{value}\n" for name, value in self.defs.items()
-                       if name in used and name not in own)  # fmt: skip
+                       if name in names_used and name not in own_texts)  # fmt: skip
         return values, defs
 
 
-def _assigned_variables(compiled: Compiled, start: int) -> tuple[str, ...]:
+def _assigned_variables(compilation: Compiled, start: int) -> tuple[str, ...]:
     """Return the variables that are set from `start` on."""
-    program = compiled.program
+    program = compilation.program
     assert program is not None
     numbers = {
         item.variable
@@ -134,41 +134,41 @@ def _assigned_variables(compiled: Compiled, start: int) -> tuple[str, ...]:
     return tuple(program.variables[number] for number in sorted(numbers))
 
 
-def _map_of(compiled: Compiled, end: int) -> Map:
+def _map_of(compilation: Compiled, end: int) -> Map:
     """Return the map of the text up to `end`; what is after it comes from nowhere."""
     nowhere = Span(end, end)
     places = tuple(
         place if place.span.end <= end else place._replace(span=nowhere)
-        for place in compiled.places
+        for place in compilation.places
     )
-    return source_map.map_of_compiled(compiled._replace(places=places))
+    return source_map.map_of_compiled(compilation._replace(places=places))
 
 
-def _compiled_part(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
+def _compiled_part(compilation: Compiled, start: int, end: int | None = None) -> Compiled:
     """Return the diagnostics of the text from `start` to `end`, as if it stood alone.
 
     For a mistake before `start` the source is the whole text. An unused DEF or variable gives no
     diagnostic: the next line may use it.
     """
-    text = compiled.source.text
+    text = compilation.source.text
     end = len(text) if end is None else end
     if any(
         diagnostic.is_mistake and diagnostic.span.start < start
-        for diagnostic in compiled.diagnostics
+        for diagnostic in compilation.diagnostics
     ):
-        return compiled
+        return compilation
     diagnostics = [
         diagnostic._replace(
             span=Span(diagnostic.span.start - start, min(diagnostic.span.end, end) - start)
         )
-        for diagnostic in compiled.diagnostics
+        for diagnostic in compilation.diagnostics
         if start <= diagnostic.span.start <= end
         and (diagnostic.is_mistake or diagnostic.code not in _UNUSED)
         and (diagnostic.span.start < end or end == len(text))
     ]
     places = tuple(
         place._replace(span=Span(max(0, place.span.start - start), max(0, place.span.end - start)))
-        for place in compiled.places
+        for place in compilation.places
     )
     source = Source(text[start:end], "live")
-    return compiled._replace(source=source, diagnostics=diagnostics, places=places)
+    return compilation._replace(source=source, diagnostics=diagnostics, places=places)

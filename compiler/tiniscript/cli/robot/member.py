@@ -47,20 +47,22 @@ def targets(options: Namespace) -> list[Target]:
 
     Ports in use come first, then ports of known robots. Opens none.
     """
-    known = known_ports.remembered_ports().names
-    expected = [inputs.port(port) for port in options.ports]
+    names_by_port = known_ports.remembered_ports().names
+    expected_ports = [inputs.port(port) for port in options.ports]
     if options.all:
-        expected = [registration.port for registration in find_all()]
-        expected += [port for port in known if is_there(port) and not directory.is_gone(port)]
+        expected_ports = [registration.port for registration in find_all()]
+        expected_ports += [
+            port for port in names_by_port if is_there(port) and not directory.is_gone(port)
+        ]
         from tiniscript.link import ports
 
-        expected += [item.port for item in ports.list_ports()]
-        expected += [robot.address for robot in directory.running_robots()]
-    names = {canonical_port(port): name for port, name in reversed(known.items())}
-    chosen = {canonical_port(port): port for port in reversed(expected)}
+        expected_ports += [item.port for item in ports.list_ports()]
+        expected_ports += [robot.address for robot in directory.running_robots()]
+    names = {canonical_port(port): name for port, name in reversed(names_by_port.items())}
+    port_of = {canonical_port(port): port for port in reversed(expected_ports)}
     return [
-        Target(port, names.get(same, ""), not options.all, same in names)
-        for same, port in reversed(chosen.items())
+        Target(port, names.get(canonical, ""), not options.all, canonical in names)
+        for canonical, port in reversed(port_of.items())
     ]
 
 
@@ -68,7 +70,7 @@ class Result(NamedTuple):
     """The result for one robot, as a sentence and as data. `is_absent`: there is none."""
 
     is_done: bool
-    said: str
+    sentence: str
     fields: Mapping[str, object] = {}
     is_absent: bool = False
 
@@ -113,14 +115,14 @@ class Member:
     def state_text(self, language: str) -> str:
         """Return the current state, or the result."""
         if self.result is not None:
-            return self.result.said
+            return self.result.sentence
         key, values = self.state
         sentence = text(key, language).format(**values)
         return f"{sentence}   {self.value}" if self.value else sentence
 
     @property
     def row(self) -> str:
-        text = self.result.said if self.result is not None else ""
+        text = self.result.sentence if self.result is not None else ""
         name = (
             f"{printable_name(self.name)} ({printable_name(self.target.port)})"
             if self.name
@@ -130,8 +132,8 @@ class Member:
 
     def as_json(self) -> str:
         assert self.result is not None
-        is_done, said, fields, is_absent = self.result
+        is_done, sentence, fields, is_absent = self.result
         return json.dumps({
             "event": "RESULT", "port": self.target.port, "robot": self.name or None,
-            "is_done": is_done, "is_absent": is_absent, "said": said, **fields,
+            "is_done": is_done, "is_absent": is_absent, "said": sentence, **fields,
         })  # fmt: skip

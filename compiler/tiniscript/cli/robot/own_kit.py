@@ -39,11 +39,11 @@ def find_answering_robot(options: Namespace, robot: Robot, language: str) -> Rob
     """
     from tiniscript.cli.robot.simulator import running_address
 
-    own = Namespace(**{**vars(options), "verb": "check", "asks_nothing": True})
+    check_options = Namespace(**{**vars(options), "verb": "check", "asks_nothing": True})
     try:
         if options.virtual and running_address(options) is None:
             return None  # `options` describe the own virtual robot
-        with Connection(own, robot, language) as connection:
+        with Connection(check_options, robot, language) as connection:
             kit = connection.meet().kit
     except CommandError:
         return None

@@ -17,27 +17,27 @@ Row = dict[str, object]  # a port as data
 
 def list_rows(language: str, only: str | None = None, in_reach: InReach = EMPTY_REACH) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
-    known = known_ports.remembered_ports()
+    remembered = known_ports.remembered_ports()
     virtual = {each.address: each for each in directory.running_robots()}
-    about = {each.port: describe_port(each, language) for each in ports.list_ports()}
-    about |= in_reach.about
-    held = {registration.port: registration.verb for registration in running_servers()}
-    names = [only] if only is not None else list(about)
+    descriptions = {each.port: describe_port(each, language) for each in ports.list_ports()}
+    descriptions |= in_reach.descriptions
+    verb_of_port = {registration.port: registration.verb for registration in running_servers()}
+    names = [only] if only is not None else list(descriptions)
     if only is None:
-        names += [port for port in known.names if port not in about and is_there(port)
-                  and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
-        names += [port for port in virtual if port not in (*names, *in_reach.others)]
+        names += [port for port in remembered.names if port not in descriptions and is_there(port)
+                  and port not in in_reach.other_ports and not directory.is_gone(port)]  # fmt: skip
+        names += [port for port in virtual if port not in (*names, *in_reach.other_ports)]
         listed = {canonical_port(port) for port in names}
-        names += [port for port in held if port not in listed]
-    about |= {port: describe_virtual_robot(each, language) for port, each in virtual.items()}
+        names += [port for port in verb_of_port if port not in listed]
+    descriptions |= {port: describe_virtual_robot(each, language) for port, each in virtual.items()}
     return [
         {
             "port": port,
-            "description": about.get(port, ""),
-            "remembered": known.names.get(port),
-            "is_last_used": known.last == port,
+            "description": descriptions.get(port, ""),
+            "remembered": remembered.names.get(port),
+            "is_last_used": remembered.last == port,
             "is_virtual": port in virtual,
-            "held_by": held.get(canonical_port(port)),
+            "held_by": verb_of_port.get(canonical_port(port)),
         }
         for port in names
     ]

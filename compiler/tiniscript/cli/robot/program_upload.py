@@ -34,18 +34,23 @@ from tiniscript.link.requests import Reply
 
 
 def send_program(
-    connection: Connection, ready: images.Ready, options: Namespace, draw: Callable[[int], None]
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    options: Namespace,
+    draw_progress: Callable[[int], None],
 ) -> ReceiptReply:
-    """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
-    have arrived. Raises CommandError."""
+    """Send a program to the robot; return its receipt. `draw_progress` gets the number of code
+    bytes that have arrived. Raises CommandError."""
     places: tuple[int, ...] = ()
     if options.breaks:
-        places = places_of(lines_of(options.breaks, connection.language), _halting(ready))
+        places = places_of(lines_of(options.breaks, connection.language), _halting(ready_program))
         require_breakpoints(connection)
     runs = not options.no_run and not places
-    reply = connection.send_program(ready.image, runs, not options.no_save, options.detach, draw)
+    reply = connection.send_program(
+        ready_program.image, runs, not options.no_save, options.detach, draw_progress
+    )
     if reply.status:
-        raise _failure(connection, reply, ready)
+        raise _failure(connection, reply, ready_program)
     if places:  # it starts with them
         connection.request(lambda session: session.break_at(places))
         return connection.request(lambda session: session.start()).values
@@ -53,64 +58,75 @@ def send_program(
 
 
 def follow_run(
-    connection: Connection, ready: images.Ready, saving: Saving, options: Namespace,
+    connection: Connection, ready_program: images.ReadyProgram, saving: Saving, options: Namespace,
     printer: EventPrinter,
 ) -> int:  # fmt: skip
     """Follow a program until it has ended and is saved; return the exit code.
 
     Raises CommandError.
     """
-    code = 0
-    if is_running(ready, options):
+    exit_code = 0
+    if is_running(ready_program, options):
         if options.detach:
             return 0
         if connection.simulator is not None:
             connection.simulator.watch()
         if options.breaks:
-            code = _follow_halts(connection, ready, saving, printer)
+            exit_code = _follow_halts(connection, ready_program, saving, printer)
         else:
-            code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
-    elif has_button(connection, ready, options):
-        code = follow_button(connection, printer, saving)
+            exit_code = RunMonitor(connection, printer, on_wait=saving.look).follow(saving.run)
+    elif has_button(connection, ready_program, options):
+        exit_code = follow_button(connection, printer, saving)
     saving.wait()
-    return code
+    return exit_code
 
 
 def _follow_halts(
-    connection: Connection, ready: images.Ready, saving: Saving, printer: EventPrinter
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    saving: Saving,
+    printer: EventPrinter,
 ) -> int:
     """The same for a program with breakpoints."""
-    with Debugger(connection, printer, _halting(ready)) as debugger:
+    with Debugger(connection, printer, _halting(ready_program)) as debugger:
 
-        def look() -> None:
+        def on_wait() -> None:
             saving.look()
             debugger.look()
 
-        return RunMonitor(connection, printer, debugger.hold, look).follow(saving.run)
+        return RunMonitor(connection, printer, debugger.hold, on_wait).follow(saving.run)
 
 
-def _halting(ready: images.Ready) -> Halting:
-    if ready.places is None:
+def _halting(ready_program: images.ReadyProgram) -> Halting:
+    if ready_program.places is None:
         raise CommandError(2, "break_image")
-    return Halting(ready.image.code, ready.places)
+    return Halting(ready_program.image.code, ready_program.places)
 
 
-def is_running(ready: images.Ready, options: Namespace) -> bool:
+def is_running(ready_program: images.ReadyProgram, options: Namespace) -> bool:
     """Whether a program runs once it has arrived."""
-    return ready.image.start == "SI" and not options.no_run
+    return ready_program.image.start == "SI" and not options.no_run
 
 
-def has_button(connection: Connection, ready: images.Ready, options: Namespace) -> bool:
+def has_button(
+    connection: Connection, ready_program: images.ReadyProgram, options: Namespace
+) -> bool:
     """Whether the program waits for the button of this command's own virtual robot."""
-    return connection.simulator is not None and ready.image.start == "SB" and not options.no_run
+    return (
+        connection.simulator is not None
+        and ready_program.image.start == "SB"
+        and not options.no_run
+    )
 
 
-def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
+def _failure(
+    connection: Connection, reply: Reply[object], ready_program: images.ReadyProgram
+) -> CommandError:
     port = inputs.printable_name(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:
-        code, room = len(ready.image.code), reply.detail
+        code_bytes, room = len(ready_program.image.code), reply.detail
         return CommandError(
-            1, "too_large_by", code=str(code), over=str(code - room), room=str(room)
+            1, "too_large_by", code=str(code_bytes), over=str(code_bytes - room), room=str(room)
         )
     if reply.status == LOST:
         return CommandError(3, "upload_lost", port=port)
@@ -118,17 +134,21 @@ def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) 
 
 
 def receipt(
-    connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
+    connection: Connection, ready_program: images.ReadyProgram, name: str, values: ReceiptReply,
     options: Namespace,
 ) -> dict[str, object]:  # fmt: skip
     """Return the result of the upload as data."""
-    image, runs, saved = ready.image, is_running(ready, options), saved_name(values.saved)
+    image, runs, saved = (
+        ready_program.image,
+        is_running(ready_program, options),
+        saved_name(values.saved),
+    )
     return {
         "event": "RECEIPT",
         "robot": connection.device_info.name,
         "port": connection.port,
         "program": name,
-        "image_bytes": ready.image_bytes,
+        "image_bytes": ready_program.image_bytes,
         "code_bytes": len(image.code),
         "checksum": f"{values.program:08x}",
         "saved": saved,
@@ -136,7 +156,7 @@ def receipt(
         "start": image.start,
         "is_running": runs,
         "is_detached": runs and bool(options.detach),
-        "is_pushed": has_button(connection, ready, options),  # JSON output has no keys
+        "is_pushed": has_button(connection, ready_program, options),  # JSON output has no keys
     }
 
 
@@ -147,9 +167,9 @@ def follow_line(
 
     Raises CommandError.
     """
-    compiled = compile_text(f"SI|{line}", connection.profile.kit)
-    kit = kit_of(compiled, connection.profile)
-    run = connection.request(lambda session: session.live(compiled.code, kit)).values.run
+    compilation = compile_text(f"SI|{line}", connection.profile.kit)
+    kit = kit_of(compilation, connection.profile)
+    run = connection.request(lambda session: session.live(compilation.code, kit)).values.run
     return RunMonitor(connection, printer, hold).follow(run)
 
 
@@ -190,9 +210,9 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
             _check_event(connection, result[1], saving.program)
             if result[1].name != "STARTED":
                 printer.tell(*result)
-            code = exit_code_of(result[1], None)
-            if code is not None and not (is_person and _is_push(result[1])):
-                return code
+            exit_code = exit_code_of(result[1], None)
+            if exit_code is not None and not (is_person and _is_push(result[1])):
+                return exit_code
 
 
 def _check_event(connection: Connection, event: Event, program: int) -> None:

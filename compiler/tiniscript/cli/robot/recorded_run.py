@@ -25,7 +25,7 @@ from tiniscript.virtual.robot import Settings
 # options of `tsc run` that are not for the virtual robot, and those that a recorded run has in it
 UNRECORDED_OPTIONS = ("max_steps", "machine", "show", "pace")
 UNPLAYED_OPTIONS = ("sensor", "seed", "max_time", "robot", "record", *UNRECORDED_OPTIONS)
-MAX_MS = 60_000
+LONGEST_RUN_MS = 60_000
 
 
 def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
@@ -41,24 +41,24 @@ def require_known_robot(robot: Robot) -> None:
         raise CommandError(2, "record_robot", known=", ".join(robots.names()))
 
 
-def source_text(given: Input) -> str:
+def source_text(program_input: Input) -> str:
     """Return the text of a program, for the file of its run. Raises CommandError for an image."""
-    if given.is_image:
+    if program_input.is_image:
         raise CommandError(2, "record_text")
-    return given.data.decode("utf-8", "replace")
+    return program_input.data.decode("utf-8", "replace")
 
 
-def record(given: Input, options: Namespace, language: str) -> int:
+def record(program_input: Input, options: Namespace, language: str) -> int:
     """Run a program on the virtual robot, print its trace, and write the file of the run."""
     refuse(options, UNRECORDED_OPTIONS, "record_only")
-    source = source_text(given)
-    robot = inputs.robot_for(given, options, language)
+    source = source_text(program_input)
+    robot = inputs.robot_for(program_input, options, language)
     require_known_robot(robot)
-    max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
+    max_ms = thousandths("--max-time", options.max_time, LONGEST_RUN_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.stored_form(world_of(options, language))
-    result = images.ready(given, robot, language, is_strict=True)
+    result = images.ready_program(program_input, robot, language, is_strict=True)
     if result is None:
         return 1
     image = result.image
@@ -79,18 +79,18 @@ def record(given: Input, options: Namespace, language: str) -> int:
     head = recordings.head(
         VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
     )
-    whole = recordings.encode(head, rows, end_ms)
-    outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
+    recording = recordings.encode(head, rows, end_ms)
+    outputs.write(Path(options.record), recording.encode(), "unwritable_more --record")
     if fault:
-        text = fault_text(fault, fault_at or 0, result.places, given.is_image, language)
+        text = fault_text(fault, fault_at or 0, result.places, program_input.is_image, language)
         print(text, file=sys.stderr)
     return int(bool(fault))
 
 
-def play(given: Input, options: Namespace, language: str) -> int:
+def play(program_input: Input, options: Namespace, language: str) -> int:
     """Play the file of a run again; return the exit code: 1 where it is another run then."""
     refuse(options, UNPLAYED_OPTIONS, "play_only")
-    run = _read(given)
+    run = _read(program_input)
     if options.world is not None and run.recording.is_virtual:
         raise CommandError(2, "play_only", option="--world")
     world = run.recording.world or world_of(options, language)
@@ -109,11 +109,11 @@ def play(given: Input, options: Namespace, language: str) -> int:
     return int(parting.what not in SAME)
 
 
-def _read(given: Input) -> Ready:
+def _read(program_input: Input) -> Ready:
     try:
-        return ready(recordings.decode(given.data))
+        return ready(recordings.decode(program_input.data))
     except BadRecording as bad:
-        values = {"file": inputs.printable_name(given.name), "line": str(bad.line)}
+        values = {"file": inputs.printable_name(program_input.name), "line": str(bad.line)}
         raise CommandError(2, f"recording_{bad.reason}", **values) from None
 
 
@@ -137,6 +137,6 @@ def sentence(parting: Parting, started_ms: int, language: str) -> str:
 def _row_text(row: Row | None, started_ms: int, language: str) -> str:
     if row is None:
         return text("replay_nothing", language)
-    what = row.event.removeprefix("SHOW ")
+    event = row.event.removeprefix("SHOW ")
     seconds = f"{(row.ms - started_ms) / 1000:.1f}"
-    return text("replay_at", language).format(what=what, seconds=seconds)
+    return text("replay_at", language).format(what=event, seconds=seconds)

@@ -51,10 +51,10 @@ class Rows:
         except (OSError, ValueError) as why:
             raise self._failure(why) from None
 
-    def line(self, whole: str) -> None:
+    def line(self, row: str) -> None:
         try:
             with self._lock:
-                self._file.write(whole + "\n")
+                self._file.write(row + "\n")
                 self._file.flush()
         except (OSError, ValueError) as why:
             raise self._failure(why) from None
@@ -91,18 +91,18 @@ class Recorder:
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
-    def add(self, _: int, name: str, what: str, __: str = "") -> None:
+    def add(self, _: int, name: str, text: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
-        event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
+        event = f"{name} {text}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
         row = Row(self._ms(event), event)
-        is_kept = self._kept.add(row)
-        if is_kept:
+        is_row_kept = self._kept.add(row)
+        if is_row_kept:
             self._rows.line(recordings.line(row))
-        if not is_kept or name in ENDING_EVENTS:
+        if not is_row_kept or name in ENDING_EVENTS:
             self._end(row.ms)
 
     def end(self, event: str) -> None:

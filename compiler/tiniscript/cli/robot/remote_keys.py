@@ -19,8 +19,8 @@ from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.remote import NOTHING_PRESSED, Pressed, has_remote, pressed_of
 from tiniscript.link.requests import OK, Reply
 
-FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
-SAY_S = 0.1  # what is held is said so often: after half a second of silence nothing is
+FIRST_HOLD_S, REPEAT_HOLD_S = 0.7, 0.15  # for which a press holds a key
+SEND_INTERVAL_S = 0.1  # what is held is said so often: after half a second of silence nothing is
 LOOK_S = 0.02  # between two looks at the keys
 _QUIT_KEYS = ("q", "Q", "\x04")
 _ARROWS = {"A": "UP", "B": "DOWN", "C": "RIGHT", "D": "LEFT"}
@@ -61,7 +61,7 @@ class HeldKeys:
 
     def _press(self, name: str, now_s: float) -> None:
         is_repeat = now_s < self._until_s.get(name, now_s)
-        self._until_s[name] = now_s + (REPEAT_S if is_repeat else FIRST_S)
+        self._until_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
     def pressed_at(self, now_s: float) -> Pressed:
         return pressed_of(name for name, until_s in self._until_s.items() if now_s < until_s)
@@ -94,11 +94,13 @@ class TerminalRemote:
             self.has_quit = True
             raise KeyboardInterrupt
         self._refuse()
-        held = self._held.pressed_at(now_s)
-        if held == self._said and (held == NOTHING_PRESSED or now_s - self._said_s < SAY_S):
+        pressed = self._held.pressed_at(now_s)
+        if pressed == self._said and (
+            pressed == NOTHING_PRESSED or now_s - self._said_s < SEND_INTERVAL_S
+        ):
             return
-        self._said, self._said_s = held, now_s
-        self._request = self._connection.begin_request(lambda session: session.press(*held))
+        self._said, self._said_s = pressed, now_s
+        self._request = self._connection.begin_request(lambda session: session.press(*pressed))
 
     def _refuse(self) -> None:
         outcome = None if self._request is None else self._request.outcome

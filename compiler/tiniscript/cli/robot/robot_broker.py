@@ -21,8 +21,8 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
-READY_S = 20  # until the robot is in the network, or at the broker
-LOOK_S = 0.5
+READY_LIMIT_S = 20  # until the robot is in the network, or at the broker
+LOOK_INTERVAL_S = 0.5
 UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
@@ -32,12 +32,12 @@ def settings(options: Namespace, language: str) -> BrokerSettings:
     is_tls = bool(options.tls)
     place, group = broker_options.place(options, is_tls), broker_options.group(options)
     address = _address(place)
-    is_name = not re.fullmatch(r"[0-9.]+", place.host)
-    if is_name and len(place.host) > BROKER_NAME_BYTES:
+    is_host_name = not re.fullmatch(r"[0-9.]+", place.host)
+    if is_host_name and len(place.host) > BROKER_NAME_BYTES:
         raise CommandError(2, "broker_long_name", host=place.host, bytes=str(BROKER_NAME_BYTES))
-    tls = _tls(options, place, is_name)
+    tls = _tls(options, place, is_host_name)
     user, password = broker_options.user(options, language)
-    name = place.host.encode() if is_name else b""
+    name = place.host.encode() if is_host_name else b""
     return BrokerSettings(address.packed, place.port, group, user, password, name, tls)
 
 
@@ -50,14 +50,14 @@ def _address(place: broker_options.Place) -> IPv4Address:
         raise CommandError(2, "broker_unknown", host=place.host, why=why) from None
 
 
-def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls | None:
+def _tls(options: Namespace, place: broker_options.Place, is_host_name: bool) -> Tls | None:
     """Return whom the robot trusts, if it is to speak TLS. Raises CommandError."""
     data = broker_options.trust(options)
     if not options.tls:
         return None
     if data is None:
         raise CommandError(2, "broker_no_trust")
-    if not is_name:
+    if not is_host_name:
         raise CommandError(2, "broker_tls_name", host=place.host)
     trust = _certificate(data)
     if trust is None or len(trust) > TRUST_BYTES:
@@ -80,7 +80,7 @@ def _certificate(data: bytes) -> bytes | None:
     return result if context.cert_store_stats()["x509"] == 1 else None
 
 
-def use(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
+def use_broker(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
     """Give the robot the broker of the options, or none, and say whether it is there.
 
     Raises CommandError.
@@ -96,14 +96,14 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     wifi_reply = await_state(
         partial(_broker_state, connection), lambda reply: _state(reply) != "SEARCHING"
     )
-    tell(connection, wifi_reply, broker.name.decode(), _class_command(options))
+    tell_wifi_state(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
 def await_state(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
     """Return what the robot tells when something has come of it, or after READY_S."""
-    end_s = time.monotonic() + READY_S
+    end_s = time.monotonic() + READY_LIMIT_S
     while not is_over(wifi_reply := ask()) and time.monotonic() < end_s:
-        time.sleep(LOOK_S)
+        time.sleep(LOOK_INTERVAL_S)
     return wifi_reply
 
 
@@ -111,10 +111,12 @@ def tell_if_any(connection: Connection) -> None:
     """Say where the robot's broker is, if it has one."""
     reply = connection.wait(connection.begin_request(lambda session: session.broker()))
     if reply.status == STATUSES["OK"] and reply.values.network:
-        tell(connection, reply.values)
+        tell_wifi_state(connection, reply.values)
 
 
-def tell(connection: Connection, wifi_reply: WifiReply, name: str = "", command: str = "") -> None:
+def tell_wifi_state(
+    connection: Connection, wifi_reply: WifiReply, name: str = "", command: str = ""
+) -> None:
     """Say where the robot's broker is: under its name, where that is known.
 
     `command` reaches all robots of the class: a robot tells neither port nor certificate.
@@ -131,8 +133,8 @@ def tell(connection: Connection, wifi_reply: WifiReply, name: str = "", command:
 def _class_command(options: Namespace) -> str:
     """Return `tsc class` at the broker of the options, as this computer reaches it."""
     place = broker_options.place(options, bool(options.tls))
-    usual = broker_options.place(Namespace(broker=place.host), bool(options.tls))
-    words = ["--broker", place.host if place == usual else str(place)]
+    default_place = broker_options.place(Namespace(broker=place.host), bool(options.tls))
+    words = ["--broker", place.host if place == default_place else str(place)]
     words += ["--class", broker_options.group(options)]
     if options.user is not None:
         words += ["--user", options.user]

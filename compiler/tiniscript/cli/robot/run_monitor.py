@@ -22,14 +22,14 @@ from tiniscript.link.outcomes import LOOK_S, Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import Reply
 
-ASK_S = 1.0  # between two status requests about saving, while the program runs
+STATUS_INTERVAL_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
 
 class RunMonitor:
     """Prints the events of a run until it ends. `hold` returns True for an event to keep back.
 
-    `look` is called repeatedly meanwhile, every `look_s` at least.
+    `on_wait` is called repeatedly meanwhile, every `wait_s` at least.
     """
 
     def __init__(
@@ -37,14 +37,14 @@ class RunMonitor:
         connection: Connection,
         printer: EventPrinter,
         hold: Callable[[Event], bool] | None = None,
-        look: Callable[[], None] | None = None,
-        look_s: float = LOOK_S,
+        on_wait: Callable[[], None] | None = None,
+        wait_s: float = LOOK_S,
     ) -> None:
         self.connection = connection
         self.printer = printer
         self.hold = hold
-        self.look = look
-        self.look_s = look_s
+        self.look = on_wait
+        self.look_s = wait_s
 
     def follow(self, run: int) -> int:
         """Wait for the end of a run; return the exit code.
@@ -70,9 +70,9 @@ class RunMonitor:
                 self.printer.tell(time_ms, event)
                 if event.name != "STARTED":
                     self.connection.quiet.note_words()
-            code = exit_code_of(event, run)
-            if code is not None:
-                return code
+            exit_code = exit_code_of(event, run)
+            if exit_code is not None:
+                return exit_code
 
     def stop_in_time(self) -> int:
         """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""
@@ -127,7 +127,9 @@ class Saving:
             self._learn(self._asked.outcome, is_running=True)
             self._asked = None
         elif (
-            self._asked is None and not self._robots.is_over and monotonic() - self._asked_s > ASK_S
+            self._asked is None
+            and not self._robots.is_over
+            and monotonic() - self._asked_s > STATUS_INTERVAL_S
         ):
             self._asked_s = monotonic()
             self._asked = self.connection.begin_request(Requester.status)

@@ -30,14 +30,23 @@ from tiniscript.link.names import row_name
 from tiniscript.link.trim import Trim, trim_from_reply
 from tiniscript.robots.profile import Robot, Wiring
 
-PARTS = ("kit", "firmware", "line", "supply", "store")  # of which a robot tells itself
+SELF_REPORTED_PARTS = (
+    "kit",
+    "firmware",
+    "line",
+    "supply",
+    "store",
+)  # of which a robot tells itself
 SIDES = ("left", "right")
-READINGS = 3
+READING_COUNT = 3
 SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
-NOTICED = 50  # a hand changes a reading by more than one part of so many of its range
+NOTICEABLE_PARTS = 50  # a hand changes a reading by more than one part of so many of its range
 STANDS = "W(2)"
-HEARD, AGAIN = 1, 3  # answers about the buzzer
-ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it is still there
+BUZZER_HEARD, BUZZER_AGAIN = 1, 3  # answers about the buzzer
+ANSWERED_FAILURES = (
+    "plain",
+    "selftest_silent",
+)  # failures that the robot has told: it is still there
 
 
 class SelfTest(Conversation):
@@ -75,8 +84,8 @@ class SelfTest(Conversation):
         if robot.board.buzzer is not None:
             self._buzzer()
 
-    def _add(self, cause: str, of: str = "", **values: str) -> None:
-        self.found.append(Finding(cause, True, values, of))
+    def _add(self, cause: str, part: str = "", **values: str) -> None:
+        self.found.append(Finding(cause, True, values, part))
 
     # -- what the robot says about itself
 
@@ -85,11 +94,11 @@ class SelfTest(Conversation):
         expected = self.connection.profile
         kit = self.connection.device_info.kit
         causes, self.heard = examination_of(self.connection, self.expected)
-        known = expected if kit == expected.kit.fingerprint else robot_of_kit(kit)
-        good = self._passed_parts(known.name if known is not None else "")
-        for part in PARTS:
+        expected_robot = expected if kit == expected.kit.fingerprint else robot_of_kit(kit)
+        good = self._passed_parts(expected_robot.name if expected_robot is not None else "")
+        for part in SELF_REPORTED_PARTS:
             self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
-        return known
+        return expected_robot
 
     def _passed_parts(self, name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""
@@ -115,12 +124,15 @@ class SelfTest(Conversation):
         try:
             self.run_line(STANDS)
         except CommandError as failure:
-            if failure.key not in ANSWERED:
+            if failure.key not in ANSWERED_FAILURES:
                 raise
             self._add("plain", "discs", said=failure.sentence(self.language))
             return
         after = self.connection.request(lambda session: session.status()).values.noise
-        left, right = (str((now - then) % 256) for now, then in zip(after, before, strict=True))
+        left, right = (
+            str((count_now - count_before) % 256)
+            for count_now, count_before in zip(after, before, strict=True)
+        )
         if left == right == "0":
             self._add("discs_rest")
         else:
@@ -148,7 +160,7 @@ class SelfTest(Conversation):
             self.answer("ask_hand", name=name)
             after = self._read(sensor)
         except CommandError as failure:
-            if failure.key not in ANSWERED:
+            if failure.key not in ANSWERED_FAILURES:
                 raise
             self._add("no_reading", name=name, said=failure.sentence(self.language))
             return
@@ -156,13 +168,13 @@ class SelfTest(Conversation):
             is_stuck = not sensor.is_yes_no and {*before} <= {sensor.low, sensor.high}
             self._add("stuck" if is_stuck else "reads", name=name, values=values)
             return
-        now = _range(sensor, after)
-        least = 0 if sensor.is_yes_no else (sensor.high - sensor.low) // NOTICED
-        if abs(sum(after) - sum(before)) > least * READINGS:
+        range_text = _range(sensor, after)
+        least_change = 0 if sensor.is_yes_no else (sensor.high - sensor.low) // NOTICEABLE_PARTS
+        if abs(sum(after) - sum(before)) > least_change * READING_COUNT:
             cause = "changes"
         else:  # a hand may be as bright as the floor
             cause = "as_bright" if sensor.is_yes_no else "same"
-        self._add(cause, name=name, values=values, now=now)
+        self._add(cause, name=name, values=values, now=range_text)
 
     def _motors(self, is_lifted: bool) -> None:
         """Turn both. A robot with other wires may learn them, and turns both again."""
@@ -212,23 +224,23 @@ class SelfTest(Conversation):
 
     def _buzzer(self) -> None:
         try:
-            answer = self.ask_what_was_seen("BEEP(0.5, 440)", "ask_buzzer", AGAIN)
+            answer = self.ask_what_was_seen("BEEP(0.5, 440)", "ask_buzzer", BUZZER_AGAIN)
         except NoPerson:
             self._add("unasked", "buzzer")
         except CommandError as failure:
             self._record_failure("buzzer", failure)
         else:
-            self._add("heard" if answer == HEARD else "unheard")
+            self._add("heard" if answer == BUZZER_HEARD else "unheard")
 
     def _record_failure(self, part: str, failure: CommandError) -> None:
         self._add("ended", part, said=failure.sentence(self.language))
-        if failure.key not in ANSWERED:
+        if failure.key not in ANSWERED_FAILURES:
             raise failure
 
     def _read(self, sensor: Device) -> list[int]:
         """Return readings, in thousandths, or 0 and 1. Raises CommandError."""
-        values = self.run_line("; W(0.1); ".join([f"SHOW({sensor.name})"] * READINGS))
-        if len(values) != READINGS:
+        values = self.run_line("; W(0.1); ".join([f"SHOW({sensor.name})"] * READING_COUNT))
+        if len(values) != READING_COUNT:
             raise CommandError(3, "selftest_silent")
         return values
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
 
-ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
+LONGEST_ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
 TOLD_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
 MOST_EVENTS = 10_000  # that nobody has asked for yet; the oldest are lost
 
@@ -126,13 +126,13 @@ class CommandSimulator(SimulatorThread):
         """
         expected = "STOP" if event == "STOPPED" else event
 
-        def is_there() -> bool:
+        def has_event() -> bool:
             return any(event.text == expected for event in self._told)
 
         with self._drawing:
             started_ms = self.robot.started_ms or 0
             if expected.partition(" ")[0] not in TOLD_EVENTS or not self._drawing.wait_for(
-                is_there, ROUND_S
+                has_event, LONGEST_ROUND_S
             ):
                 return self.robot.now_ms - started_ms
             while True:
@@ -145,7 +145,7 @@ class CommandSimulator(SimulatorThread):
         with self._drawing:
             if self.screen is not None:
                 due = self._rounds + 1  # the newest events are still to come
-                self._drawing.wait_for(lambda: self._rounds >= due, ROUND_S)
+                self._drawing.wait_for(lambda: self._rounds >= due, LONGEST_ROUND_S)
             screen, self.screen = self.screen, None
             if screen is not None:
                 if self._picture is not None:

@@ -127,18 +127,18 @@ def summary(
 
 
 def number(
-    option: str, found: str | None, default: int, low: int, high: int, language: str
+    option: str, typed: str | None, default: int, low: int, high: int, language: str
 ) -> float:
     """Return an option's decimal number; `default`, `low` and `high` are thousandths."""
-    return thousandths(option, found, default, low, high, language) / ONE
+    return thousandths(option, typed, default, low, high, language) / ONE
 
 
-def _motors(found: str | None, language: str) -> tuple[float, float]:
-    if found is None:
+def _motors(typed: str | None, language: str) -> tuple[float, float]:
+    if typed is None:
         return 100.0, 100.0
-    parts = found.split(",")
+    parts = typed.split(",")
     if len(parts) != 2:
-        raise CommandError(2, "bad_motors", found=printable_name(found) or "''")
+        raise CommandError(2, "bad_motors", found=printable_name(typed) or "''")
     left, right = (
         number("--motors", part.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for part in parts
     )

@@ -29,7 +29,7 @@ FIRST_STEP = 16  # percent of balance; halved each time that the drift changes s
 AGAIN = 4
 # failures after a stop by another command
 STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
-TRIES = 4
+MOST_TRIES = 4
 
 
 def guide(connection: Connection, before: Trim) -> Trim:
@@ -54,7 +54,7 @@ def _is_there(failure: CommandError) -> bool:
 
 def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
-    for _ in range(TRIES - 1):
+    for _ in range(MOST_TRIES - 1):
         try:
             connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
         except CommandError as failure:
@@ -83,9 +83,9 @@ class TrimWizard(Conversation):
             return trim
         if self.choice("trim_measure", 2) != ANSWER_YES:
             return trim._replace(pace=before.pace)
-        ahead = self._measure("F", DRIVE_S, "trim_how_far")
+        forward_pace = self._measure("F", DRIVE_S, "trim_how_far")
         turning = self._measure("R", TURN_S, "trim_how_round")
-        return trim._replace(pace=Pace(*ahead, *turning))
+        return trim._replace(pace=Pace(*forward_pace, *turning))
 
     def run_line(self, line: str) -> list[int]:
         try:
@@ -98,12 +98,12 @@ class TrimWizard(Conversation):
 
     def _find_wiring(self) -> Trim:
         """Turn each motor; return the trim with which they are those of their wheels."""
-        seen = []
+        wheel_turns = []
         for side in ("left", "right"):
-            seen.append(self.turn_motor(side))
-            if not seen[-1].wheel:
-                raise self._failure(sure("still")._replace(of=side))
-        trim = trim_from_answers(Trim(), *seen)
+            wheel_turns.append(self.turn_motor(side))
+            if not wheel_turns[-1].wheel:
+                raise self._failure(sure("still")._replace(part_name=side))
+        trim = trim_from_answers(Trim(), *wheel_turns)
         if trim is None:
             raise self._failure(sure("same_wheel"))
         return trim
@@ -165,7 +165,7 @@ class TrimWizard(Conversation):
     def _failure(self, finding: Finding) -> CommandError:
         result = sentences_of(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
+        return CommandError(3, "trim_found", part=part, found=result.finding, then=result.advice)
 
     def _set(self, trim: Trim) -> None:
         self.connection.request(

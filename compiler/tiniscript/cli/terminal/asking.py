@@ -32,7 +32,7 @@ def confirm(question: str) -> bool:
 LONGEST_LINE = 1024  # bytes of standard input that may be a password
 
 
-def password(prompt: str, least: int, most: int, complaint: str) -> bytes:
+def password(prompt: str, least_bytes: int, most_bytes: int, complaint: str) -> bytes:
     """Ask without an echo, or take the first line of standard input, if nobody types there.
 
     Raises CommandError `complaint` if it has fewer or more bytes, or some that nobody types.
@@ -46,6 +46,6 @@ def password(prompt: str, least: int, most: int, complaint: str) -> bytes:
         data = b"" if sys.stdin is None else sys.stdin.buffer.readline(LONGEST_LINE)
         data = data.rstrip(b"\r\n")
     is_plain = all(byte >= ord(" ") and byte != 0x7F for byte in data)
-    if not least <= len(data) <= most or not is_plain:
+    if not least_bytes <= len(data) <= most_bytes or not is_plain:
         raise CommandError(2, complaint)
     return data

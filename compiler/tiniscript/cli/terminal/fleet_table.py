@@ -52,8 +52,8 @@ class FleetTable:
         """Return at most `height` lines: those that are not done first, where not all fit."""
         if not self.members:
             return []
-        over = sum(member.result is not None for member in self.members)
-        title = text("crew_title", self.language).format(over=over, all=len(self.members))
+        done_count = sum(member.result is not None for member in self.members)
+        title = text("crew_title", self.language).format(over=done_count, all=len(self.members))
         lines = [Text(f"── {title} ".ljust(width, "─"), style="dim")]
         rows = list(self.members)
         hidden = 0
@@ -63,17 +63,17 @@ class FleetTable:
             rows = rows[: len(rows) - hidden]
         # of hidden rows, too, so that no column jumps when another row is shown
         self.wide = [
-            max(known, *map(cell_len, column))
-            for known, column in zip(self.wide, _columns(self.members), strict=True)
+            max(old_width, *map(cell_len, column))
+            for old_width, column in zip(self.wide, _columns(self.members), strict=True)
         ]
-        wide = self.wide
+        widths = self.wide
         for member, name, port in zip(rows, *_columns(rows), strict=True):
-            line = Text(f"{set_cell_size(name, wide[0])}  {set_cell_size(port, wide[1])}  ")
+            line = Text(f"{set_cell_size(name, widths[0])}  {set_cell_size(port, widths[1])}  ")
             line.append(member.state_text(self.language), style=STYLES[member.mark])
             lines.append(line)
         if hidden:
-            more = text("crew_more", self.language).format(n=hidden)
-            lines.append(Text(more, style="dim"))
+            hidden_count = text("crew_more", self.language).format(n=hidden)
+            lines.append(Text(hidden_count, style="dim"))
         for line in lines:
             line.truncate(max(1, width), overflow="ellipsis")
         return lines[: max(1, height)]

@@ -18,18 +18,18 @@ from tiniscript.cli.texts import text
 NOT_STARTED = (126, 127)
 
 
-def show(said: str, language: str) -> None:
+def show(text: str, language: str) -> None:
     """Show a text; a long one with a pager, until the person leaves that."""
     sys.stdout.flush()
-    command = _command(language) if _is_long_there(said) else ""
-    if not command or not _page(said, command):
-        print(said, end="")
+    command = _command(language) if _is_long_there(text) else ""
+    if not command or not _page(text, command):
+        print(text, end="")
 
 
-def _is_long_there(said: str) -> bool:
+def _is_long_there(text: str) -> bool:
     """Whether a person sits at a terminal that has fewer lines than the text."""
     is_person = sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
-    return is_person and said.count("\n") >= get_terminal_size().lines
+    return is_person and text.count("\n") >= get_terminal_size().lines
 
 
 def _command(language: str) -> str:
@@ -45,13 +45,13 @@ def _command(language: str) -> str:
     return command.strip()
 
 
-def _page(said: str, command: str) -> bool:
+def _page(text: str, command: str) -> bool:
     """Show a text with a pager; return whether it could be started.
 
     Ctrl-C belongs to the pager: tsc waits until the pager has left the terminal.
     """
     environ = {"LESS": "FRX", "LESSCHARSET": "utf-8", **os.environ}
-    data = said.encode(sys.stdout.encoding or "utf-8", "backslashreplace")
+    data = text.encode(sys.stdout.encoding or "utf-8", "backslashreplace")
     try:
         pager = subprocess.Popen(command, shell=True, stdin=subprocess.PIPE, env=environ)
     except OSError:

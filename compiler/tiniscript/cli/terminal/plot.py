@@ -19,20 +19,20 @@ from tiniscript.cli.terminal.canvas import DOTS_PER_COLUMN, DOTS_PER_ROW, Canvas
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.link.outcomes import Event, ShownEvent
 
-SHOWN_S = 30  # from the left edge to the right one
-ROWS = 12  # at most
+SHOWN_SECONDS = 30  # from the left edge to the right one
+MOST_ROWS = 12  # at most
 MOST_VALUES = 5000  # values of a curve, the newest
 STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # of curves; so many there are
 NAMELESS_CURVE = "SHOW"  # the curve of all values without a name
-STEPS = 4  # between the marks of the axis, about
+AXIS_STEPS = 4  # between the marks of the axis, about
 
 
 class Board(Screen):
     """The terminal while values come: what is told, and below it the curves."""
 
-    def __init__(self, waiting: str) -> None:
+    def __init__(self, waiting_text: str) -> None:
         super().__init__()
-        self.plot = Plot(waiting)
+        self.plot = Plot(waiting_text)
         self.drawn_s = 0.0
 
     def __enter__(self) -> Board:
@@ -59,8 +59,8 @@ Values = deque[tuple[int, int]]  # when, and thousandths
 class Plot:
     """`now_ms` is the time of the newest value; `waiting` is said until there is one."""
 
-    def __init__(self, waiting: str = "") -> None:
-        self.waiting = waiting
+    def __init__(self, waiting_text: str = "") -> None:
+        self.waiting = waiting_text
         self.now_ms = 0
         self.curves: dict[str, Values] = {}  # by name, in the order of their first values
         self.styles: dict[str, str] = {}
@@ -84,13 +84,13 @@ class Plot:
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
         width -= 2  # the ^C of the terminal stands after the last line
-        begin_ms = now_ms - SHOWN_S * 1000
+        begin_ms = now_ms - SHOWN_SECONDS * 1000
         for values in self.curves.values():
             while len(values) > 1 and values[1][0] < begin_ms:
                 values.popleft()
-        known = [value for _, value in chain.from_iterable(self.curves.values())]
-        low, high, step = scale(min(known, default=0), max(known, default=1000))
-        rows = min(ROWS, height - 1)
+        values_shown = [value for _, value in chain.from_iterable(self.curves.values())]
+        low, high, step = scale(min(values_shown, default=0), max(values_shown, default=1000))
+        rows = min(MOST_ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
         self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))  # it never jumps back
         margin = self.margin
@@ -122,7 +122,7 @@ class Plot:
             title.right_crop(1)
         else:
             title.append(f"{NAMELESS_CURVE} {self.waiting} ")
-        end = f" {SHOWN_S} s "
+        end = f" {SHOWN_SECONDS} s "
         title.append("─" * (width - 6 - title.cell_len) + end)
         title.truncate(max(1, width))
         return title
@@ -134,10 +134,10 @@ class Plot:
         canvas = Canvas(columns, rows)
         right, bottom = DOTS_PER_COLUMN * columns - 1, DOTS_PER_ROW * rows - 1
         before: int | None = None
-        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SHOWN_S * 1000]
+        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SHOWN_SECONDS * 1000]
         for (time_ms, value), end_ms in zip(values, ends, strict=True):
             x, end = (
-                round(min(1.0, max(0.0, (item - begin_ms) / (SHOWN_S * 1000))) * right)
+                round(min(1.0, max(0.0, (item - begin_ms) / (SHOWN_SECONDS * 1000))) * right)
                 for item in (time_ms, end_ms)
             )
             y = round((high - value) / (high - low) * bottom)
@@ -154,6 +154,6 @@ def scale(low: int, high: int) -> tuple[int, int, int]:
     if low == high:
         low, high = low - 1000, high + 1000
     step = 1
-    while (high - low) > STEPS * step:
+    while (high - low) > AXIS_STEPS * step:
         step = step * 5 // 2 if str(step).startswith("2") else step * 2
     return low // step * step, -(-high // step) * step, step

@@ -15,8 +15,8 @@ from tiniscript.cli.texts import text
 if TYPE_CHECKING:
     from threading import Timer
 
-BLINK_S = 0.3
-COLUMNS = 30
+BLINK_INTERVAL_S = 0.3
+BAR_COLUMNS = 30
 MOST_PERCENT = 99  # of what is not done
 
 
@@ -26,22 +26,24 @@ class Progress:
     The last percent is there when the line is cleared: what has arrived is not done yet.
     """
 
-    def __init__(self, language: str, whole: int) -> None:
-        """`whole` is the total, in any unit."""
+    def __init__(self, language: str, total: int) -> None:
+        """`total` is the total, in any unit."""
         self.label = text("sending", language)
-        self.whole = whole
+        self.whole = total
         self._begin_s = monotonic()
         self._is_seen = sys.stderr.isatty()
         self._drawn = ""
         self._is_there = False  # in the terminal's line
 
-    def draw(self, done: int) -> bool:
+    def draw(self, done_units: int) -> bool:
         """Draw it where it has grown; return whether it has."""
-        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
+        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_INTERVAL_S:
             return False
-        percent = min(100 * done // self.whole, MOST_PERCENT)
-        full = COLUMNS * percent // 100
-        line = f"{self.label} [{'#' * full}{'.' * (COLUMNS - full)}] {percent:3} %"
+        percent = min(100 * done_units // self.whole, MOST_PERCENT)
+        full_columns = BAR_COLUMNS * percent // 100
+        line = (
+            f"{self.label} [{'#' * full_columns}{'.' * (BAR_COLUMNS - full_columns)}] {percent:3} %"
+        )
         if line == self._drawn:
             return False
         self._drawn, self._is_there = line, True
@@ -61,16 +63,17 @@ class Doing:
     def __init__(self, is_shown: bool = True) -> None:
         self._is_shown = is_shown and reads_sequences(sys.stderr)
 
-    def tell(self, said: str) -> None:
+    def tell(self, sentence: str) -> None:
         if self._is_shown:
-            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
+            print(f"\r\x1b[K{sentence}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         self.tell("")
 
 
-MOMENT_S = 2.0
-PAUSE_S = 0.5  # between two waits: the person has typed or read something, so a new one begins
+SILENCE_LIMIT_S = 2.0
+# Between two waits: the person has typed or read something, so a new one begins.
+NEW_WAIT_PAUSE_S = 0.5
 
 
 class Silence:
@@ -79,15 +82,15 @@ class Silence:
     Where nobody looks on, nothing is imported.
     """
 
-    def __init__(self, said: str) -> None:
+    def __init__(self, sentence: str) -> None:
         self.is_told = False
-        self._said = said
+        self._said = sentence
         self._timer: Timer | None = None
         if sys.stderr.isatty():
             import threading
 
             self._lock = threading.Lock()
-            self._timer = threading.Timer(MOMENT_S, self._print_wait)
+            self._timer = threading.Timer(SILENCE_LIMIT_S, self._print_wait)
             self._timer.daemon = True
             self._timer.start()
 
@@ -108,16 +111,16 @@ class Silence:
 class Quiet:
     """The same for waits that follow each other: said once, until something else came between."""
 
-    def __init__(self, said: str, is_seen: bool) -> None:
+    def __init__(self, sentence: str, is_seen: bool) -> None:
         self.before: Callable[[], None] = lambda: None  # clears the line of a bar
-        self._said = said
+        self._said = sentence
         self._is_seen = is_seen and sys.stderr.isatty()
         self._since_s = self._until_s = monotonic()
         self.is_told = False
 
     def begin(self) -> None:
         """A wait begins."""
-        if monotonic() - self._until_s > PAUSE_S:
+        if monotonic() - self._until_s > NEW_WAIT_PAUSE_S:
             self.note_words()
 
     def note_words(self) -> None:
@@ -137,16 +140,16 @@ class Quiet:
         """The wait has ended, and nothing was said: what comes next is the same silence."""
         self._until_s = monotonic()
 
-    def with_words(self, said: str) -> Quiet:
+    def with_words(self, sentence: str) -> Quiet:
         """Return the same silence, of which something else is said."""
-        quiet = Quiet(said, self._is_seen)
+        quiet = Quiet(sentence, self._is_seen)
         quiet._since_s = self._since_s
         return quiet
 
     def look(self) -> None:
         """The wait goes on."""
         self._until_s = monotonic()
-        if self.is_told or not self._is_seen or self._until_s - self._since_s < MOMENT_S:
+        if self.is_told or not self._is_seen or self._until_s - self._since_s < SILENCE_LIMIT_S:
             return
         self.is_told = True
         self.before()

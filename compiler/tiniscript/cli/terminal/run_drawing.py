@@ -21,7 +21,7 @@ from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
 MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
-WIDEST = 80  # columns of the values, where the way leaves so many
+MOST_VALUE_COLUMNS = 80  # columns of the values, where the way leaves so many
 COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the way, not below it
 
 
@@ -69,22 +69,22 @@ class Picture:
         self.widest = [0, 0]  # columns of values and units, so far
 
     def take(self, event: Event) -> None:
-        self.now_ms, what, values, said, _ = event
-        if what == "MOTORS":
+        self.now_ms, name, values, event_text, _ = event
+        if name == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)
-        elif what == "READ":
+        elif name == "READ":
             self.readings[values[0]] = values[1]
-        elif what == "SET":
+        elif name == "SET":
             self.settings[values[0]] = values[1]
-        elif what == "RELEASE":
+        elif name == "RELEASE":
             self.settings.pop(values[0], None)
-        elif what == "SHOW":
-            self.shown.append(said.removeprefix("SHOW "))
-        elif what == "BEEP":
+        elif name == "SHOW":
+            self.shown.append(event_text.removeprefix("SHOW "))
+        elif name == "BEEP":
             self.hertz, self.silent_ms = values[0], self.now_ms + values[1]
         else:
             self.sketch.set_motors(self.now_ms, 0, 0)
-            self.ending = text(f"ended_{what}", self.language)
+            self.ending = text(f"ended_{name}", self.language)
             self.sketch.view = None  # the last picture has no need of room to grow
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
@@ -92,17 +92,19 @@ class Picture:
         room = max(1, height - 1)  # below the title
         if width >= COLUMNS_FOR_VALUES_BESIDE:
             columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
-            values = self._values(min(WIDEST, width - columns - 2), room, now_ms)
+            values = self._values(min(MOST_VALUE_COLUMNS, width - columns - 2), room, now_ms)
             way = self.sketch.draw(columns, room, now_ms)
             values += [Text()] * (room - len(values))
             for line in way:
                 line.align("left", columns + 2)
-            below = [line + value for line, value in zip(way, values, strict=True)]
+            lines_below = [line + value for line, value in zip(way, values, strict=True)]
         else:
             values = self._values(width, max(room - 3, min(room, 3)), now_ms)
             rows = room - len(values)
-            below = (self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []) + values
-        lines = [self._title(width), *below]
+            lines_below = (
+                self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []
+            ) + values
+        lines = [self._title(width), *lines_below]
         for line in lines:
             line.rstrip()
             line.truncate(max(1, width), overflow="ellipsis")
@@ -137,17 +139,17 @@ class Picture:
         if len(rows) > height:
             rows[1:3] = [(text("motors", language), f"{left} {right}", "%", "")]
         # values have a column that only grows: one that jumps cannot be read
-        names, *wide = (max(cell_len(row[k]) for row in rows) for k in range(3))
-        self.widest = [max(pair) for pair in zip(self.widest, wide, strict=True)]
+        names, *widths = (max(cell_len(row[k]) for row in rows) for k in range(3))
+        self.widest = [max(pair) for pair in zip(self.widest, widths, strict=True)]
         numbers, units = self.widest
         names = min(names, max(6, width // 3))
         lines = []
-        for name, value, unit, more in rows[:height]:
+        for name, value, unit, detail in rows[:height]:
             line = Text(name)
             line.truncate(names, overflow="ellipsis", pad=True)
             line.append(f" {value:>{numbers}} ", style="bold")
             line.append(f"{set_cell_size(unit, units)}  ")
-            line.append(more, style="" if "│" in more or more is self.ending else "dim")
+            line.append(detail, style="" if "│" in detail or detail is self.ending else "dim")
             line.truncate(width, overflow="ellipsis")
             lines.append(line)
         return lines

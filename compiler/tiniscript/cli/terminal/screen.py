@@ -83,7 +83,7 @@ def _cursor_up(rows: int) -> str:
     return f"\x1b[{rows}A" if rows else ""
 
 
-SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
+SLOWEST_FRAME_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
 
 
 class Drawable(Protocol):
@@ -152,7 +152,7 @@ class Screen:
         last_s = self.frame_s
         time.sleep(max(0.0, last_s + FRAME_S - time.monotonic()))
         self.frame_s = time.monotonic()
-        return min(self.frame_s - last_s, SLOWEST_S)
+        return min(self.frame_s - last_s, SLOWEST_FRAME_S)
 
     def restart_if_late(self) -> bool:
         """Return whether a frame is overdue: much has happened that takes the robot no time."""

@@ -24,19 +24,19 @@ class EndRequest:
 @contextmanager
 def handle_signals() -> Iterator[EndRequest]:
     """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
-    ended = EndRequest()
+    end_request = EndRequest()
     numbers = (signal.SIGTERM, signal.SIGINT)
-    tell = sys.unraisablehook
+    hook_before = sys.unraisablehook
 
     def tell_others(dropped: sys.UnraisableHookArgs) -> None:
         if not issubclass(dropped.exc_type, KeyboardInterrupt):  # of which the flag is left
-            tell(dropped)
+            hook_before(dropped)
 
     sys.unraisablehook = tell_others
-    before = [signal.signal(number, ended.ask) for number in numbers]
+    handlers_before = [signal.signal(number, end_request.ask) for number in numbers]
     try:
-        yield ended
+        yield end_request
     finally:
-        sys.unraisablehook = tell
-        for number, handler in zip(numbers, before, strict=True):
+        sys.unraisablehook = hook_before
+        for number, handler in zip(numbers, handlers_before, strict=True):
             signal.signal(number, handler)

@@ -95,27 +95,27 @@ class Sketch:
         length = f"{cm:g} cm" if cm < 100 else f"{cm / 100:g} m" if cm < 1e5 else f"{cm / 1e5:g} km"
         return f" ├────────┤ {length} "
 
-    def columns(self, most: int, rows: int) -> int:
-        """Return how many columns of `most` the picture takes: a way may go anywhere."""
-        return most
+    def columns(self, most_columns: int, rows: int) -> int:
+        """Return how many columns of `most_columns` the picture takes: a way may go anywhere."""
+        return most_columns
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
-        ahead = self.way.points_ahead(now_ms)
-        view = self._view(columns, rows, ahead)
+        poses_ahead = self.way.points_ahead(now_ms)
+        view = self._view(columns, rows, poses_ahead)
         corners = self.way.corners
         self.canvas.lines(map(view.dot, corners[max(0, self.joined - 1) :]))
         self.joined = len(corners)
-        whole = self.canvas.copy()
-        whole.lines(map(view.dot, [corners[-1], *ahead]))
-        lines = merge_layers([(whole, WAY)])
-        here = self.way.pose(now_ms)
+        full_canvas = self.canvas.copy()
+        full_canvas.lines(map(view.dot, [corners[-1], *poses_ahead]))
+        lines = merge_layers([(full_canvas, WAY)])
+        pose_now = self.way.pose(now_ms)
         put_letter(lines, view.dot(START), "o", WAY)
-        put_letter(lines, view.dot(here), ARROWS[round(here.heading / 45) % 8], ROBOT)
+        put_letter(lines, view.dot(pose_now), ARROWS[round(pose_now.heading / 45) % 8], ROBOT)
         return lines
 
-    def _view(self, columns: int, rows: int, ahead: Sequence[Pose]) -> View:
+    def _view(self, columns: int, rows: int, poses_ahead: Sequence[Pose]) -> View:
         """Return the view as it is, or one with more room where the way leaves it."""
-        for pose in (*self.way.corners[self.joined :], *ahead):
+        for pose in (*self.way.corners[self.joined :], *poses_ahead):
             low_x, high_x, low_y, high_y = self.seen
             self.seen = (min(low_x, pose.x_cm), max(high_x, pose.x_cm),
                          min(low_y, pose.y_cm), max(high_y, pose.y_cm))  # fmt: skip

@@ -92,11 +92,11 @@ class WorldSketch(Sketch):
             return ""
         return f" ├────────┤ {10 * DOTS_PER_COLUMN * self.floor.cm_per_dot:g} cm "
 
-    def columns(self, most: int, rows: int) -> int:
+    def columns(self, most_columns: int, rows: int) -> int:
         """Return how many columns the floor takes; the values are beside it, not at the edge."""
-        if self._room[:2] != (most, rows):
-            right, _ = Floor(self.world, most, rows).dot(Point(self.world.width_cm, 0))
-            self._room = most, rows, min(most, right // DOTS_PER_COLUMN + 1)
+        if self._room[:2] != (most_columns, rows):
+            right, _ = Floor(self.world, most_columns, rows).dot(Point(self.world.width_cm, 0))
+            self._room = most_columns, rows, min(most_columns, right // DOTS_PER_COLUMN + 1)
         return self._room[2]
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
@@ -148,9 +148,9 @@ class Floor:
 
     def way(self, corners: Sequence[Pose], pose: Pose) -> Canvas:
         """Return the way up to `pose`; the corners that were there before are drawn already."""
-        known = len(self._last)
-        if known > 1 and corners[: known - 1] == self._last[: known - 1]:
-            self._way.lines(map(self.dot, corners[known - 2 :]))
+        drawn_count = len(self._last)
+        if drawn_count > 1 and corners[: drawn_count - 1] == self._last[: drawn_count - 1]:
+            self._way.lines(map(self.dot, corners[drawn_count - 2 :]))
         else:
             self._way.clear()
             self._way.lines(map(self.dot, corners))

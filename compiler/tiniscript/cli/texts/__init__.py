@@ -13,10 +13,10 @@ from tiniscript.base import languages
 from tiniscript.base.source import printable
 
 CATALOGUE = "command"
-LONGEST = 2000  # characters of what is put into a sentence
+MOST_VALUE_CHARACTERS = 2000  # characters of what is put into a sentence
 # What is counted, right after its number: catalogues have how one of it is called, and several.
 # Other words have a sentence of their own for one.
-COUNTED = ("counted_bytes", "counted_checks")
+COUNTED_NOUNS = ("counted_bytes", "counted_checks")
 SEVERAL_COUNT = 5  # as sentences have it
 
 
@@ -38,18 +38,18 @@ class Sentence(str):
         template = "".join(self)
         for key, value in plain.items():
             if isinstance(value, int | str) and str(value).isdecimal():
-                for counted in COUNTED:
-                    several, form = (
-                        f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
+                for noun_key in COUNTED_NOUNS:
+                    placeholder, form = (
+                        f"{{{key}}} {languages.plural_text(CATALOGUE, noun_key, n, self.language)}"
                         for n in (SEVERAL_COUNT, int(value))
                     )
-                    template = template.replace(several, form)
+                    template = template.replace(placeholder, form)
         return Sentence(template.format(*map(_printable, values), **plain))
 
 
 def _printable(value: object) -> object:
     if isinstance(value, str) and not isinstance(value, Sentence):
-        return printable(value, LONGEST)
+        return printable(value, MOST_VALUE_CHARACTERS)
     return value
 
 

@@ -14,9 +14,9 @@ from tiniscript.link.messages import RESETS
 class Sentences(NamedTuple):
     """What was found, how that was seen, and the next step; nothing where there is none."""
 
-    what: str
-    seen: str
-    then: str
+    finding: str
+    evidence: str
+    advice: str
 
 
 def sentences_of(
@@ -27,40 +27,44 @@ def sentences_of(
     if filled.get("reset") in dict(RESETS):
         filled["reset"] = text(f"reset_{filled['reset']}", language)
     cause, row = finding.cause, CAUSES[finding.cause]
-    seen, then = f"seen_{cause}", f"next_{row.then or cause}"
+    evidence_key, advice_key = f"seen_{cause}", f"next_{row.then or cause}"
     if cause == "busy" and not filled["by"]:
-        seen = "seen_busy_unknown"
-    if filled.get("count") == "1" and has_text(f"{seen}_once"):
-        seen += "_once"
+        evidence_key = "seen_busy_unknown"
+    if filled.get("count") == "1" and has_text(f"{evidence_key}_once"):
+        evidence_key += "_once"
     if cause == "no_permission" and not filled["group"]:
-        seen, then = "seen_no_permission_other", "next_no_permission_other"
+        evidence_key, advice_key = "seen_no_permission_other", "next_no_permission_other"
     if cause in ("no_port", "charging_cable") and filled.get("ports"):
-        seen, then = "seen_no_port_others", "next_no_port_others"
+        evidence_key, advice_key = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
-        what, advice = (Sentence(each) for each in foreign.sentence(cause, language))
+        meaning, advice = (Sentence(each) for each in foreign.sentence(cause, language))
         if cause == foreign.ECHO_SKETCH:
-            seen = "seen_echo_sketch"
+            evidence_key = "seen_echo_sketch"
         elif cause == foreign.OTHER_SKETCH and not filled["said"]:
-            seen = "seen_other_sketch_silent"
+            evidence_key = "seen_other_sketch_silent"
         else:
-            seen = "seen_foreign"
-        return Sentences(what, text(seen, language).format(**filled), advice)
-    # a part that is looked at whole has no `seen`, and one that is right no next step
-    keys = f"found_{cause}", seen if has_text(seen) else "", then if has_text(then) else ""
+            evidence_key = "seen_foreign"
+        return Sentences(meaning, text(evidence_key, language).format(**filled), advice)
+    # a part that is looked at whole has no `evidence_key`, and one that is right no next step
+    keys = (
+        f"found_{cause}",
+        evidence_key if has_text(evidence_key) else "",
+        advice_key if has_text(advice_key) else "",
+    )
     return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))
 
 
 def as_data(finding: Finding, language: str) -> dict[str, object]:
     """Return a finding as data: what a program reads, and what a person would."""
-    what, seen, then = sentences_of(finding, language)
+    meaning, evidence, advice = sentences_of(finding, language)
     return {
         "cause": finding.cause,
         "is_wrong": finding.is_wrong,
         "is_sure": finding.is_sure,
         "values": dict(finding.values),
-        "said": what,
-        "seen": seen,
-        "next": then,
+        "said": meaning,
+        "seen": evidence,
+        "next": advice,
     }
 
 
@@ -73,12 +77,12 @@ def rows(findings: Iterable[Finding], language: str) -> list[str]:
     """Return the lines of a conversation about parts: what came of each, and what to do."""
     lines = []
     for finding in findings:
-        what, seen, then = sentences_of(finding, language)
+        meaning, evidence, advice = sentences_of(finding, language)
         mark = text(f"finding_{finding.verdict}", language)
         row = text("finding_row", language)
-        lines.append(row.format(mark=mark, what=label(finding, language), said=what))
-        if seen:
-            lines.append(text("finding_seen", language).format(seen=seen))
-        if then:
-            lines.append(text("finding_next", language).format(then=then))
+        lines.append(row.format(mark=mark, what=label(finding, language), said=meaning))
+        if evidence:
+            lines.append(text("finding_seen", language).format(seen=evidence))
+        if advice:
+            lines.append(text("finding_next", language).format(then=advice))
     return lines

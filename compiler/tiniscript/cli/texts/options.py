@@ -334,18 +334,18 @@ def choosers_of(command: str) -> list[Option]:
     ]
 
 
-def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
+def command_of(verb: str, words: list[str]) -> tuple[str, list[str]]:
     """Return the command that a verb and the words after it mean, and what is left of these.
 
     That is the verb itself where they choose none of its steps.
     """
-    own = words[: words.index("--")] if "--" in words else words
-    flags = {word.partition("=")[0] for word in own if word.startswith("-")}
-    at = first_word(verb, own)
+    own_words = words[: words.index("--")] if "--" in words else words
+    flags = {word.partition("=")[0] for word in own_words if word.startswith("-")}
+    at = first_word(verb, own_words)
     text = f"{verb} {words[at]}" if at is not None else verb
-    begun = [name for name in steps_of(verb) if STEPS[name].head in (verb, text)]
-    result = next((name for name in begun if flags & {*STEPS[name].choosers}), None)
-    result = result or next((name for name in begun if STEPS[name].typed == text), verb)
+    fitting_steps = [name for name in steps_of(verb) if STEPS[name].head in (verb, text)]
+    result = next((name for name in fitting_steps if flags & {*STEPS[name].choosers}), None)
+    result = result or next((name for name in fitting_steps if STEPS[name].typed == text), verb)
     if result == verb or STEPS[result].head == verb:
         return result, words
     return result, [word for k, word in enumerate(words) if k != at]
@@ -356,11 +356,11 @@ def first_word(verb: str, words: list[str]) -> int | None:
     commands = (verb, *steps_of(verb))
     valued = {flag for command in commands for option in options_of(command)
               if option.kind is not None for flag in option.flags.split()}  # fmt: skip
-    is_value = False
+    is_option_value = False
     for k, word in enumerate(words):
-        if not is_value and not word.startswith("-"):
+        if not is_option_value and not word.startswith("-"):
             return k
-        is_value = not is_value and word in valued
+        is_option_value = not is_option_value and word in valued
     return None
 
 

@@ -125,10 +125,10 @@ def settings() -> tuple[str, ...]:
     return tuple(dict.fromkeys(words))
 
 
-def verb_sentence(verb: str, what: str, language: str) -> str:
+def verb_sentence(verb: str, part: str, language: str) -> str:
     """Return what is said of a command.
 
     `example` is what may be typed for it, `summary` what that does, `says` what the command does,
     `ends` what else there is to know. Where it is used in several ways, `usage` has a line for each.
     """
-    return verb_text(f"verb/{verb}/{what}", language) or command_words(verb) * (what == "example")
+    return verb_text(f"verb/{verb}/{part}", language) or command_words(verb) * (part == "example")

@@ -28,7 +28,7 @@ _UNARY, _PRIMARY = 10, 11
 
 class _Operand(NamedTuple):
     text: str
-    binds: int  # how tightly, as C++ has it
+    precedence: int  # how tightly, as C++ has it
     is_literal: bool = False  # a number that C++ itself would calculate with
     is_random: bool = False
 
@@ -38,12 +38,12 @@ class Expressions:
 
     def __init__(
         self,
-        use: Callable[[str], str],
+        use_function: Callable[[str], str],
         is_exact: bool,
         variables: Sequence[str],
         sensors: Sequence[str],
     ) -> None:
-        self.use = use
+        self.use = use_function
         self.is_exact = is_exact
         self.variables = variables
         self.sensors = sensors
@@ -60,8 +60,8 @@ class Expressions:
             elif op == "VARIABLE":
                 stack.append(_Operand(self.variables[value], _PRIMARY))
             elif op == "SENSOR":
-                is_read = reading is not None and reading[0] == value
-                name = reading[1] if reading is not None and is_read else self.sensors[value]
+                is_own_reading = reading is not None and reading[0] == value
+                name = reading[1] if reading is not None and is_own_reading else self.sensors[value]
                 stack.append(_Operand(name, _PRIMARY))
             elif op == "TIME":
                 stack.append(_Operand(f"{self.use('time')}()", _PRIMARY))
@@ -84,24 +84,26 @@ class Expressions:
 
     def _unary(self, op: str, operand: _Operand) -> _Operand:
         if op == "NOT":
-            return operand._replace(text="!" + _bracket(operand, _UNARY), binds=_UNARY)
+            return operand._replace(text="!" + _bracket(operand, _UNARY), precedence=_UNARY)
         result = self._as_number(operand)
         if op == "ABS":
-            return result._replace(text=f"{self.use('absolute')}({result.text})", binds=_PRIMARY)
+            return result._replace(
+                text=f"{self.use('absolute')}({result.text})", precedence=_PRIMARY
+            )
         self.use("NEG")
         gap = " " if result.text.startswith("-") else ""
-        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", binds=_UNARY)
+        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", precedence=_UNARY)
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
-        first = kept = ""
+        first = assignment = ""
         if left.is_random and right.is_random and op not in ("AND", "OR"):
             first = self.keep()
-            kept, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
+            assignment, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
         if op in FUNCTIONS:
             operand = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
             if first:
-                operand = _Operand(f"({kept}{operand.text})", _PRIMARY)
+                operand = _Operand(f"({assignment}{operand.text})", _PRIMARY)
             return operand._replace(is_random=is_random)
         sign, binds = SIGNS[op], _PRECEDENCE[op]
         if op in ARITHMETIC_OPS or op in COMPARISON_OPS:
@@ -114,10 +116,10 @@ class Expressions:
         # Brackets that C++ does not need stand where it warns without them.
         low, high = (8, 8) if op in COMPARISON_OPS else (binds, binds + 1)
         if op == "OR":
-            low, high = (6 if left.binds == _PRECEDENCE["AND"] else binds), 6
+            low, high = (6 if left.precedence == _PRECEDENCE["AND"] else binds), 6
         made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
         if first:
-            return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
+            return _Operand(f"({assignment}{made_text})", _PRIMARY, is_random=True)
         return _Operand(made_text, binds, is_random=is_random)
 
     def _as_number(self, operand: _Operand) -> _Operand:
@@ -127,17 +129,17 @@ class Expressions:
         return _Operand(f"{self.use('Number')}({operand.text})", _PRIMARY)
 
 
-def _bracket(operand: _Operand, binds: int) -> str:
+def _bracket(operand: _Operand, precedence: int) -> str:
     """Return an operand as it stands beside an operator that binds so tightly."""
-    return operand.text if operand.binds >= binds else f"({operand.text})"
+    return operand.text if operand.precedence >= precedence else f"({operand.text})"
 
 
 def is_float(value: int) -> bool:
     """Whether a literal means this number of thousandths: C++ reads it as a float of 24 bits."""
     if value % ONE == 0:
         return True
-    near: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
-    grown: float = struct.unpack("f", struct.pack("f", near * ONE))[0]
+    nearest_float: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
+    grown: float = struct.unpack("f", struct.pack("f", nearest_float * ONE))[0]
     return int(struct.unpack("f", struct.pack("f", grown + 0.5))[0]) == abs(value)
 
 

@@ -91,11 +91,11 @@ class Names:
         result = before + result if before else words[0] + result[len(words[0]) :]
         if result in RESERVED or result in self._taken or _COUNTER_NAME.fullmatch(result):
             result = self._prefix + result[0].upper() + result[1:]
-        found, number = result, 2
-        while found in self._taken:
-            found, number = f"{result}_{number}", number + 1
-        self._taken.add(found)
-        return found
+        candidate, number = result, 2
+        while candidate in self._taken:
+            candidate, number = f"{result}_{number}", number + 1
+        self._taken.add(candidate)
+        return candidate
 
 
 def counter(depth: int) -> str:

@@ -37,8 +37,8 @@ def _operator(op: str) -> str:
     sign = SIGNS[op]
     if op in ARITHMETIC_OPS:
         return f"$Number operator{sign}($Number a, $Number b) {{\n  {_RESULTS[op]}\n}}"
-    compared = f"a.$thousandths {sign} b.$thousandths"
-    return f"bool operator{sign}($Number a, $Number b) {{ return {compared}; }}"
+    comparison_code = f"a.$thousandths {sign} b.$thousandths"
+    return f"bool operator{sign}($Number a, $Number b) {{ return {comparison_code}; }}"
 
 
 NUMBERS: dict[str, str] = {

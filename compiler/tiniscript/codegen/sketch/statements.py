@@ -71,27 +71,32 @@ class Statements:
         self.set_actuators: set[int] = set()
         self.depth = 1
         self.loops = 0
-        self.given: frozenset[int] = frozenset()  # the variables that calls set: arguments
+        self.variables_set_by_calls: frozenset[int] = frozenset()  # arguments
         self.values: list[ir.Expression] = []  # of the arguments of the call that is next
 
     def body(self, body: ir.Body) -> None:
         for statement in body:
-            if isinstance(statement, ir.Assign) and statement.variable in self.given:
+            if (
+                isinstance(statement, ir.Assign)
+                and statement.variable in self.variables_set_by_calls
+            ):
                 self.values.append(statement.value)
             else:
                 self.statement(statement)
 
     # -- lines
 
-    def line(self, code: str, beside: str = "") -> None:
+    def line(self, code: str, comment: str = "") -> None:
         indent = "  " * self.depth
         plain = f"{indent}{code}"
-        if beside:
-            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {beside}"
+        if comment:
+            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {comment}"
             if len(padded) <= MOST_COLUMNS:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_truncate(beside, MOST_COLUMNS - len(indent) - 3)}")
+                self.lines.append(
+                    f"{indent}// {_truncate(comment, MOST_COLUMNS - len(indent) - 3)}"
+                )
         self.lines.append(plain)
 
     def instruction_text(self, start: int) -> str:
@@ -168,8 +173,8 @@ class Statements:
         self.read_sensors.add(sensor)
         return f"{self.names.reads[sensor]}();"
 
-    def call(self, key: str, said: str, values: Sequence[str]) -> None:
-        self.line(f"{self.use(key)}({', '.join(values)});", said)
+    def call(self, key: str, comment: str, values: Sequence[str]) -> None:
+        self.line(f"{self.use(key)}({', '.join(values)});", comment)
 
     # -- arguments
 
@@ -196,15 +201,15 @@ class Statements:
 
     # -- moves and what is shown
 
-    def move(self, move: ir.Move, said: str) -> None:
+    def move(self, move: ir.Move, comment: str) -> None:
         if move.until is not None:
-            self.until(move, move.until, said)
+            self.until(move, move.until, comment)
             return
         assert move.time is not None
         if move.power is None:
-            self.call("wait", said, self.drive(move))
+            self.call("wait", comment, self.drive(move))
         else:
-            self.call(_MOVE_FUNCTIONS[move.direction], said, self.drive(move))
+            self.call(_MOVE_FUNCTIONS[move.direction], comment, self.drive(move))
 
     def drive(self, move: ir.Move) -> list[str]:
         if move.unit:
@@ -215,17 +220,17 @@ class Statements:
         texts = self.arguments(*parts)
         return texts if move.time is not None else [self.use("FOREVER"), *texts]
 
-    def set(self, statement: ir.Set, said: str) -> None:
+    def set(self, statement: ir.Set, comment: str) -> None:
         self.set_actuators.add(statement.actuator)
         device = self.kit.actuators[statement.actuator]
         if device.is_yes_no:
             value = self.write.text(statement.value)
         else:
             (value,) = self.arguments((statement.value, (device.low // ONE, device.high // ONE)))
-        self.line(f"{self.names.sets[statement.actuator]}({value});", said)
+        self.line(f"{self.names.sets[statement.actuator]}({value});", comment)
 
-    def until(self, move: ir.Move, until: ir.Until, said: str) -> None:
-        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), said, self.drive(move))
+    def until(self, move: ir.Move, until: ir.Until, comment: str) -> None:
+        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), comment, self.drive(move))
         self.line(f"while ({self.use('move_lasts')}()) {{")
         self.depth += 1
         condition = self.condition(until.reads, until.condition)
@@ -242,17 +247,17 @@ class Statements:
             self.line(self.reading(sensor))
         return self.write.text(condition)
 
-    def show(self, show: ir.Show, said: str) -> None:
+    def show(self, show: ir.Show, comment: str) -> None:
         fixed = constant(show.value)
         self.use("Serial")
         if show.is_yes_no:
-            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", said)
+            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", comment)
         elif fixed is not None:
-            self.line(f'Serial.println("{as_text(fixed)}");', said)
+            self.line(f'Serial.println("{as_text(fixed)}");', comment)
         elif self.write.is_exact:
-            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", said)
+            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", comment)
         else:
-            self.line(f"Serial.println({self.write.text(show.value)});", said)
+            self.line(f"Serial.println({self.write.text(show.value)});", comment)
 
     # -- blocks
 
@@ -268,7 +273,7 @@ class Statements:
         for k, arm in enumerate(statement.arms):
             text = self.instruction_text(arm.span.start)
             self.remarks_in(arm.span.start, k)
-            before = len(self.lines)
+            line_count_before = len(self.lines)
             inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
             if k and arm.reads and not inline:
                 self.line("} else {")
@@ -278,7 +283,7 @@ class Statements:
                 self.line(f"if ({condition}) {{", text)
             else:
                 condition = self.condition(arm.reads, arm.condition)
-                assert before == len(self.lines)
+                assert line_count_before == len(self.lines)
                 self.line(f"{'} else ' if k else ''}if ({condition}) {{", text)
             self.block(arm.body)
         if statement.otherwise:
@@ -295,28 +300,28 @@ class Statements:
         self.remarks(start)
         self.depth -= arm > 0
 
-    def loop(self, loop: ir.Loop, said: str) -> None:
+    def loop(self, loop: ir.Loop, comment: str) -> None:
         if loop.times is None:
-            self.line("while (true) {", said)
+            self.line("while (true) {", comment)
         else:
             name = counter(self.loops)
             fixed = constant(loop.times)
             if fixed is None:
                 times = f"{self.use('whole')}({self.write.text(loop.times)})"
-                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", said)
+                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
             else:
                 count = whole(fixed)
                 kind = "int" if abs(count) <= _LARGEST_INT else "long"
-                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", said)
+                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
         self.block(loop.body, is_loop=True)
         self.line("}")
 
-    def while_(self, loop: ir.While, said: str) -> None:
+    def while_(self, loop: ir.While, comment: str) -> None:
         inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
         if inline or not loop.reads:
-            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", said)
+            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", comment)
         else:
-            self.line("while (true) {", said)
+            self.line("while (true) {", comment)
             self.depth += 1
             condition = self.condition(loop.reads, loop.condition)
             self.line(f"if (!({condition})) break;")
@@ -348,9 +353,11 @@ def comment_text(text: str) -> str:
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 
-def _truncate(text: str, most: int) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"
+def _truncate(text: str, most_characters: int) -> str:
+    return text if len(text) <= most_characters else text[: most_characters - 1] + "…"
 
 
-def _rows(text: str, most: int) -> list[str]:
-    return [comment_text(text[at : at + most]) for at in range(0, len(text), most)] or [""]
+def _rows(text: str, most_characters: int) -> list[str]:
+    return [
+        comment_text(text[at : at + most_characters]) for at in range(0, len(text), most_characters)
+    ] or [""]

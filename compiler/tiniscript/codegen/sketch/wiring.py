@@ -34,13 +34,13 @@ class SketchPlan(Plan):
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
         if device.is_yes_no:
             return "bool"
-        return "$N" if self.is_exact else "int" if is_count(device, wiring) else "float"
+        return "$N" if self.is_exact else "int" if reads_counts(device, wiring) else "float"
 
     def reader(self, sensor: int, name: str, function: str) -> str:
         """Return the function that takes a reading; it returns what it has kept."""
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
-        beside = self.label(device.name)
-        lines = sensor_of(device.kind, wiring).sketch(self, device, wiring, name, beside)
+        label = self.label(device.name)
+        lines = sensor_of(device.kind, wiring).sketch(self, device, wiring, name, label)
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
         return f"{self.kind(sensor)} {function}() {{\n{body}\n}}"
 
@@ -48,15 +48,15 @@ class SketchPlan(Plan):
 
     def setter(self, actuator: int, function: str) -> str:
         device, wiring = self.robot.kit.actuators[actuator], self.robot.board.actuators[actuator]
-        beside = self.label(device.name)
-        return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, beside)
+        label = self.label(device.name)
+        return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, label)
 
 
-def is_count(device: Device, wiring: Wiring) -> bool:
+def reads_counts(device: Device, wiring: Wiring) -> bool:
     """Whether a sensor's reading is what the converter counts."""
     return sensor_of(device.kind, wiring).is_count(device, wiring)
 
 
-def is_small(devices: Iterable[Device]) -> bool:
+def is_exact_as_float(devices: Iterable[Device]) -> bool:
     """Whether a float tells all readings apart, thousandth by thousandth."""
     return all(max(abs(device.low), abs(device.high)) < 2**24 for device in devices)

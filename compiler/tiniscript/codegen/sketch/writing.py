@@ -21,7 +21,7 @@ from tiniscript.codegen.sketch.names import (
     translated_name,
 )
 from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, comment_text
-from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
+from tiniscript.codegen.sketch.wiring import SketchPlan, is_exact_as_float, reads_counts
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
@@ -35,14 +35,16 @@ def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
             value = statement.value[0]
-            if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
+            if value.op == "SENSOR" and not reads_counts(
+                kit.sensors[value.value], wired[value.value]
+            ):
                 return True
         if isinstance(statement, ir.Assign) or any(map(_is_computed, _arguments(statement, robot))):
             return True
         for expression in ir.expressions(statement):
             if any(_needs_arithmetic(term) for term in expression):
                 return True
-    return not is_small(kit.sensors)
+    return not is_exact_as_float(kit.sensors)
 
 
 def _arguments(statement: ir.Statement, robot: Robot) -> tuple[ir.Expression | None, ...]:
@@ -82,10 +84,12 @@ def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None where there is a sketch.
     """
     statements = list(ir.all_statements(program))
-    read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
+    sensors_read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
     if program.tasks:
         return "tasks"
-    if any(k >= len(kit.sensors) for k in read | ir.referenced_numbers("SENSOR", statements)):
+    if any(
+        k >= len(kit.sensors) for k in sensors_read | ir.referenced_numbers("SENSOR", statements)
+    ):
         return "remote"
     return "ways" if any(map(is_open_way, statements)) else None
 
@@ -159,23 +163,23 @@ class _Sketch:
         if isinstance(last, ir.Loop) and last.times is None and not ir.breaks_out(last.body):
             body, loop = body[:-1], last.body
         procedures = [self.procedure(rows, procedure) for procedure in program.procedures]
-        rows.given = self.arguments
+        rows.variables_set_by_calls = self.arguments
         rows.body(body)
         if isinstance(last, ir.Loop) and loop:
             start = last.span.start
             rows.remarks(start)
             rows.line(f"// {rows.instruction_text(start)}: {self.text_of_key('in_loop')}")
-        main, rows.lines = rows.lines, []
+        main_lines, rows.lines = rows.lines, []
         rows.body(loop)
         rows.remaining_comments()
-        repeated, rows.lines = rows.lines, []
+        repeated_lines, rows.lines = rows.lines, []
         if is_ping:
-            main = []
+            main_lines = []
         elif not loop:
             rows.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
-            main += [*repeated, *rows.lines]
-            repeated = []
-        return self.layout(rows, main, repeated, procedures)
+            main_lines += [*repeated_lines, *rows.lines]
+            repeated_lines = []
+        return self.layout(rows, main_lines, repeated_lines, procedures)
 
     def statements(self) -> Statements:
         comments = [
@@ -194,27 +198,33 @@ class _Sketch:
         rows.depth = 1
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
-        rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
-        read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
+        rows.variables_set_by_calls = self.arguments - {
+            *procedure.values
+        }  # those of this DEF it sets itself
+        variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
-            if k not in read:  # or a compiler warns
+            if k not in variables_read:  # or a compiler warns
                 rows.line(f"(void){self.named.variables[k]};")
         rows.body(procedure.body)
         body, rows.lines = rows.lines, []
         types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
         names = (self.named.variables[k] for k in procedure.values)
         header = f"void {name}({', '.join(map(' '.join, zip(types, names, strict=True)))}) {{"
-        beside = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
-        return "\n".join([*head, beside, *body, "}"])
+        commented_header = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
+        return "\n".join([*head, commented_header, *body, "}"])
 
     def layout(
-        self, rows: Statements, main: list[str], repeated: list[str], procedures: list[str]
+        self,
+        rows: Statements,
+        main_lines: list[str],
+        repeated_lines: list[str],
+        procedures: list[str],
     ) -> str:
         """Return the sketch; what the program uses is known by now."""
         is_ping, parts = self.program.start == "PING", self.plan
         if not is_ping:
             self.plan.motors()
-        own = {
+        own_functions = {
             **{
                 self.named.reads[k]: self.plan.reader(k, self.named.sensors[k], self.named.reads[k])
                 for k in sorted(rows.read_sensors)
@@ -227,10 +237,12 @@ class _Sketch:
         self.functions.update(parts.functions)
         self.functions["halt"] = self.halt()
         begin = [] if is_ping else self.begin()
-        self.add_needed_helpers([*main, *repeated, *procedures, *own.values(), *begin])
-        wired = [*own.values()]
+        self.add_needed_helpers(
+            [*main_lines, *repeated_lines, *procedures, *own_functions.values(), *begin]
+        )
+        wiring_functions = [*own_functions.values()]
         kit = self.robot.kit
-        about = [
+        introduction = [
             *(
                 self.text_of_key("read", name=kit.sensors[k].name)
                 for k in sorted(rows.read_sensors)
@@ -245,28 +257,31 @@ class _Sketch:
             for key in self.needed
             if key in self.functions
         }
-        written = [
-            *(self.with_comment(note, code) for note, code in zip(about, wired, strict=True)),
+        commented_lines = [
+            *(
+                self.with_comment(note, code)
+                for note, code in zip(introduction, wiring_functions, strict=True)
+            ),
             *(self.with_comment(self.note(key), code) for key, code in functions.items()),
         ]
-        used = [*procedures, *wired, *functions.values()]
+        all_functions = [*procedures, *wiring_functions, *functions.values()]
         pieces = [
             self.opening(),
             "#include <Arduino.h>\n",
             self.constants(),
             self.number() if self.is_exact else "",
             self.variables(rows),
-            self.prototypes(used),
-            f"void setup() {{\n{_lines(begin, main)}}}\n",
-            f"void loop() {{\n{_lines(repeated)}}}\n",
+            self.prototypes(all_functions),
+            f"void setup() {{\n{_lines(begin, main_lines)}}}\n",
+            f"void loop() {{\n{_lines(repeated_lines)}}}\n",
         ]
         if procedures:
             pieces += [
                 _heading(self.text_of_key("def")),
                 *(f"{procedure}\n" for procedure in procedures),
             ]
-        if written:
-            pieces += [_heading(self.text_of_key("helpers")), *written]
+        if commented_lines:
+            pieces += [_heading(self.text_of_key("helpers")), *commented_lines]
         return self.fill_words("\n".join(piece for piece in pieces if piece))
 
     # -- its parts
@@ -311,12 +326,12 @@ class _Sketch:
                 if word in by_name and f"{word}(" in text:
                     self.needed[by_name[word]] = None
             self._names_in(text)
-        waiting = list(self.needed)
-        while waiting:
-            text = self.functions.get(waiting.pop(), "")
+        pending_keys = list(self.needed)
+        while pending_keys:
+            text = self.functions.get(pending_keys.pop(), "")
             before = set(self.needed)
             self._names_in(text)
-            waiting += [key for key in self.needed if key not in before]
+            pending_keys += [key for key in self.needed if key not in before]
 
     def _names_in(self, text: str) -> None:
         for key in re.findall(r"\$([a-z_]+)", text):
@@ -365,8 +380,10 @@ class _Sketch:
         for k, name in enumerate(self.named.variables):
             if k not in self.arguments:
                 lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
-        named = ir.referenced_numbers("SENSOR", ir.all_statements(self.program))  # read or not
-        for k in sorted(rows.read_sensors | named):
+        named_sensors = ir.referenced_numbers(
+            "SENSOR", ir.all_statements(self.program)
+        )  # read or not
+        for k in sorted(rows.read_sensors | named_sensors):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
         pieces = ["\n".join([f"// {self.text_of_key('values')}", *lines])] if lines else []
@@ -376,21 +393,21 @@ class _Sketch:
         if self.plan.servo_pins:
             pieces.append(helpers.shared_servo_code(self.plan.servo_pins))
         if self.write.kept:
-            kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
-            pieces.append(f"// {self.text_of_key('shared_first')}\n$N {kept};")
+            shared_names = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
+            pieces.append(f"// {self.text_of_key('shared_first')}\n$N {shared_names};")
         return "\n".join(pieces) + "\n" if pieces else ""
 
     def prototypes(self, codes: Iterable[str]) -> str:
-        matches = [
+        declarations = [
             f"{line[: line.index('{')].rstrip()};"
             for code in codes
             for line in code.splitlines()
             if re.match(r"(?!ISR|struct)[\w$]+( [\w$]+)* [\w$]+[^\w$ (]*\(.*\) \{", line)
         ]
-        if not matches:
+        if not declarations:
             return ""
         last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.text_of_key('prototypes')}", *matches, *([last] if last else [])]
+        lines = [f"// {self.text_of_key('prototypes')}", *declarations, *([last] if last else [])]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:

@@ -29,10 +29,10 @@ def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
             yield token
             continue
         values = _values(rest) if word.arguments else []
-        given = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
+        value_of = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
         expansion = []
         for part in scan(word.stands_for).tokens[:-1]:
-            expansion += given.get(part.text, [part._replace(start=token.start, end=token.end)])
+            expansion += value_of.get(part.text, [part._replace(start=token.start, end=token.end)])
         yield from spell_out(expansion)
 
 
@@ -56,21 +56,21 @@ def line_of(source: Source) -> str:
     parts: list[str] = []
     brackets = 0
     before = ""  # the kind of the last token, or nothing at the beginning
-    is_ended = False  # whether an instruction has ended since then
+    has_ended = False  # whether an instruction has ended since then
     for token in spell_out(scan(source.text).tokens):
         kind = token.kind
         if kind is END:
             break
         if kind is NEWLINE or kind == ";":
-            is_ended = is_ended or not brackets
+            has_ended = has_ended or not brackets
             continue
-        if is_ended and before not in ("", "|"):
+        if has_ended and before not in ("", "|"):
             parts.append(";")
         elif before in (WORD, NUMBER) and kind in (WORD, NUMBER):
             parts.append(" ")
         parts.append(ALIASES.get(token.text, token.text))
         brackets += (kind == "(") - (kind == ")")
-        before, is_ended = kind, False
+        before, has_ended = kind, False
     return with_checksum("".join(parts) or EMPTY_PROGRAM)
 
 
@@ -102,11 +102,11 @@ def plain_code(program: Program) -> PlainCode:
 
 def _short_offsets(code: bytes) -> dict[int, int]:
     """Return where each instruction, and the end, would be if no jump were a far one."""
-    short_offsets, at, far = {0: 0}, 0, 0
+    short_offsets, at, excess_bytes = {0: 0}, 0, 0
     while at < len(code):
         op = op_at(code, at)
         assert op is not None
         at += op.size
-        far += op.name.endswith("_FAR")
-        short_offsets[at] = at - far
+        excess_bytes += op.name.endswith("_FAR")
+        short_offsets[at] = at - excess_bytes
     return short_offsets

@@ -33,14 +33,14 @@ _TASK_BYTES = 3  # of one that begins a task
 class Need(NamedTuple):
     """So many bytes are needed from the token at `span` on, and fewer before."""
 
-    bytes: int
+    byte_count: int
     span: Span
 
 
 class _Def(NamedTuple):
     """The sensors that are surely read after it, and the variables of its values."""
 
-    read: int
+    read_end: int
     values: tuple[int, ...]
 
 
@@ -49,11 +49,11 @@ class _Block:
 
     __slots__ = ("after", "before", "has_else", "name", "taken", "word")
 
-    def __init__(self, word: str, before: int, taken: int, name: str = "") -> None:
+    def __init__(self, word: str, before: int, taken_bytes: int, name: str = "") -> None:
         self.word = word
         self.name = name  # of a DEF
         self.before = before
-        self.taken = taken
+        self.taken = taken_bytes
         self.after = -1
         self.has_else = False
 
@@ -91,9 +91,9 @@ class Reader:
 
     # -- memory -------------------------------------------------------------------------------
 
-    def require_room(self, more: int) -> None:
-        """Note that a byte is wanted after the code and `more` bytes."""
-        expected = self.length + more + 1 + self.used
+    def require_room(self, byte_count: int) -> None:
+        """Note that a byte is wanted after the code and `byte_count` bytes."""
+        expected = self.length + byte_count + 1 + self.used
         if expected > self.most:
             self.most = expected
             self.needs.append(Need(expected, self.tokens[max(self.i - 1, 0)].span))
@@ -113,8 +113,8 @@ class Reader:
     def pop(self) -> None:
         self.used -= 1
 
-    def add_name(self, name: str, more: int) -> None:
-        count = 1 + more + len(name)
+    def add_name(self, name: str, other_bytes: int) -> None:
+        count = 1 + other_bytes + len(name)
         self.require_room(len(name) + count - 1)
         self.used += count
 
@@ -191,7 +191,7 @@ class Reader:
             self.read |= 1 << self.sensors[name]
         elif name in self.defs:
             self.give(self.defs[name].values)
-            self.read |= self.defs[name].read
+            self.read |= self.defs[name].read_end
             self.emit(_JUMP_BYTES)
         else:
             self.arguments()

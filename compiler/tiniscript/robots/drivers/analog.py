@@ -52,15 +52,15 @@ class Analog(SensorDriver):
         ]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         if self.is_count(device, wiring):
             return [f"{name} = analogRead({pin});"]
-        zero, full = wiring.settings["zero"], wiring.settings["full"]
-        step, rest = divmod(full - zero, FULL_COUNT)
-        lowest, highest = sorted((zero, full))
-        value = f"{zero} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
+        zero_volts, full_volts = wiring.settings["zero"], wiring.settings["full"]
+        step, rest = divmod(full_volts - zero_volts, FULL_COUNT)
+        lowest, highest = sorted((zero_volts, full_volts))
+        value = f"{zero_volts} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
         if device.low <= lowest and highest <= device.high:
             return [f"long $counted = analogRead({pin});", f"{name} = {plan.value(value)};"]
         limits = f"constrain($value, {device.low}, {device.high})"
@@ -74,8 +74,8 @@ class Analog(SensorDriver):
         is_plain = (wiring.settings["zero"], wiring.settings["full"]) == (0, FULL_COUNT * ONE)
         return is_plain and device.low <= 0 and device.high >= FULL_COUNT * ONE
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        if sees == "light":
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        if sensed == "light":
             return photoresistor()
         full = wiring.settings["full"]
         if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:
@@ -83,9 +83,9 @@ class Analog(SensorDriver):
         return module("OUT", "need_analog", "mind_analog")
 
 
-def _divided_voltage(device: Device, full: int, pin_volts: int) -> Shape:
-    """Two resistors: the lower one has what a pin takes when the whole has `full` thousandths."""
-    upper = f"{10 * (full - pin_volts) / pin_volts:g} kΩ"
+def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
+    """Two resistors: the lower one has what a pin takes when the whole has `full_volts` thousandths."""
+    upper = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
     is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
     source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)

@@ -22,15 +22,17 @@ class DigitalActuator(ActuatorDriver):
         condition = "value == 0" if is_on_low else "value != 0"
         return [f"      write({pin}, {condition});", "      return;"]
 
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
         plan.off.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
             plan.begin.insert(-1, f"digitalWrite({pin}, {off});")
         return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
         return lamp(bool(wiring.settings.get("yes_is_low")))
 
 

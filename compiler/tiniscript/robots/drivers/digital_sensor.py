@@ -33,14 +33,14 @@ class DigitalSensor(SensorDriver):
         return [f"      *value = {low}is_high({pin});", "      return true;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         mode = "INPUT_PULLUP" if wiring.settings["pull_up"] else "INPUT"
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], mode, beside)
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], mode, comment)
         level = "LOW" if wiring.settings["yes_is_low"] else "HIGH"
         return [f"{name} = digitalRead({pin}) == {level};"]
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
         if wiring.settings["pull_up"]:
             return switch()
         return module("D0", "need_digital", "mind_digital")

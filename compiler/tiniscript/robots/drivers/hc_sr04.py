@@ -50,23 +50,23 @@ class HcSr04(SensorDriver):
         ]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         trigger = f"{device.name}_$TRIGGER_$PIN"
-        plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", beside)
+        plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", comment)
         echo = plan.pin(f"{device.name}_$ECHO_$PIN", wiring.pins["echo"], "INPUT")
         drivers = [sensor.driver for sensor in plan.robot.board.sensors]
-        first, again, last = [], "", []
+        first_lines, own_condition, last_lines = [], "", []
         if drivers.count(self.name) > 1:
-            first = ["static unsigned long $own_ping = -60;"]
-            again = " && millis() - $own_ping < 58"
-            last = ["$own_ping = $last_ping;"]
+            first_lines = ["static unsigned long $own_ping = -60;"]
+            own_condition = " && millis() - $own_ping < 58"
+            last_lines = ["$own_ping = $last_ping;"]
         farthest = min(FARTHEST, device.high)
         return [
-            *first,
-            f"if (millis() - $last_ping < 30{again}) return {name};",
+            *first_lines,
+            f"if (millis() - $last_ping < 30{own_condition}) return {name};",
             f"long $value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
-            *last,
+            *last_lines,
             f"{name} = {plan.value(f'constrain($value, {max(0, device.low)}, {farthest})')};",
         ]
 

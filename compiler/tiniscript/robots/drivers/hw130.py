@@ -107,13 +107,13 @@ void $drive_motor(int pwmPin, int percent) {
             *lines,
         ]
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        taken = [pin for pin in self.pins if pin.key in wiring.pins]
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        wired_pins = [pin for pin in self.pins if pin.key in wiring.pins]
         return Shape(
             "bridge",
             "need_hw130",
             (
-                *(Terminal(pin.name, pin.key) for pin in taken),
+                *(Terminal(pin.name, pin.key) for pin in wired_pins),
                 Terminal("EXT_PWR +M", rail=MOTOR_BATTERY),
                 Terminal("EXT_PWR GND", rail=GROUND),
             ),

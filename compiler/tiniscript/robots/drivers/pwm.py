@@ -22,8 +22,10 @@ class PwmActuator(ActuatorDriver):
         share = part.part_of_range(device, 0, 255)
         return [f"      connect(Pwm{pwm}, {share});", "      return;"]
 
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
         plan.off.append(f"analogWrite({pin}, 0);")
         share = plan.part_of(device, 0, 255)
         return f"void {function}(long value) {{\n  analogWrite({pin}, {share});\n}}"

@@ -43,7 +43,7 @@ void $drive_motor(int pwmPin, int forwardPin, int percent) {
   analogWrite(pwmPin, abs(percent) * 255L / 100);
 }"""
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
         has_standby = "standby" in wiring.pins
         enable = "" if has_standby else PULL_DOWN
         standby = [Terminal("STBY", "standby", to_ground=PULL_DOWN)] if has_standby else []

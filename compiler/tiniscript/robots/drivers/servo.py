@@ -51,14 +51,16 @@ class Servo(ActuatorDriver):
         part.off.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
         return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
 
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         number = plan.servo(pin)
         first, last = wiring.settings["low_us"], wiring.settings["high_us"]
         if wiring.settings[AT_STOP] != HOLD:
             plan.off.append(f"$servo_pulse({number}, 0, 0);")
-        what = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
-        return f"void {function}(long value) {{\n  {what}\n}}"
+        call = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
+        return f"void {function}(long value) {{\n  {call}\n}}"
 
 
 DRIVER = Servo()

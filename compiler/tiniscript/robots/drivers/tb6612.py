@@ -21,7 +21,7 @@ class TB6612(Bridge):
     profile = f"{Bridge.profile}; standby, if it is wired"
     pins = (*Bridge.pins, PinKey("standby", "output", True))
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
         has_standby = "standby" in wiring.pins
         enable = "" if has_standby else PULL_DOWN
         standby = (

@@ -32,14 +32,14 @@ class Threshold(SensorDriver):
         return [part.analog_read(wiring), settled, "      return true;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         sign = "<" if wiring.settings["yes_is_low"] else ">="
         return [f"{name} = analogRead({pin}) {sign} {wiring.settings['threshold']};"]
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        return photoresistor() if sees == "light" else module("A0", "need_threshold")
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        return photoresistor() if sensed == "light" else module("A0", "need_threshold")
 
 
 DRIVER = Threshold()

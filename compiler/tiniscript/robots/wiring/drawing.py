@@ -76,9 +76,9 @@ def svg_of(plan: Plan, title_key: str, size: tuple[int, int], parts: Iterable[st
 # -- texts
 
 
-def _width(shown: str, size: float) -> float:
+def _width(text: str, size: float) -> float:
     """Return about how wide a text is, rather too wide."""
-    return sum(size * _part_of_size(sign) for sign in shown)
+    return sum(size * _part_of_size(sign) for sign in text)
 
 
 def _part_of_size(sign: str) -> float:
@@ -90,17 +90,17 @@ def _part_of_size(sign: str) -> float:
 
 
 def text_at(
-    shown: str, x: float, y: float, room: float, anchor: str = "start", size: float = 14,
+    label: str, x: float, y: float, room: float, anchor: str = "start", size: float = 14,
     style: str = "",
 ) -> str:  # fmt: skip
     """Return a text that takes at most `room`: smaller where it must be, and cut at the least."""
-    shown = "".join(sign for sign in shown if sign.isprintable())
-    while _width(shown, size) * SMALLEST > room:
-        shown = shown.rstrip("…")[:-1] + "…"
-    size = min(size, size * room / (_width(shown, size) or 1))
+    label = "".join(sign for sign in label if sign.isprintable())
+    while _width(label, size) * SMALLEST > room:
+        label = label.rstrip("…")[:-1] + "…"
+    size = min(size, size * room / (_width(label, size) or 1))
     smaller = f' font-size="{size:.3g}"' if size != 14 else ""
     return (
-        f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{smaller}{style}>{escape(shown)}</text>'
+        f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{smaller}{style}>{escape(label)}</text>'
     )
 
 
@@ -140,9 +140,9 @@ def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
     """Return the marks of pins or terminals: those that are used, and those that stay free."""
     result = sorted(outlines, reverse=True)
     return [
-        f'<path d="{"".join(each for _, each in same)}" '
+        f'<path d="{"".join(each for _, each in group)}" '
         f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
-        for is_used, same in groupby(result, key=lambda each: each[0])
+        for is_used, group in groupby(result, key=lambda each: each[0])
     ]
 
 
@@ -158,13 +158,13 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     inward = 1 if pin.side == LEFT else -1
     is_used = _is_used(pin, plan)
     lines = []
-    shown = pin.name
+    label = pin.name
     if pin.number == 13 and plan.has_lamp:
-        shown = f"13 {text('lamp_on_board', plan.language)}"
+        label = f"13 {text('lamp_on_board', plan.language)}"
         is_used = True
     anchor = "start" if pin.side == LEFT else "end"
     style = BOLD if is_used else FAINT
-    lines.append(text_at(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
+    lines.append(text_at(label, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
     if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _tag_pin(pin.name, layout):
         near, far = edge - 5 * inward, edge - 12 * inward
         lines.append(line_to(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
@@ -218,11 +218,11 @@ def _number(wire: Wire, x: int, y: int) -> str:
 
 
 def line_to(
-    x1: float, y1: float, x2: float, y2: float, ink: str, width: float = 2.5, more: str = "",
+    x1: float, y1: float, x2: float, y2: float, ink: str, width: float = 2.5, attributes: str = "",
 ) -> str:  # fmt: skip
     return (
         f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
-        f'stroke-width="{width:g}"{more}/>'
+        f'stroke-width="{width:g}"{attributes}/>'
     )
 
 

@@ -43,8 +43,8 @@ class _Finished:
         half = max(self.breadth, body.wheel_base_cm * self.scale + self.wheel[1]) / 2
         self.left, self.right = BESIDE, BESIDE + 2 * half
         places_x_cm = [0.0, *(place.x_cm for place in body.places.values())]
-        ahead = max(0.0, max(places_x_cm) * self.scale - self.length / 2)
-        self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
+        front_excess = max(0.0, max(places_x_cm) * self.scale - self.length / 2)
+        self.x, self.y = BESIDE + half, MARGIN + front_excess + self.length / 2
         self.servos = [part for part in plan.parts if part.is_device and part.shape.icon == "servo"]
         self.y += JAW if self.servos and self._caster_place() is None else 0
         self.width = self.right + BESIDE
@@ -134,7 +134,7 @@ class _Finished:
         The profile does not say where they are: they share the edge.
         """
         lines: list[str] = []
-        held = self._caster_place()
+        caster = self._caster_place()
         edge = self.y - self.length / 2
         above = sum(
             place.y_cm > 0 for place in self.plan.body.places.values()
@@ -142,12 +142,12 @@ class _Finished:
         first_row = max(edge + 26, MARGIN + 14 + ROW_STEP * above)
         for k, part in enumerate(self.servos):
             share = (k + 0.5) / len(self.servos) - 0.5
-            if held is not None:  # the jaws are in the middle, the others beside them
+            if caster is not None:  # the jaws are in the middle, the others beside them
                 share = (0.38 - 0.12 * ((k - 1) // 2)) * (1 if k % 2 else -1) if k else 0
             x = self.x + share * self.breadth
             lines.append(_box(x - 26, edge + 4, 52, 30, PARTS))
-            if k == 0 and held is not None:
-                tip = self.at(held.x_cm, 0)[1] - ARROW
+            if k == 0 and caster is not None:
+                tip = self.at(caster.x_cm, 0)[1] - ARROW
                 for side in (-1, 1):
                     inner, outer = self.x + side * 24, self.x + side * 46
                     lines.append(
@@ -215,7 +215,7 @@ class _Finished:
 
 
 def _is_supply(part: Part) -> bool:
-    return part.shape.need in ("need_battery", "need_servo_supply")
+    return part.shape.need_key in ("need_battery", "need_servo_supply")
 
 
 def _box(

@@ -107,14 +107,14 @@ class _Channel:
                     improved = True
         return {wire: track for track, wire in enumerate(order)}
 
-    def _cost(self, rest: Sequence[int], wire: int, at: int) -> int:
-        nearer = sum(self._crossings(other, wire) for other in rest[:at])
-        return nearer + sum(self._crossings(wire, other) for other in rest[at:])
+    def _cost(self, other_wires: Sequence[int], wire: int, at: int) -> int:
+        crossing_count = sum(self._crossings(other, wire) for other in other_wires[:at])
+        return crossing_count + sum(self._crossings(wire, other) for other in other_wires[at:])
 
-    def _crossings(self, near: int, far: int) -> int:
-        """Count where two wires cross if `near` has the track that is nearer to the board."""
-        near_from, near_to = self.spans[near]
-        far_from, far_to = self.spans[far]
+    def _crossings(self, near_wire: int, far_wire: int) -> int:
+        """Count where two wires cross if `near_wire` has the track that is nearer to the board."""
+        near_from, near_to = self.spans[near_wire]
+        far_from, far_to = self.spans[far_wire]
         first = min(near_from, near_to) < far_from < max(near_from, near_to)
         return first + (min(far_from, far_to) < near_to < max(far_from, far_to))
 
@@ -138,8 +138,8 @@ class _Layout:
             parts[self._side_of(part)].append(part)
         tall = max(len(column) for column in columns) * STEP + BOARD_NAME
         heights = [sum(_room(part) for part in item) for item in parts]
-        whole = max(tall, *heights)
-        self.board_top = MARGIN + STEP + _snap((whole - tall) // 2)
+        full_height = max(tall, *heights)
+        self.board_top = MARGIN + STEP + _snap((full_height - tall) // 2)
         self.board_height = tall
         self.pins: list[Pin] = []
         for side, column in enumerate(columns):
@@ -148,7 +148,7 @@ class _Layout:
                     self.pins.append(self._pin(side, self.board_top + STEP * (k + 1), slot))
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
         self.tops: dict[int, int] = {}  # of parts, by their place in the plan
-        bottom = MARGIN + STEP + whole
+        bottom = MARGIN + STEP + full_height
         for item in parts:
             self._stack(item, bottom)
 
@@ -206,7 +206,7 @@ class _Layout:
 
     def compute(self) -> Layout:
         channels = (_Channel(), _Channel())
-        around: list[int] = []  # wires from a pin of one side to a part of the other
+        crossing_wires: list[int] = []  # wires from a pin of one side to a part of the other
         ends: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal
         for part in self.plan.parts:
             top = self.tops[id(part)]
@@ -221,8 +221,8 @@ class _Layout:
             if side == home:
                 channels[side].spans[wire.number] = (self.pin_y[wire.pin], y)
                 continue
-            lanes[wire.number] = below + STEP * len(around)
-            around.append(wire.number)
+            lanes[wire.number] = below + STEP * len(crossing_wires)
+            crossing_wires.append(wire.number)
             channels[home].spans[wire.number] = (self.pin_y[wire.pin], lanes[wire.number])
             channels[side].spans[wire.number] = (lanes[wire.number], y)
         widths = [TRACK * (len(channel.spans) + 1) for channel in channels]

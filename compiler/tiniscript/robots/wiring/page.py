@@ -61,16 +61,16 @@ def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
     rows = [tuple(text(key, language) for key in ("head_tag", "head_colour", "head_joined"))]
     for rail in plan.rails:
         colour = text("colour_black" if rail == GROUND else "colour_red", language)
-        joined = []
+        ends = []
         if rail in BOARD_RAILS:
-            joined.append(text("the_board", language).format(pin=rail))
+            ends.append(text("the_board", language).format(pin=rail))
         for part in plan.parts:
-            joined += [
+            ends += [
                 f"{part.title}: {end.name}"
                 for end in part.ends
                 if end.rail == rail or (end.name == rail and end.wire)
             ]
-        rows += [(rail, colour, item) for item in joined]
+        rows += [(rail, colour, item) for item in ends]
     return rows
 
 
@@ -117,24 +117,26 @@ class _Page:
         ]
 
     def _shopping_list(self) -> list[str]:
-        found: dict[str, list[Part]] = {}
+        parts_by_need: dict[str, list[Part]] = {}
         for part in self.plan.parts:
-            if part.shape.need:
-                found.setdefault(part.shape.need, []).append(part)
-        needs = [self.say("need_board", board=self.board)]
-        for key, parts in found.items():
-            need = f"{len(parts)} × {self.say(key)}"
+            if part.shape.need_key:
+                parts_by_need.setdefault(part.shape.need_key, []).append(part)
+        need_texts = [self.say("need_board", board=self.board)]
+        for key, parts in parts_by_need.items():
+            need_text = f"{len(parts)} × {self.say(key)}"
             if any(part.is_device for part in parts):
-                need = self.say("for_part", need=need, parts=", ".join(p.title for p in parts))
-            needs.append(need)
+                need_text = self.say(
+                    "for_part", need=need_text, parts=", ".join(p.title for p in parts)
+                )
+            need_texts.append(need_text)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
-        needs.append(self.say("need_resistors", values=values))
+        need_texts.append(self.say("need_resistors", values=values))
         joins = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
-        needs.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
+        need_texts.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
-        needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
-        return needs
+        need_texts += [self.say("need_plate", size=size), self.say("need_power_bank")]
+        return need_texts
 
     def _unconnected(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""
@@ -146,14 +148,14 @@ class _Page:
                 for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
             ]
             result.append(self.say("motor_wires", ends=", ".join(ends)))
-        free = [
+        free_pins = [
             f"{part.title} {end.name}"
             for part in self.plan.parts
             for end in part.ends
             if not end.wire and not end.rail
         ]
-        if free:
-            result.append(self.say("free", ends=", ".join(free)))
+        if free_pins:
+            result.append(self.say("free", ends=", ".join(free_pins)))
         return result
 
     def _power(self) -> list[str]:

@@ -51,7 +51,7 @@ def _adapt_to_3v3(shape: Shape) -> Shape:
             for terminal in shape.terminals
         )
     notes = tuple(key_for_3v3(note) for note in shape.notes)
-    return shape._replace(need=key_for_3v3(shape.need), terminals=tuple(ends), notes=notes)
+    return shape._replace(need_key=key_for_3v3(shape.need_key), terminals=tuple(ends), notes=notes)
 
 
 def key_for_3v3(key: str) -> str:

@@ -92,13 +92,13 @@ class Plan(NamedTuple):
     @property
     def resistors(self) -> dict[str, int]:
         """How many resistors of each value are needed."""
-        found: dict[str, int] = {}
+        counts: dict[str, int] = {}
         for part in self.parts:
             for end in part.ends:
                 for value in (end.series, end.to_ground, end.beyond):
                     if value:
-                        found[value] = found.get(value, 0) + 1
-        return dict(sorted(found.items(), key=lambda each: _ohms(each[0])))
+                        counts[value] = counts.get(value, 0) + 1
+        return dict(sorted(counts.items(), key=lambda each: _ohms(each[0])))
 
 
 def _ohms(value: str) -> float:
@@ -141,15 +141,17 @@ def plan_of(robot: Robot, language: str) -> Plan:
     def label_of(key: str) -> str:
         return text(key, language)
 
-    matches = []
+    wired_parts = []
     motors = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
     title, label = motors.model, label_of("part_motors")
     if not motors.model:
         title, label = label_of("part_servos"), ""
-    matches.append(counter.part(title, label, motors, board.motors.pins))
+    wired_parts.append(counter.part(title, label, motors, board.motors.pins))
     if board.discs:
         discs = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
-        matches.append(counter.part(discs.model, label_of("part_discs"), discs, board.discs.pins))
+        wired_parts.append(
+            counter.part(discs.model, label_of("part_discs"), discs, board.discs.pins)
+        )
     groups = (
         ("sensors", kit.sensors, board.sensors),
         ("actuators", kit.actuators, board.actuators),
@@ -164,33 +166,33 @@ def plan_of(robot: Robot, language: str) -> Plan:
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label
-            matches.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
-    matches.append(
+            wired_parts.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
+    wired_parts.append(
         counter.part(label_of("part_button"), "SB", switch(), {"pin": board.start_button})
     )
     if board.buzzer is not None:
         beep = {"pin": board.buzzer}
-        matches.append(counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, beep))
+        wired_parts.append(counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, beep))
     has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
         pin = {"pin": board.status_led}
-        matches.append(counter.part(label_of("part_lamp"), "", lamp(is_on_low=False), pin))
+        wired_parts.append(counter.part(label_of("part_lamp"), "", lamp(is_on_low=False), pin))
     radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
         radio["state"] = board.bluetooth_state
     if has_radio:
-        matches.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
-    rails = {end.rail for part in matches for end in part.ends}
-    rails |= {end.name for part in matches for end in part.ends}
+        wired_parts.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
+    rails = {end.rail for part in wired_parts for end in part.ends}
+    rails |= {end.name for part in wired_parts for end in part.ends}
     for rail, key, supply in (
         (MOTOR_BATTERY, "part_battery", parts.BATTERY_OF_MOTORS),
         (SERVO_SUPPLY, "part_servo_supply", parts.SUPPLY_OF_SERVOS),
     ):
         if rail in rails:
-            matches.append(counter.part(label_of(key), label_of(f"{key}_volts"), supply, {}))
+            wired_parts.append(counter.part(label_of(key), label_of(f"{key}_volts"), supply, {}))
     return Plan(
-        robot.labels[language]["robot"], language, chip, board.baud, tuple(matches), has_lamp,
+        robot.labels[language]["robot"], language, chip, board.baud, tuple(wired_parts), has_lamp,
         board.bluetooth_state is not None, body,
     )  # fmt: skip
 

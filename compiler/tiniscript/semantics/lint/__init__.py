@@ -15,7 +15,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint import conditions, known, moves, numbers, tasks, useless
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.syntax.lexer import Scan
 
 # Where a warning is looked for, if not at statements of a type.
@@ -24,7 +24,8 @@ PROGRAM, TASKS, BODY, STATEMENT = "program", "tasks", "body", "statement"
 
 class Row(NamedTuple):
     """What reports these codes. Asked once for the PROGRAM, or for its TASKS if there are any: of
-    the `Look`; for each BODY and each STATEMENT, or each of a type: of it and what is around it."""
+    the `LintContext`; for each BODY and each STATEMENT, or each of a type: of it and what is
+    around it."""
 
     codes: tuple[Code, ...]
     at: str | type
@@ -92,43 +93,44 @@ _ROWS: dict[str | type, list[Row]] = {
 }
 
 
-def lint(program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> list[Diagnostic]:
+def lint(program: ir.Program, kit: Kit, source: Source, scan: Scan) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes, of this text and these tokens."""
-    look = Look(program, kit, source, scanned)
+    context = LintContext(program, kit, source, scan)
     for procedure in program.procedures:
-        _look_at(procedure.body, Around(is_repeated=True), look)
+        _look_at(procedure.body, BodyContext(is_repeated=True), context)
     for task in program.tasks:
         for row in _ROWS[ir.Task]:
-            row.find(task, Around(), look)
-        _look_at(task.body, Around(is_repeated=task.look is not None), look)
-    _look_at(program.body, Around(is_last=True), look)
+            row.find(task, BodyContext(), context)
+        _look_at(task.body, BodyContext(is_repeated=task.until is not None), context)
+    _look_at(program.body, BodyContext(is_last=True), context)
     for row in (*_ROWS[PROGRAM], *(_ROWS[TASKS] if program.tasks else ())):
-        row.find(look)
-    return look.found
+        row.find(context)
+    return context.diagnostics
 
 
-def _look_at(body: ir.Body, around: Around, look: Look) -> None:
+def _look_at(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     for row in _ROWS[BODY]:
-        row.find(body, around, look)
+        row.find(body, body_context, context)
     for statement in body:
         for row in _ROWS[type(statement)]:
-            row.find(statement, around, look)
-        inner = ir.bodies(statement)
-        if inner:
-            inside = _inner_context(statement, around, is_last=statement is body[-1])
-            for item in inner:
-                _look_at(item, inside, look)
+            row.find(statement, body_context, context)
+        inner_bodies = ir.bodies(statement)
+        if inner_bodies:
+            inner_context = _inner_context(statement, body_context, is_last=statement is body[-1])
+            for item in inner_bodies:
+                _look_at(item, inner_context, context)
 
 
-def _inner_context(statement: ir.Statement, around: Around, is_last: bool) -> Around:
+def _inner_context(statement: ir.Statement, outer: BodyContext, is_last: bool) -> BodyContext:
     """Return what the bodies of a statement are in; `is_last`: no other stands after it."""
-    asks = isinstance(statement, (ir.If, ir.While))
-    inside = around._replace(
+    is_question = isinstance(statement, (ir.If, ir.While))
+    inner = outer._replace(
         loop=None,
-        is_last=around.is_last and isinstance(statement, ir.If) and is_last,
-        asked=around.asked | ir.referenced_numbers("SENSOR", [statement] if asks else []),
+        is_last=outer.is_last and isinstance(statement, ir.If) and is_last,
+        asked_sensors=outer.asked_sensors
+        | ir.referenced_numbers("SENSOR", [statement] if is_question else []),
     )
     if not isinstance(statement, (ir.Loop, ir.While)):
-        return inside
-    outermost = around.outermost or statement
-    return inside._replace(loop=statement, is_repeated=True, outermost=outermost)
+        return inner
+    outermost = outer.outermost or statement
+    return inner._replace(loop=statement, is_repeated=True, outermost=outermost)

@@ -24,11 +24,11 @@ from tiniscript.semantics.comparisons import (
     is_between,
     looks_ahead,
 )
-from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
+from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
-SHORT_MS = 1000  # ms: a loop looks again after so long
+SHORT_MOVE_MS = 1000  # ms: a loop looks again after so long
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
@@ -45,101 +45,105 @@ def _is_endless(loop: ir.Loop | ir.While) -> bool:
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
-def check_until(move: ir.Move, around: Around, look: Look) -> None:
-    if move.until is not None and not look.program.tasks:
-        _Conditions(look).check_until(move, move.until.condition, around)
+def check_until(move: ir.Move, body_context: BodyContext, context: LintContext) -> None:
+    if move.until is not None and not context.program.tasks:
+        _Conditions(context).check_until(move, move.until.condition, body_context)
 
 
-def check_while(loop: ir.While, around: Around, look: Look) -> None:
-    if not look.program.tasks:
-        _Conditions(look).check_while(loop, around)
+def check_while(loop: ir.While, body_context: BodyContext, context: LintContext) -> None:
+    if not context.program.tasks:
+        _Conditions(context).check_while(loop, body_context)
 
 
-def check_if(statement: ir.If, around: Around, look: Look) -> None:
-    if not look.program.tasks:
-        _Conditions(look).check_if(statement, around.outermost)
+def check_if(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
+    if not context.program.tasks:
+        _Conditions(context).check_if(statement, body_context.outermost)
 
 
-def check_show(show: ir.Show, around: Around, look: Look) -> None:
-    if around.outermost is not None and not look.program.tasks:
-        _Conditions(look).report_frozen_show(show, around.outermost)
+def check_show(show: ir.Show, body_context: BodyContext, context: LintContext) -> None:
+    if body_context.outermost is not None and not context.program.tasks:
+        _Conditions(context).report_frozen_show(show, body_context.outermost)
 
 
-def report_asked_once(look: Look) -> None:
+def report_asked_once(context: LintContext) -> None:
     """A program that reads no remote control loads nothing for it."""
-    remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
-    if remote & ir.referenced_numbers("SENSOR", look.statements):
+    remote = {*range(len(context.kit.sensors), len(context.kit.readings))}
+    if remote & ir.referenced_numbers("SENSOR", context.statements):
         from tiniscript.semantics.lint import once
 
-        once.report_asked_once(look, remote)
+        once.report_asked_once(context, remote)
 
 
 class _Conditions:
-    def __init__(self, look: Look) -> None:
-        self._look = look
-        self._program = look.program
-        self._kit = look.kit
-        self._source = look.source
+    def __init__(self, context: LintContext) -> None:
+        self._context = context
+        self._program = context.program
+        self._kit = context.kit
+        self._source = context.source
 
     # -- UNTIL --------------------------------------------------------------------------------
 
-    def check_until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
+    def check_until(
+        self, move: ir.Move, condition: ir.Expression, body_context: BodyContext
+    ) -> None:
         self._report_known_of_both(condition, move.span)
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING_OPS for term in condition):
             time = known_value(move.time)
-            if not (around.is_repeated and time is not None and time < SHORT_MS):
+            if not (body_context.is_repeated and time is not None and time < SHORT_MOVE_MS):
                 self._report_frozen_until(move, condition, variables)
             return
-        compared = self._comparison(condition)
-        if compared is None or self._report_known(compared, move.span):
+        comparison = self._comparison(condition)
+        if comparison is None or self._report_known(comparison, move.span):
             self._report_subtracted(condition, move.span)
             return
-        device, op, number = compared
+        device, op, number = comparison
         is_ahead = looks_ahead(device)
         is_turned = op in _REVERSED_COMPARATORS.get(move.direction, {}) and is_ahead
-        if is_turned and not around.asked & _sensors(condition):
-            turned = compared._replace(op=_REVERSED_COMPARATORS[move.direction][op])
+        if is_turned and not body_context.asked_sensors & _sensors(condition):
+            turned = comparison._replace(op=_REVERSED_COMPARATORS[move.direction][op])
             other = "" if answer_of(turned) else self._with_condition(move, str(turned))
             is_forward = move.direction == "F"
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
-            self._look.report(codes.TURNED_ROUND, move.span, **values)
+            self._context.report(codes.TURNED_ROUND, move.span, **values)
         else:
             reached = "GE" if device is TIME else _COMPARATOR_REACHED.get(move.direction, "")
             text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
             fix = self._with_condition(move, text) if is_sure else ""
-            self._report_exact(compared, move.span, "UNTIL", fix)
+            self._report_exact(comparison, move.span, "UNTIL", fix)
 
     def _report_frozen_until(
         self, move: ir.Move, condition: ir.Expression, variables: list[int]
     ) -> None:
-        held = self._look.variables.sensors_of(variables)
+        sensor_of_variable = self._context.variables.sensors_of(variables)
         name = self._program.variables[variables[0]]
         sign = ">" if move.direction == "B" else "<"
         values = {"name": name, "fix": "", "example": f"UNTIL(DISTANCE {sign} 20)"}
-        if held:
-            values["sensor"] = held[name]
-            asked = self._condition_text(condition, held, move.span, "UNTIL", move.direction)
-            values["fix"] = self._with_condition(move, asked) if asked else ""
-        self._look.report(codes.FROZEN_UNTIL, move.span, **values)
+        if sensor_of_variable:
+            values["sensor"] = sensor_of_variable[name]
+            condition_text = self._condition_text(
+                condition, sensor_of_variable, move.span, "UNTIL", move.direction
+            )
+            values["fix"] = self._with_condition(move, condition_text) if condition_text else ""
+        self._context.report(codes.FROZEN_UNTIL, move.span, **values)
 
-    def _with_condition(self, move: ir.Move, written: str) -> str:
+    def _with_condition(self, move: ir.Move, new_condition: str) -> str:
         """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
-        return f"{text[:end].rstrip()} UNTIL({written})" if end else ""
+        return f"{text[:end].rstrip()} UNTIL({new_condition})" if end else ""
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
-    def check_while(self, loop: ir.While, around: Around) -> None:
+    def check_while(self, loop: ir.While, body_context: BodyContext) -> None:
         self._report_frozen_while(loop)
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
-        compared = self._comparison(loop.condition)
-        if compared and not self._report_known(compared, head):
-            if not around.asked & _sensors(loop.condition):
-                self._report_turned_while(loop, compared)
+        comparison = self._comparison(loop.condition)
+        if comparison and not self._report_known(comparison, head):
+            if not body_context.asked_sensors & _sensors(loop.condition):
+                self._report_turned_while(loop, comparison)
         self._report_known_of_both(loop.condition, head)
 
     def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
@@ -147,33 +151,33 @@ class _Conditions:
         for arm in statement.arms:
             self._report_subtracted(arm.condition, arm.span)
             self._report_known_of_both(arm.condition, arm.span)
-            compared = self._comparison(arm.condition)
-            if compared and not self._report_known(compared, arm.span):
-                self._report_exact(compared, arm.span, "IF", "")
+            comparison = self._comparison(arm.condition)
+            if comparison and not self._report_known(comparison, arm.span):
+                self._report_exact(comparison, arm.span, "IF", "")
             if outermost is not None and _is_endless(outermost):
                 self._report_frozen_if(arm, outermost)
 
-    def _report_turned_while(self, loop: ir.While, compared: Comparison) -> None:
+    def _report_turned_while(self, loop: ir.While, comparison: Comparison) -> None:
         """`WHILE(DISTANCE < 10); F(0.2, 60); END_WHILE`: what ends it does not come that way."""
-        way, end = self._turned(loop, compared)
+        way, end = self._way_and_end(loop, comparison)
         if end:
-            device, _, number = compared
-            turned = compared._replace(op=_opposite(end))
-            is_short = all(_lasts_ms(item) < SHORT_MS for item in loop.body)
+            device, _, number = comparison
+            turned = comparison._replace(op=_opposite(end))
+            is_short = all(_lasts_ms(item) < SHORT_MOVE_MS for item in loop.body)
             fix = f"WHILE({turned})" if is_short and not answer_of(turned) else ""
             number_is = "near" if way == "F" else "beyond"
             values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
-            self._look.report(codes.TURNED_ROUND, self._look.head(loop.span), **values)
+            self._context.report(codes.TURNED_ROUND, self._context.head(loop.span), **values)
 
-    def _turned(self, loop: ir.While, compared: Comparison) -> tuple[str, str]:
+    def _way_and_end(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
         """Return the way that all moves of a loop go, and what else would end it, if anything."""
         moves = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
         ways = {item.direction if isinstance(item, ir.Move) else "" for item in moves}
         is_watched = any(isinstance(item, ir.Move) and item.until for item in moves)
-        if len(ways) != 1 or is_watched or not looks_ahead(compared.device):
+        if len(ways) != 1 or is_watched or not looks_ahead(comparison.device):
             return "", ""
         (way,) = ways
-        return way, _REVERSED_COMPARATORS.get(way, {}).get(_opposite(compared.op), "")
+        return way, _REVERSED_COMPARATORS.get(way, {}).get(_opposite(comparison.op), "")
 
     def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
@@ -183,53 +187,61 @@ class _Conditions:
         if (
             len(condition) == 1
             or ir.breaks_out(loop.body)
-            or self._look.variables.set_in(loop.body) & set(variables)
+            or self._context.variables.set_in(loop.body) & set(variables)
         ):
             return
-        held = self._look.variables.sensors_of(variables)
-        if not held and condition[-1].op not in ("LT", "LE", "GT", "GE", "NE"):
+        sensor_of_variable = self._context.variables.sensors_of(variables)
+        if not sensor_of_variable and condition[-1].op not in ("LT", "LE", "GT", "GE", "NE"):
             return  # `WHILE(ON = 1)` is how others write LOOP(FOREVER)
         name = self._program.variables[variables[0]]
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
         values = {"name": name, "fix": ""}
-        if held:
-            values["sensor"] = held[name]
-            asked = self._condition_text(condition, held, loop.span, "WHILE")
-            compared = self._comparison(self._asking(condition, held))
-            is_turned = compared is not None and bool(self._turned(loop, compared)[1])
-            values["fix"] = f"WHILE({asked})" if asked and not is_turned else ""
+        if sensor_of_variable:
+            values["sensor"] = sensor_of_variable[name]
+            condition_text = self._condition_text(condition, sensor_of_variable, loop.span, "WHILE")
+            comparison = self._comparison(self._condition_of_sensors(condition, sensor_of_variable))
+            is_turned = comparison is not None and bool(self._way_and_end(loop, comparison)[1])
+            values["fix"] = f"WHILE({condition_text})" if condition_text and not is_turned else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
-        self._look.report(codes.FROZEN_WHILE, head, **values)
+        self._context.report(codes.FROZEN_WHILE, head, **values)
 
     def _report_frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
-        held = self._look.variables.held_in(outermost, variables)
-        if not held or any(term.op in _CHANGING_OPS for term in arm.condition):
+        sensor_of_variable = self._context.variables.held_in(outermost, variables)
+        if not sensor_of_variable or any(term.op in _CHANGING_OPS for term in arm.condition):
             return
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
-        asked = self._condition_text(arm.condition, held, arm.span, word)
-        fix = f"{word}({asked})" if asked else ""
-        self._look.report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
+        condition_text = self._condition_text(arm.condition, sensor_of_variable, arm.span, word)
+        fix = f"{word}({condition_text})" if condition_text else ""
+        self._context.report(
+            codes.FROZEN_WHILE, arm.span, name=name, sensor=sensor_of_variable[name], fix=fix
+        )
 
     def report_frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
         if variables and self._report_thrown_once(show, variables[0], outermost):
             return
-        held = self._look.variables.held_in(outermost, variables)
-        if not held:
+        sensor_of_variable = self._context.variables.held_in(outermost, variables)
+        if not sensor_of_variable:
             return
         name = self._program.variables[variables[0]]
-        sensor = next(k for k, device in enumerate(self._kit.readings) if device.name == held[name])
-        used = self._look.variables.used_in(outermost)
+        sensor = next(
+            k
+            for k, device in enumerate(self._kit.readings)
+            if device.name == sensor_of_variable[name]
+        )
+        used = self._context.variables.used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
             return  # it is shown beside what is measured now, or the rounds need it
-        fix = f"SHOW({held[name]})"
-        self._look.report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
+        fix = f"SHOW({sensor_of_variable[name]})"
+        self._context.report(
+            codes.FROZEN_WHILE, show.span, name=name, sensor=sensor_of_variable[name], fix=fix
+        )
 
     def _report_thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
         """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
@@ -242,7 +254,7 @@ class _Conditions:
             for item in self._program.body
             if isinstance(item, ir.Assign) and item.variable == variable
         ]
-        if len(sets) != 1 or self._look.variables.set_to[variable] != [sets[0].value]:
+        if len(sets) != 1 or self._context.variables.set_to[variable] != [sets[0].value]:
             return False
         if all(term.op != "RANDOM" for term in sets[0].value) or _runs_once(loop):
             return False
@@ -252,68 +264,81 @@ class _Conditions:
             for item in ir.all_statements(self._program)
             if any(term in expression for expression in ir.expressions(item))
         )
-        shown = {
+        shown_terms = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
         }
-        others = [term for term in shown if term.op in _CHANGING_OPS or term.op == "VARIABLE"]
+        changing_terms = [
+            term for term in shown_terms if term.op in _CHANGING_OPS or term.op == "VARIABLE"
+        ]
         is_before = sets[0].span.end <= loop.span.start
         if not (
-            is_before and is_only_shown and others == [term] and show in _round_statements(loop)
+            is_before
+            and is_only_shown
+            and changing_terms == [term]
+            and show in _round_statements(loop)
         ):
             return False
-        name, said = self._program.variables[variable], self._source[sets[0].span]
-        if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
-            within = f"{said};{self._source[show.span]}"
-            self._look.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
+        name, assignment = self._program.variables[variable], self._source[sets[0].span]
+        if not any(
+            diagnostic.values.get("thrown") == name for diagnostic in self._context.diagnostics
+        ):
+            within = f"{assignment};{self._source[show.span]}"
+            self._context.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 
     def _report_late_arms(self, statement: ir.If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
         widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
-            compared = self._comparison(arm.condition)
-            if compared is None or compared.op not in _SIDE_BY_COMPARATOR:
+            comparison = self._comparison(arm.condition)
+            if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
                 continue
-            key = (compared.device.name, _SIDE_BY_COMPARATOR[compared.op])
+            key = (comparison.device.name, _SIDE_BY_COMPARATOR[comparison.op])
             before = widest.get(key)
-            if before is None or not _is_within(compared, before):
-                widest[key] = compared
+            if before is None or not _is_within(comparison, before):
+                widest[key] = comparison
             elif k:
-                self._look.report(codes.LATE_ARM, arm.span, wide=str(before),
-                             narrow=str(compared))  # fmt: skip
+                self._context.report(codes.LATE_ARM, arm.span, wide=str(before),
+                                     narrow=str(comparison))  # fmt: skip
 
     def _report_known(self, comparison: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
         device = comparison.device
         answer = answer_of(comparison)
         if answer:
-            self._look.report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
-                         high=as_text(device.high), answer=answer)  # fmt: skip
+            self._context.report(
+                codes.KNOWN_ANSWER,
+                span,
+                sensor=device.name,
+                low=as_text(device.low),
+                high=as_text(device.high),
+                answer=answer,
+            )
         return bool(answer)
 
     def _report_known_of_both(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
         answer, meant = answer_of_both(condition, self._kit)
         if answer:
-            self._look.report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
+            self._context.report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
 
     def _report_subtracted(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
-        asked = [term.op for term in condition]
-        if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
+        ops = [term.op for term in condition]
+        if ops != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
             return
         device = self._kit.readings[condition[0].value]
         first, second = (term.value for term in condition[1:3])
         if not device.is_yes_no and first - second < device.low <= first < second <= device.high:
             name, low, high = device.name, as_text(device.low), as_text(device.high)
-            between = f"{name} > {as_text(first)} AND {name} < {as_text(second)}"
-            self._look.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
-                         answer="answer_no", between=between)  # fmt: skip
+            range_condition = f"{name} > {as_text(first)} AND {name} < {as_text(second)}"
+            self._context.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
+                                 answer="answer_no", between=range_condition)  # fmt: skip
 
     def _report_exact(self, comparison: Comparison, span: Span, word: str, fix: str) -> None:
         device, op, number = comparison
         if op == "EQ" and is_between(device, number):
-            self._look.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
+            self._context.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
                          word=word, fix=fix)  # fmt: skip
 
     # -- what is in them ----------------------------------------------------------------------
@@ -321,30 +346,38 @@ class _Conditions:
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
-    def _asking(self, condition: ir.Expression, held: Mapping[str, str]) -> ir.Expression:
+    def _condition_of_sensors(
+        self, condition: ir.Expression, sensor_of_variable: Mapping[str, str]
+    ) -> ir.Expression:
         """Return a condition that asks the sensors in place of the variables that hold them."""
         numbers = {device.name: k for k, device in enumerate(self._kit.readings)}
         return tuple(
-            ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
+            ir.Term("SENSOR", numbers[sensor_of_variable[self._program.variables[term.value]]])
             if term.op == "VARIABLE"
             else term
             for term in condition
         )
 
     def _condition_text(
-        self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
+        self,
+        condition: ir.Expression,
+        sensor_of_variable: Mapping[str, str],
+        span: Span,
+        word: str,
         direction: str = "",
-    ) -> str:  # fmt: skip
+    ) -> str:
         """Return a condition as it is written after `word`, asking the sensors themselves.
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        asking = self._asking(condition, held)
-        comes = can_come_true(asking, direction, self._kit)
-        text = self._look.condition(span, word)
-        if not comes and (comes is not None or direction):
+        asking = self._condition_of_sensors(condition, sensor_of_variable)
+        can_become_true = can_come_true(asking, direction, self._kit)
+        text = self._context.condition(span, word)
+        if not can_become_true and (can_become_true is not None or direction):
             return ""
-        return re.sub(r"[A-Za-z_]\w*", lambda match: held.get(match[0].upper(), match[0]), text)
+        return re.sub(
+            r"[A-Za-z_]\w*", lambda match: sensor_of_variable.get(match[0].upper(), match[0]), text
+        )
 
 
 def _opposite(op: str) -> str:
@@ -384,8 +417,8 @@ def _sensors(condition: ir.Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 
-def _is_within(narrow: Comparison, wide: Comparison) -> bool:
+def _is_within(inner: Comparison, outer: Comparison) -> bool:
     """Whether one comparison is true only where the other one is; their signs go the same way."""
-    if narrow.number == wide.number:
-        return narrow.op == wide.op or wide.op in ("LE", "GE")
-    return (narrow.number < wide.number) == (_SIDE_BY_COMPARATOR[wide.op] == "below")
+    if inner.number == outer.number:
+        return inner.op == outer.op or outer.op in ("LE", "GE")
+    return (inner.number < outer.number) == (_SIDE_BY_COMPARATOR[outer.op] == "below")

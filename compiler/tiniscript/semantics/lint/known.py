@@ -14,38 +14,42 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_between
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 
-_LESS = ("LT", "LE")
-_NARROWS = ("MIN", "MAX")
-_SIDES = {"LT", "GT"}  # of one number: it alone is left for ELSE
-_THROW = ("NUMBER", "NUMBER", "RANDOM")
+_LESS_OPS = ("LT", "LE")
+_NARROWING_OPS = ("MIN", "MAX")
+_SIDE_OPS = {"LT", "GT"}  # of one number: it alone is left for ELSE
+_THROW_OPS = ("NUMBER", "NUMBER", "RANDOM")
 
 
 # -- the clock ------------------------------------------------------------------------------------
 
 
-def report_past_clock(look: Look) -> None:
+def report_past_clock(context: LintContext) -> None:
     """`WHILE(TIME < 10) … END_WHILE`, then `WHILE(TIME < 5)`: the clock does not begin again.
 
     Says nothing of a program with tasks: nobody knows what is first.
     """
-    past = 0
-    for statement in () if look.program.tasks else look.program.body:
+    past_ms = 0
+    for statement in () if context.program.tasks else context.program.body:
         if isinstance(statement, ir.While):
-            asked = comparison(statement.condition, look.kit)
-            if asked is None or asked.device is not TIME or asked.op not in _LESS:
+            clock_comparison = comparison(statement.condition, context.kit)
+            if (
+                clock_comparison is None
+                or clock_comparison.device is not TIME
+                or clock_comparison.op not in _LESS_OPS
+            ):
                 continue
-            if past and _is_over(asked, past):
-                _report_over(statement, asked, past, look)
+            if past_ms and _is_over(clock_comparison, past_ms):
+                _report_over(statement, clock_comparison, past_ms, context)
             elif not ir.breaks_out(statement.body):
-                past = max(past, asked.number)
+                past_ms = max(past_ms, clock_comparison.number)
         else:
-            past += _lasts(statement)
+            past_ms += _least_duration(statement)
 
 
-def _lasts(statement: ir.Statement) -> int:
+def _least_duration(statement: ir.Statement) -> int:
     """Return how long a statement surely lasts, in thousandths of a second."""
     if isinstance(statement, ir.Move) and (statement.unit or statement.until is not None):
         return 0
@@ -53,31 +57,39 @@ def _lasts(statement: ir.Statement) -> int:
     return max(0, known_value(time) or 0)
 
 
-def _report_over(loop: ir.While, asked: Comparison, past: int, look: Look) -> None:
-    later = asked._replace(number=past + asked.number)
+def _report_over(
+    loop: ir.While, clock_comparison: Comparison, past: int, context: LintContext
+) -> None:
+    later_comparison = clock_comparison._replace(number=past + clock_comparison.number)
     values = {"already": as_text(past), "answer": "answer_no"}
-    if later.number <= HIGHEST:
-        values |= {"more": as_text(asked.number), "later": f"WHILE({later})"}
-    look.report(codes.KNOWN_ANSWER, look.head(loop.span), **values)
+    if later_comparison.number <= HIGHEST:
+        values |= {"more": as_text(clock_comparison.number), "later": f"WHILE({later_comparison})"}
+    context.report(codes.KNOWN_ANSWER, context.head(loop.span), **values)
 
 
-def _is_over(asked: Comparison, past: int) -> bool:
-    return past >= asked.number if asked.op == "LT" else past > asked.number
+def _is_over(clock_comparison: Comparison, past: int) -> bool:
+    return (
+        past >= clock_comparison.number
+        if clock_comparison.op == "LT"
+        else past > clock_comparison.number
+    )
 
 
 # -- MIN and MAX ----------------------------------------------------------------------------------
 
 
-def report_narrowed(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_narrowed(
+    statement: ir.Statement | ir.Task, body_context: BodyContext, context: LintContext
+) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
     found_in = (each for value in ir.expressions(statement) for each in _nested(value))
     for outer, inner, numbers in found_in:
         limit, other = numbers
         if outer != inner and (other < limit if outer == "MAX" else other > limit):
-            found = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
+            nesting = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
             narrow = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
-            values = {"found": found, "number": as_text(limit), "narrow": narrow}
-            look.report(codes.KNOWN_ANSWER, statement.span, **values)
+            values = {"found": nesting, "number": as_text(limit), "narrow": narrow}
+            context.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 
 def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
@@ -86,10 +98,10 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
     for op, number in value:
         if op == "NUMBER":
             stack.append((op, number))
-        elif op in _NARROWS and len(stack) > 1:
+        elif op in _NARROWING_OPS and len(stack) > 1:
             right, left = stack.pop(), stack.pop()
             numbers = [it[1] for it in (left, right) if it[0] == "NUMBER"]
-            inner = next((it for it in (left, right) if it[0] in _NARROWS), None)
+            inner = next((it for it in (left, right) if it[0] in _NARROWING_OPS), None)
             if len(numbers) == 1 and numbers[0] is not None and inner and inner[1] is not None:
                 yield op, inner[0], (numbers[0], inner[1])
             stack.append((op, numbers[0] if len(numbers) == 1 else None))
@@ -102,28 +114,32 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
 # -- ELSE -----------------------------------------------------------------------------------------
 
 
-def report_no_room(statement: ir.If, around: Around, look: Look) -> None:
+def report_no_room(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for one, other in pairwise(statement.arms) if statement.has_else else ():
         first, second = one.condition, other.condition
-        is_same = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDES
-        if is_same and first[-2].op == "NUMBER" and _is_fine(first[:-2], first[-2].value, look):
-            text = look.condition(other.span, "ELSEIF")
+        is_same_value = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDE_OPS
+        if (
+            is_same_value
+            and first[-2].op == "NUMBER"
+            and _is_fine(first[:-2], first[-2].value, context)
+        ):
+            text = context.condition(other.span, "ELSEIF")
             name = text.partition("<")[0].partition(">")[0].strip()
             if name:
                 values = {"value": name, "number": as_text(first[-2].value)}
-                look.report(codes.EXACT, other.span, **values)
+                context.report(codes.EXACT, other.span, **values)
 
 
-def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
+def _is_fine(value: ir.Expression, number: int, context: LintContext) -> bool:
     """Whether a value comes from a sensor that has very many."""
     for op, at in value:
-        if op == "SENSOR" and is_between(look.kit.readings[at], max(number, 1)):
+        if op == "SENSOR" and is_between(context.kit.readings[at], max(number, 1)):
             return True
         if op == "VARIABLE":
-            its = look.variables.set_to.get(at, ())
-            if any(term.op == "SENSOR" and is_between(look.kit.readings[term.value], 1)
-                   for each in its for term in each):  # fmt: skip
+            values_set = context.variables.set_to.get(at, ())
+            if any(term.op == "SENSOR" and is_between(context.kit.readings[term.value], 1)
+                   for each in values_set for term in each):  # fmt: skip
                 return True
     return False
 
@@ -131,29 +147,29 @@ def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
 # -- RANDOM ---------------------------------------------------------------------------------------
 
 
-def report_thrown_arms(statement: ir.If, around: Around, look: Look) -> None:
+def report_thrown_arms(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
     for one, other in pairwise(statement.arms):
-        thrown = _thrown(one.condition)
-        if thrown and thrown == _thrown(other.condition) and other.condition[-1].op == "EQ":
-            _report_throw(thrown, other.span, look)
+        thrown = _throw_of(one.condition)
+        if thrown and thrown == _throw_of(other.condition) and other.condition[-1].op == "EQ":
+            _report_throw(thrown, other.span, context)
             return
 
 
-def report_thrown_again(body: ir.Body, around: Around, look: Look) -> None:
+def report_thrown_again(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
     for one, other in pairwise(body):
-        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW) else ()
-        if thrown and _thrown(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
-            _report_throw(thrown, look.head(other.span), look)
+        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW_OPS) else ()
+        if thrown and _throw_of(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
+            _report_throw(thrown, context.head(other.span), context)
 
 
-def _report_throw(thrown: ir.Expression, span: Span, look: Look) -> None:
+def _report_throw(thrown: ir.Expression, span: Span, context: LintContext) -> None:
     low, high = (as_text(term.value) for term in thrown[:2])
-    look.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
+    context.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
 
 
-def _thrown(value: ir.Expression) -> ir.Expression:
+def _throw_of(value: ir.Expression) -> ir.Expression:
     """Return the throw that a value begins with."""
-    is_throw = tuple(term.op for term in value[: len(_THROW)]) == _THROW
-    return value[: len(_THROW)] if is_throw else ()
+    is_throw = tuple(term.op for term in value[: len(_THROW_OPS)]) == _THROW_OPS
+    return value[: len(_THROW_OPS)] if is_throw else ()

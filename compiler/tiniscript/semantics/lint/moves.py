@@ -12,7 +12,7 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, can_come_true, is_distance, looks_ahead
-from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
+from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
@@ -25,26 +25,26 @@ _LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
 
-def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
+def report_late_conditions(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """Look at the statements of a body, not at those within them."""
-    _LateConditions(look).look_at(body, around.loop, around.is_repeated)
+    _LateConditions(context).look_at(body, body_context.loop, body_context.is_repeated)
 
 
 class _LateConditions:
-    def __init__(self, look: Look) -> None:
-        self._look = look
-        self._kit = look.kit
-        self._source = look.source
+    def __init__(self, context: LintContext) -> None:
+        self._context = context
+        self._kit = context.kit
+        self._source = context.source
 
     def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None, is_repeated: bool) -> None:
         """Look at the statements of a body, which `loop` repeats."""
-        late = self._in_loop(body) if loop is not None else set()
+        late_checks = self._in_loop(body) if loop is not None else set()
         if isinstance(loop, ir.While):
             self._in_while(loop)
         for k, statement in enumerate(body):
-            if isinstance(statement, ir.If) and k not in late:
+            if isinstance(statement, ir.If) and k not in late_checks:
                 self._report_idle_stop(body, k, statement, loop)
-                if not (is_repeated or self._look.program.tasks):
+                if not (is_repeated or self._context.program.tasks):
                     self._report_looked_before(body, k, statement)
 
     def _in_loop(self, body: ir.Body) -> set[int]:
@@ -52,7 +52,7 @@ class _LateConditions:
 
         Return the places of the conditions.
         """
-        late = set()
+        late_checks = set()
         for k, statement in enumerate(body):
             if not isinstance(statement, ir.Move) or not self._is_blind(statement, LONG_MOVE_MS):
                 continue
@@ -63,25 +63,27 @@ class _LateConditions:
                 continue
             condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
-            comes = can_come_true(condition, statement.direction, self._kit)
-            if sensor is not None and comes:
-                asked = self._look.condition(branch.arms[0].span, "IF")
-                self._report_late_check(statement, sensor, asked)
-                late.add(place)
-        return late
+            can_become_true = can_come_true(condition, statement.direction, self._kit)
+            if sensor is not None and can_become_true:
+                condition_text = self._context.condition(branch.arms[0].span, "IF")
+                self._report_late_check(statement, sensor, condition_text)
+                late_checks.add(place)
+        return late_checks
 
     def _report_looked_before(self, body: ir.Body, k: int, branch: ir.If) -> None:
         """`IF(DISTANCE < 15); B(1, 70); ENDIF; F(10, 50)`: it looks once, and then drives on."""
         condition = branch.arms[0].condition
         sensor = self._distance_in(condition)
-        move = _nearest(body, range(k + 1, len(body)))
+        move = _nearest_move(body, range(k + 1, len(body)))
         if sensor is None or branch.has_else or not asks_if_near(condition, self._kit):
             return
         if _only_stop(branch) or not isinstance(move, ir.Move):
             return
         is_blind = self._is_blind(move, LONG_AFTER_MS)
         if is_blind and can_come_true(condition, move.direction, self._kit):
-            self._report_late_check(move, sensor, self._look.condition(branch.arms[0].span, "IF"))
+            self._report_late_check(
+                move, sensor, self._context.condition(branch.arms[0].span, "IF")
+            )
 
     def _in_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
@@ -99,17 +101,17 @@ class _LateConditions:
             if looks_ahead(device) and device.low < number <= device.high:
                 self._report_late_check(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
-    def _report_late_check(self, move: ir.Move, sensor: int, asked: str) -> None:
+    def _report_late_check(self, move: ir.Move, sensor: int, condition_text: str) -> None:
         name = self._kit.readings[sensor].name
         text = self._source[move.span]
         values = {
             "word": move.direction,
-            "time": as_text(_time(move) or 0),
+            "time": as_text(_time_of(move) or 0),
             "sensor": name,
             "move": text,
-            "fix": f"{text} UNTIL({asked})" if asked else "",
+            "fix": f"{text} UNTIL({condition_text})" if condition_text else "",
         }
-        self._look.report(codes.LATE_CHECK, move.span, **values)
+        self._context.report(codes.LATE_CHECK, move.span, **values)
 
     def _report_idle_stop(
         self, body: ir.Body, k: int, branch: ir.If, loop: ir.Loop | ir.While | None
@@ -117,10 +119,10 @@ class _LateConditions:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
         stop = _only_stop(branch)
         condition = branch.arms[0].condition
-        if stop is None or self._look.uses_motors or not _can_change(condition):
+        if stop is None or self._context.uses_motors or not _can_change(condition):
             return
-        before = _nearest(body, range(k - 1, -1, -1))
-        after = _nearest(body, range(k + 1, len(body)))
+        before = _nearest_move(body, range(k - 1, -1, -1))
+        after = _nearest_move(body, range(k + 1, len(body)))
         stands = [item for item in branch.arms[0].body if isinstance(item, (ir.Move, ir.Beep))]
         if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
             return  # S with its wait is a pause
@@ -135,63 +137,69 @@ class _LateConditions:
                     if place == "move":
                         break
                     return  # it drives away from what is near
-                values = self._idle(stop, move, place, branch)
+                values = self._idle_stop_values(stop, move, place, branch)
                 if values["fix"]:
                     values |= self._replacement_values(body, move, branch)
                 if place == "move" or not pauses:
-                    self._look.report(codes.IDLE_STOP, stop.span, **values)
+                    self._context.report(codes.IDLE_STOP, stop.span, **values)
                 return
-        again = before if isinstance(before, ir.Move) else after
+        repeated_move = before if isinstance(before, ir.Move) else after
         if (
             loop is not None
-            and isinstance(again, ir.Move)
-            and self._is_blind(again, 1)
+            and isinstance(repeated_move, ir.Move)
+            and self._is_blind(repeated_move, 1)
             and not pauses
         ):
             values = {"found": self._source[stop.span], "next": ""}
-            values["again"] = self._source[again.span]
-            self._look.report(codes.IDLE_STOP, stop.span, **values)
+            values["again"] = self._source[repeated_move.span]
+            self._context.report(codes.IDLE_STOP, stop.span, **values)
 
-    def _idle(self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If) -> dict[str, str]:
+    def _idle_stop_values(
+        self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If
+    ) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
-        found, written = self._source[stop.span], self._source[move.span]
+        stop_text, move_text = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
-        comes = can_come_true(condition, move.direction, self._kit)
+        can_become_true = can_come_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
-            comes = False  # what is behind the robot is not seen
-        asked = self._look.condition(branch.arms[0].span, "IF") if comes else ""
-        values = {"found": found, "move": "", "next": "", place: written}
-        values["fix"] = f"{written} UNTIL({asked})" if asked else ""
-        if not comes:
-            values["needless" if place == "move" else "behind"] = written
+            can_become_true = False  # what is behind the robot is not seen
+        condition_text = (
+            self._context.condition(branch.arms[0].span, "IF") if can_become_true else ""
+        )
+        values = {"found": stop_text, "move": "", "next": "", place: move_text}
+        values["fix"] = f"{move_text} UNTIL({condition_text})" if condition_text else ""
+        if not can_become_true:
+            values["needless" if place == "move" else "behind"] = move_text
         return values
 
     def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
         first, last = sorted((move.span, branch.span))
-        begin, there, end = (
+        begin, rest, end = (
             str(self._source.position(at)[0])
             for at in (first.start, branch.span.start, last.end - 1)
         )
-        between = [item for item in body if first.end <= item.span.start < last.start]
-        of = self._source[move.span]
+        instructions_between = [item for item in body if first.end <= item.span.start < last.start]
+        replaced_text = self._source[move.span]
         if len(branch.arms[0].body) > 1:
-            return {"of": of, "rest": there}
+            return {"of": replaced_text, "rest": rest}
         text = self._source.text
-        beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
-        is_alone = begin == end or not beside.partition("//")[0].strip()
-        if any(not isinstance(item, ir.Read) for item in between) or not is_alone:
-            return {"of": of, "out": there}
+        rest_of_lines = (
+            text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
+        )
+        is_alone = begin == end or not rest_of_lines.partition("//")[0].strip()
+        if any(not isinstance(item, ir.Read) for item in instructions_between) or not is_alone:
+            return {"of": replaced_text, "out": rest}
         if begin == end:
             return {"all": self._source[Span(first.start, last.end)]}
         return {"first": begin, "last": end}
 
-    def _is_blind(self, move: ir.Move, least: int) -> bool:
+    def _is_blind(self, move: ir.Move, least_ms: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
-        time = _time(move)
+        time = _time_of(move)
         if move.direction not in ("F", "B") or move.until is not None:
             return False
-        return time is not None and time >= least
+        return time is not None and time >= least_ms
 
     def _distance_in(self, condition: ir.Expression) -> int | None:
         """Return the first sensor of a distance that a condition looks at."""
@@ -201,12 +209,12 @@ class _LateConditions:
         return None
 
 
-def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
+def _nearest_move(body: ir.Body, places: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
     return next((body[at] for at in places if not isinstance(body[at], STANDING_STATEMENTS)), None)
 
 
-def _time(move: ir.Move) -> int | None:
+def _time_of(move: ir.Move) -> int | None:
     return None if move.unit else known_value(move.time)
 
 
@@ -234,9 +242,9 @@ def _is_talk(statement: ir.Statement) -> bool:
     return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
 
 
-def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
+def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """Warn of each M of a body that the robot does not do for a while."""
-    source = look.source
+    source = context.source
     for k, motors in enumerate(body):
         if not isinstance(motors, ir.Motors) or _is_still(motors):
             continue
@@ -251,13 +259,13 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
             isinstance(after, ir.Move) and after.direction != "W" and after.until is None
         ):
             values["next"] = source[after.span]
-        elif after is not None or not around.is_last:
+        elif after is not None or not body_context.is_last:
             continue
         left, right = known_value(motors.left) or 0, known_value(motors.right) or 0
         if left in _LIKELY_TIMES and right in _LIKELY_POWERS:
             values["time"] = as_text(left)
             values["move"] = f"F({as_text(left)}, {as_text(right)})"
-        look.report(codes.UNSEEN_MOTORS, motors.span, **values)
+        context.report(codes.UNSEEN_MOTORS, motors.span, **values)
 
 
 def _is_instant(statement: ir.Statement) -> bool:

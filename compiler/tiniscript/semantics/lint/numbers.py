@@ -16,7 +16,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, comparisons_in
 from tiniscript.semantics.ir import Beep, Expression, Move
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.ways import way_ms
@@ -47,70 +47,74 @@ _TOKENS_TO_SECOND_VALUE = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
-def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_will_fault(
+    statement: ir.Statement | ir.Task, body_context: BodyContext, context: LintContext
+) -> None:
     for expression in ir.expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
-            look.report(codes.WILL_FAULT, statement.span, fault=fault)
+            context.report(codes.WILL_FAULT, statement.span, fault=fault)
             return
 
 
-def check_clock(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def check_clock(
+    statement: ir.Statement | ir.Task, body_context: BodyContext, context: LintContext
+) -> None:
     """`TIME < 10000`: the clock counts seconds."""
     for expression in ir.expressions(statement):
-        for device, op, number in comparisons_in(expression, look.kit):
+        for device, op, number in comparisons_in(expression, context.kit):
             if device is TIME and _is_milliseconds(number):
                 limit, right = as_text(number), as_text(number // 1000)
                 values = {"limit": limit, "fix": f"TIME {SIGN_OF[op]} {right}"}
-                look.report(codes.LONG_TIME, _clock_span(statement, limit, look), **values)
+                context.report(codes.LONG_TIME, _clock_span(statement, limit, context), **values)
 
 
-def _clock_span(statement: ir.Statement | ir.Task, limit: str, look: Look) -> Span:
+def _clock_span(statement: ir.Statement | ir.Task, limit: str, context: LintContext) -> Span:
     """Return the place of a comparison of the clock as it is written, or else its statement."""
     pattern = rf"(?i)\bTIME\b[ \t]*[<>=]+[ \t]*{limit}\b|\b{limit}[ \t]*[<>=]+[ \t]*TIME\b"
-    found = re.compile(pattern).search(look.source.text, *statement.span)
-    return Span(*found.span()) if found else statement.span
+    clock_match = re.compile(pattern).search(context.source.text, *statement.span)
+    return Span(*clock_match.span()) if clock_match else statement.span
 
 
-def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
+def check_times(loop: ir.Loop, body_context: BodyContext, context: LintContext) -> None:
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = known_value(loop.times)
     head = Span(loop.span.start, loop.span.start + len("LOOP"))
     if times is not None and times < 500:  # it is rounded
-        look.report(codes.NEVER_REPEATS, head, times=as_text(times))
+        context.report(codes.NEVER_REPEATS, head, times=as_text(times))
     elif times is not None and times % 1000:
-        look.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
+        context.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
 
 
-def check_move(move: Move, around: Around, look: Look) -> None:
-    found = _check_way(move, look.kit) if move.unit else _check_time(move, look)
-    look.found += found or _check_named_time(move, look)
+def check_move(move: Move, body_context: BodyContext, context: LintContext) -> None:
+    diagnostics = _check_way(move, context.kit) if move.unit else _check_time(move, context)
+    context.diagnostics += diagnostics or _check_named_time(move, context)
 
 
-def _check_named_time(move: Move, look: Look) -> list[Diagnostic]:
+def _check_named_time(move: Move, context: LintContext) -> list[Diagnostic]:
     """`DEF SIDE(SIZE); F(SIZE, 60)`, called with 30: the values of its calls are looked at."""
     time = move.time or ()
     if move.unit or move.until is not None or [term.op for term in time] != ["VARIABLE"]:
         return []
     variable = time[0].value
-    if not any(variable in procedure.values for procedure in look.program.procedures):
+    if not any(variable in procedure.values for procedure in context.program.procedures):
         return []
-    values = [known_value(each) for each in look.variables.set_to.get(variable, ())]
-    if not values or None in values or is_time(look.program.variables[variable]):
+    values = [known_value(each) for each in context.variables.set_to.get(variable, ())]
+    if not values or None in values or is_time(context.program.variables[variable]):
         return []
-    longest, text = max(value or 0 for value in values), look.source[move.span]
-    found = _warn_of_long_time(move, longest, known_value(move.power), look.kit, text)
-    return [it._replace(values={**it.values, "fix": ""}) for it in found]
+    longest, text = max(value or 0 for value in values), context.source[move.span]
+    diagnostics = _warn_of_long_time(move, longest, known_value(move.power), context.kit, text)
+    return [it._replace(values={**it.values, "fix": ""}) for it in diagnostics]
 
 
-def _check_time(move: Move, look: Look) -> list[Diagnostic]:
+def _check_time(move: Move, context: LintContext) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait by its time.
 
     It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
     time is only how long it may last.
     """
-    time, power, kit = known_value(move.time), known_value(move.power), look.kit
-    text, is_ended = look.source[move.span], move.until is not None
+    time, power, kit = known_value(move.time), known_value(move.power), context.kit
+    text, is_ended = context.source[move.span], move.until is not None
     zero = None if is_ended else _LEADING_ZERO.match(text) or _LEADING_ZERO_OF_TURN.match(text)
     if time is None:
         return _check_power(move) if is_ended else _report_way_as_time(move, kit, text)
@@ -126,8 +130,8 @@ def _check_time(move: Move, look: Look) -> list[Diagnostic]:
         return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_check_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
-        until = _UNTIL_CLAUSE.search(text) if is_ended else None
-        fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
+        until_match = _UNTIL_CLAUSE.search(text) if is_ended else None
+        fix = f"{move.direction}({percent}, {seconds}){until_match[0] if until_match else ''}"
         values = {"time": seconds, "power": percent, "fix": fix}
         return [Diagnostic(codes.SWAPPED, move.span, values)]
     may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
@@ -166,8 +170,8 @@ def _report_way_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
         return []
     name = sensors[0].name
     left = next((as_text(part.value) for part in time if part.op == "NUMBER"), "10")
-    until = f"F(FOREVER,{power}) UNTIL({name} < {left})" if move.direction == "F" else ""
-    values = {"sensor": name, "word": move.direction, "until": until, "seconds": seconds}
+    until_example = f"F(FOREVER,{power}) UNTIL({name} < {left})" if move.direction == "F" else ""
+    values = {"sensor": name, "word": move.direction, "until": until_example, "seconds": seconds}
     return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
 
@@ -184,12 +188,12 @@ def _check_power(move: Move) -> list[Diagnostic]:
         and 0 <= power < LITTLE_POWER
         and (time is None or time < LONG_TIME or move.unit)
     ):
-        shown = "2" if not time else as_text(time)
-        shown = "FOREVER" if move.time is None else f"{shown} {move.unit}".rstrip()
-        values = {"power": as_text(power), "example": f"{move.direction}({shown}, 50)"}
+        time_text = "2" if not time else as_text(time)
+        time_text = "FOREVER" if move.time is None else f"{time_text} {move.unit}".rstrip()
+        values = {"power": as_text(power), "example": f"{move.direction}({time_text}, 50)"}
         if 0 < power < ONE:  # `F(2, 0.8)`
             values["percent"] = as_text(power * 100)
-            values["whole"] = f"{move.direction}({shown}, {as_text(power * 100)})"
+            values["whole"] = f"{move.direction}({time_text}, {as_text(power * 100)})"
         diagnostics.append(Diagnostic(codes.LITTLE_POWER, move.span, values))
     return diagnostics
 
@@ -199,22 +203,22 @@ def _warn_of_long_time(
 ) -> list[Diagnostic]:
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
-    shown = as_text(80_000 if power is None else power)
+    power_text = as_text(80_000 if power is None else power)
     turns, drives = word in ("L", "R"), word in ("F", "B")
     is_round = time % (5 * SECOND) == 0
     is_long = time > LONGEST_DRIVE or (time >= LONG_DRIVE and is_round)
     is_very_long = time >= VERY_LONG_TIME
-    usage = f"{word}( , {shown})"
+    usage = f"{word}( , {power_text})"
     length = as_text(time)
     parts = _FIRST_VALUE.fullmatch(text)
-    first, rest = parts.groups() if parts else ("", f", {shown})")
+    first, rest = parts.groups() if parts else ("", f", {power_text})")
     way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not after a note
     speed = kit.speed or USUAL_SPEED
-    is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR_DISTANCE
+    is_far_drive = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR_DISTANCE
     if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % TURN_PART):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
-    elif drives and (is_long or is_far) and not is_very_long:
+    elif drives and (is_long or is_far_drive) and not is_very_long:
         values = {"centimetres": length, "word": word, "drive": usage}
         values |= {"way": way} if kit.speed else {}
     elif _is_milliseconds(time) if word == "W" else is_very_long:
@@ -237,12 +241,12 @@ def _is_milliseconds(time: int) -> bool:
     return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
 
 
-def check_beep(beep: Beep, around: Around, look: Look) -> None:
+def check_beep(beep: Beep, body_context: BodyContext, context: LintContext) -> None:
     """Warn of a sound that lasts longer than anybody can bear."""
     time, hertz = known_value(beep.time), known_value(beep.hertz)
-    look.found += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
+    context.diagnostics += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
-        look.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
+        context.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
@@ -256,12 +260,12 @@ def check_beep(beep: Beep, around: Around, look: Look) -> None:
     elif time % (50 * SECOND) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
         fix, rival = rival, fix
     gaps = {"fix": fix, "sound": sound} | ({"rival": rival} if rival else {})
-    look.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
+    context.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
 
 
-def report_swapped_rounds(look: Look) -> None:
+def report_swapped_rounds(context: LintContext) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
-    tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
+    tokens = [token for token in context.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_TOKENS_TO_SECOND_VALUE]):
         if token.text != "ROUND":
             continue
@@ -274,28 +278,28 @@ def report_swapped_rounds(look: Look) -> None:
             depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
             end += 1
         if any(token.kind is WORD for token in tokens[k + 4 : end - 1]):
-            value = look.source[Span(start.start, tokens[end - 2].end)]
+            value = context.source[Span(start.start, tokens[end - 2].end)]
             fix = f"ROUND({value}, {number.text})"
             span = Span(token.start, tokens[end - 1].end)
-            look.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
+            context.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
 
 
-def report_swapped_names(move: Move, around: Around, look: Look) -> None:
+def report_swapped_names(move: Move, body_context: BodyContext, context: LintContext) -> None:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     if move.until is not None or move.time is None or move.power is None or move.unit:
         return
     sides = (move.time, move.power)
     if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
         return
-    set_to = look.variables.set_to
+    set_to = context.variables.set_to
     values = [[*map(known_value, set_to.get(side[0].value, ()))] for side in sides]
     if not all(len(value) == 1 and value[0] is not None for value in values):
         return
     time, power = (value[0] or 0 for value in values)
-    first, second = (look.program.variables[side[0].value] for side in sides)
+    first, second = (context.program.variables[side[0].value] for side in sides)
     if _is_swapped(time, power) and not _is_right_order(first, second):
         fix = f"{move.direction}({second}, {first})"
-        look.report(codes.SWAPPED, move.span, fix=fix, time=as_text(time), power=as_text(power))
+        context.report(codes.SWAPPED, move.span, fix=fix, time=as_text(time), power=as_text(power))
 
 
 def _is_right_order(first: str, second: str) -> bool:
@@ -317,6 +321,6 @@ def _warn_of_cut_value(
     value = known_value(expression)
     if value is None or argument.low <= value <= argument.high:
         return []
-    taken = as_text(argument.low if value < argument.low else argument.high)
-    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": taken}
+    limit = as_text(argument.low if value < argument.low else argument.high)
+    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": limit}
     return [Diagnostic(codes.CUT_VALUE, span, values)]

@@ -14,26 +14,30 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.lint.context import LintContext
 
 _LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Loop, ir.While, ir.Call)
 _VISIBLE_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
 
 
-def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
+def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
     """Report the first of these readings: what is repeated around it has the others in it, too."""
-    program = look.program
-    for body in (program.body, *(task.body for task in program.tasks if task.look is None)):
-        is_early = True
+    program = context.program
+    for body in (program.body, *(task.body for task in program.tasks if task.until is None)):
+        is_before_loop = True
         for statement in _statements_done_once(body):
-            read = next((item for item in _read(statement) if item[0] in remote), None)
-            if read is not None:
-                look.found.append(_diagnostic(*read, statement, body, is_early, look))
+            reading = next((item for item in _readings_of(statement) if item[0] in remote), None)
+            if reading is not None:
+                context.diagnostics.append(
+                    _diagnostic(*reading, statement, body, is_before_loop, context)
+                )
                 return
-            done = ir.walk_with_calls((statement,), program.procedures)
-            if not isinstance(statement, ir.If) and remote & ir.referenced_numbers("SENSOR", done):
+            statements = ir.walk_with_calls((statement,), program.procedures)
+            if not isinstance(statement, ir.If) and remote & ir.referenced_numbers(
+                "SENSOR", statements
+            ):
                 break  # it has been waited for
-            is_early = is_early and not isinstance(statement, _LASTING_STATEMENTS)
+            is_before_loop = is_before_loop and not isinstance(statement, _LASTING_STATEMENTS)
 
 
 def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
@@ -45,7 +49,7 @@ def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
                 yield from _statements_done_once(inner)
 
 
-def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
+def _readings_of(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
     """Yield the readings that a statement takes once, each with the place to point at."""
     if isinstance(statement, ir.While):
         return
@@ -57,29 +61,34 @@ def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
 
 
 def _diagnostic(
-    sensor: int, span: Span, statement: ir.Statement, body: ir.Body, is_early: bool, look: Look
+    sensor: int,
+    span: Span,
+    statement: ir.Statement,
+    body: ir.Body,
+    is_before_loop: bool,
+    context: LintContext,
 ) -> Diagnostic:
-    name = look.kit.readings[sensor].name
-    values = {"early" if is_early else "name": name}
-    if isinstance(statement, ir.If) and (question := look.condition(span, "IF")):
+    name = context.kit.readings[sensor].name
+    values = {"early" if is_before_loop else "name": name}
+    if isinstance(statement, ir.If) and (question := context.condition(span, "IF")):
         values["question"] = question
-    text = look.source[span]
+    text = context.source[span]
     place = re.search(rf"(?i)\b{name}\b", text)
-    named = Span(span.start + place.start(), span.start + place.end()) if place else span
-    return Diagnostic(codes.ASKED_ONCE, named, values, None, _loop_repair(span, body, look))
+    name_span = Span(span.start + place.start(), span.start + place.end()) if place else span
+    return Diagnostic(codes.ASKED_ONCE, name_span, values, None, _loop_repair(span, body, context))
 
 
-def _loop_repair(span: Span, body: ir.Body, look: Look) -> Repair | None:
+def _loop_repair(span: Span, body: ir.Body, context: LintContext) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
     rest = [each for each in body if each.span.end > span.start]
     if not any(
         isinstance(item, _VISIBLE_STATEMENTS)
-        for item in ir.walk_with_calls((*rest,), look.program.procedures)
+        for item in ir.walk_with_calls((*rest,), context.program.procedures)
     ):
         return None
     first, end = rest[0], rest[-1].span.end
     start = first.arms[0].span.start if isinstance(first, ir.If) else first.span.start
-    between = "\n" if "\n" in look.source.text[start:end] else ";"
-    edits = (Edit(Span(start, start), f"LOOP(FOREVER){between}"),
-             Edit(Span(end, end), f"{between}END_LOOP"))  # fmt: skip
+    separator = "\n" if "\n" in context.source.text[start:end] else ";"
+    edits = (Edit(Span(start, start), f"LOOP(FOREVER){separator}"),
+             Edit(Span(end, end), f"{separator}END_LOOP"))  # fmt: skip
     return Repair(edits, False)

@@ -14,49 +14,51 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.lint.context import LintContext
 from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
-_MANY = 6  # instructions that a suggestion shows
+_MOST_INSTRUCTIONS = 6  # instructions that a suggestion shows
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
-def report_kept_motors(look: Look) -> None:
+def report_kept_motors(context: LintContext) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
-    program = look.program
+    program = context.program
     motors = _Motors(program)
     all_of = partial(ir.walk_with_calls, procedures=program.procedures)
-    higher = [task.body for task in program.tasks if task.look is not None]
-    tasks = [task for task in program.tasks if task.look is None]
-    lower = [*(task.body for task in tasks), program.body]
+    higher_bodies = [task.body for task in program.tasks if task.until is not None]
+    tasks = [task for task in program.tasks if task.until is None]
+    lower_bodies = [*(task.body for task in tasks), program.body]
     for task in tasks:
-        del lower[0]
-        is_stopped = any(isinstance(item, ir.Stop) for body in higher for item in all_of(body))
+        del lower_bodies[0]
+        is_stopped = any(
+            isinstance(item, ir.Stop) for body in higher_bodies for item in all_of(body)
+        )
         if not is_stopped and motors.are_kept(task.body):
-            line = str(look.source.position(task.span.start)[0])
-            for body in lower:
-                waiting = next(filter(_is_move, all_of(_endless_part(body))), None)
-                if waiting is not None:
-                    look.report(codes.NO_MOTORS, waiting.span, line=line)
+            line = str(context.source.position(task.span.start)[0])
+            for body in lower_bodies:
+                waiting_move = next(filter(_is_move, all_of(_endless_part(body))), None)
+                if waiting_move is not None:
+                    context.report(codes.NO_MOTORS, waiting_move.span, line=line)
             return
-        higher.append(task.body)
-    _take_turns([task.body for task in tasks], look)
+        higher_bodies.append(task.body)
+    _take_turns([task.body for task in tasks], context)
 
 
-def _take_turns(tasks: list[ir.Body], look: Look) -> None:
+def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
-    begin = [body[0] for body in (*tasks, look.program.body) if body and _is_move(body[0])]
-    if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
+    first_moves = [body[0] for body in (*tasks, context.program.body) if body and _is_move(body[0])]
+    if len(first_moves) < 2 or not tasks[0] or first_moves[0] is not tasks[0][0]:
         return
-    first = look.source[begin[0].span]
+    first = context.source[first_moves[0].span]
     values = {"first": first, "both": "M(60, 30);W(4)"}
-    spans = sorted(item.span for body in (*tasks, look.program.body) for item in body)
-    orders = [look.source[span] for span in spans]
-    if len(orders) <= _MANY and not any("\n" in order for order in orders):
+    spans = sorted(item.span for body in (*tasks, context.program.body) for item in body)
+    orders = [context.source[span] for span in spans]
+    if len(orders) <= _MOST_INSTRUCTIONS and not any("\n" in order for order in orders):
         values["after"] = ";".join(orders)
-    for item in begin[1:]:
-        look.report(codes.NO_MOTORS, item.span, **values)
+    for item in first_moves[1:]:
+        context.report(codes.NO_MOTORS, item.span, **values)
 
 
 class _Motors:
@@ -104,23 +106,23 @@ class _Motors:
         return is_wanted and once if takes_time else None
 
 
-def report_brief_tasks(look: Look) -> None:
+def report_brief_tasks(context: LintContext) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
-    program = look.program
-    lower = [program.body, *(task.body for task in program.tasks if task.look is None)]
-    driving = [
-        body[-1] for body in lower
+    program = context.program
+    lower_bodies = [program.body, *(task.body for task in program.tasks if task.until is None)]
+    driving_statements = [
+        body[-1] for body in lower_bodies
         if any(map(_is_move, ir.walk_with_calls(_endless_part(body), program.procedures)))
     ]  # fmt: skip
     for task in program.tasks:
-        done = [*ir.walk_with_calls(task.body, program.procedures)]
-        if task.look is None:
-            if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
-                look.found.append(_single_run_diagnostic(task, look.source))
-        elif driving and known_value(task.look.condition) is None:
-            is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in done)
-            if is_brief and any(isinstance(item, ir.Stop) for item in done):
-                _report_resumed_move(task, driving[0], look)
+        statements = [*ir.walk_with_calls(task.body, program.procedures)]
+        if task.until is None:
+            if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, statements)):
+                context.diagnostics.append(_single_run_diagnostic(task, context.source))
+        elif driving_statements and known_value(task.until.condition) is None:
+            is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in statements)
+            if is_brief and any(isinstance(item, ir.Stop) for item in statements):
+                _report_resumed_move(task, driving_statements[0], context)
 
 
 def _is_pause(statement: ir.Statement) -> bool:
@@ -138,43 +140,56 @@ def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
     end = re.search(r"\w+\Z", text)
     assert end is not None
     after, before = task.word.end, task.span.start + end.start()
-    between = "\n" if "\n" in text else ";"
-    edits = (Edit(Span(after, after), f"{between}LOOP(FOREVER)"),
-             Edit(Span(before, before), f"END_LOOP{between}"))  # fmt: skip
+    separator = "\n" if "\n" in text else ";"
+    edits = (Edit(Span(after, after), f"{separator}LOOP(FOREVER)"),
+             Edit(Span(before, before), f"END_LOOP{separator}"))  # fmt: skip
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 
 
-def report_lone_task(look: Look) -> None:
+def report_lone_task(context: LintContext) -> None:
     """`TASK;F(5, 50);BEEP(5, 440);END_TASK` alone: in it one comes after the other."""
-    program = look.program
+    program = context.program
     is_idle = all(isinstance(each, (ir.Read, ir.Assign)) for each in program.body)
-    (task, *others) = program.tasks
-    if others or task.look is not None or not task.body or not is_idle:
+    (task, *other_tasks) = program.tasks
+    if other_tasks or task.until is not None or not task.body or not is_idle:
         return
-    text = look.source[task.span]
-    both = [each for each in task.body if not isinstance(each, ir.Read)]
-    beside = sorted(both, key=_is_move)
-    if [*map(_is_move, beside)] != [False, True] or not isinstance(beside[0], ir.Beep):
-        look.report(codes.LONE_TASK, task.word)
+    text = context.source[task.span]
+    statements = [each for each in task.body if not isinstance(each, ir.Read)]
+    moves_last = sorted(statements, key=_is_move)
+    if [*map(_is_move, moves_last)] != [False, True] or not isinstance(moves_last[0], ir.Beep):
+        context.report(codes.LONE_TASK, task.word)
         return
-    parts = ["TASK", look.source[beside[0].span], "END_TASK", look.source[beside[1].span]]
+    parts = [
+        "TASK",
+        context.source[moves_last[0].span],
+        "END_TASK",
+        context.source[moves_last[1].span],
+    ]
     edit = Edit(task.span, ("\n" if "\n" in text else ";").join(parts))
-    repair = None if "//" in text or not isinstance(beside[1], ir.Move) else Repair((edit,), False)
+    repair = (
+        None if "//" in text or not isinstance(moves_last[1], ir.Move) else Repair((edit,), False)
+    )
     values = {"fix": ";".join(parts)} if repair else {}
     place = task.span if repair else None
-    look.found.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
+    context.diagnostics.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
 
 
-def _report_resumed_move(task: ir.Task, driving: ir.Statement, look: Look) -> None:
-    head = re.match(_WHEN_HEADER, look.source[task.span])
-    values = {"line": str(look.source.position(driving.span.start)[0])}
+def _report_resumed_move(
+    task: ir.Task, driving_statements: ir.Statement, context: LintContext
+) -> None:
+    head = re.match(_WHEN_HEADER, context.source[task.span])
+    values = {"line": str(context.source.position(driving_statements.span.start)[0])}
     if head is not None:
-        ended = f"IF{head[1]};BREAK;ENDIF" if isinstance(driving, ir.Loop) else f"UNTIL{head[1]}"
-        values["ended"] = ended
+        ended_move = (
+            f"IF{head[1]};BREAK;ENDIF"
+            if isinstance(driving_statements, ir.Loop)
+            else f"UNTIL{head[1]}"
+        )
+        values["ended"] = ended_move
     # a DEF that is called may have it
     stops = [each for each in task.body if isinstance(each, (ir.Stop, ir.Call))]
     stop = min(stops, key=lambda each: isinstance(each, ir.Call))
-    look.report(codes.WHEN_GOES_ON, stop.span, **values)
+    context.report(codes.WHEN_GOES_ON, stop.span, **values)
 
 
 def _endless_part(body: ir.Body) -> ir.Body:

@@ -14,7 +14,7 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS
@@ -39,36 +39,42 @@ MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 # -- what is never done ----------------------------------------------------------------------
 
 
-def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
+def report_never_reached(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.falls_through((before,)):
-            values = {"found": look.source[after.span].split("\n")[0]}
+            values = {"found": context.source[after.span].split("\n")[0]}
             if isinstance(before, ir.Loop):
-                values["line"] = str(look.source.position(before.span.start)[0])
-                if isinstance(after, ir.Loop) and after.times is None and body is look.program.body:
+                values["line"] = str(context.source.position(before.span.start)[0])
+                if (
+                    isinstance(after, ir.Loop)
+                    and after.times is None
+                    and body is context.program.body
+                ):
                     values["together"] = "TASK"
             elif isinstance(before, ir.Break):
                 values["ends"] = "BREAK"
-            look.report(codes.NEVER_REACHED, after.span, **values)
+            context.report(codes.NEVER_REACHED, after.span, **values)
             return
 
 
-def report_instructions_in_notes(look: Look) -> None:
+def report_instructions_in_notes(context: LintContext) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
     Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
     for a slip, and only after an instruction, where a `;` would do: a whole line may be set aside,
     and after a header or `SI|` a note tells what comes.
     """
-    source, tokens = look.source, look.scan.tokens
-    short = [comment for comment in look.scan.comments if len(comment.text) <= MOST_NOTE_CHARACTERS]
+    source, tokens = context.source, context.scan.tokens
+    short_comments = [
+        comment for comment in context.scan.comments if len(comment.text) <= MOST_NOTE_CHARACTERS
+    ]
     if all(token.kind in INSTRUCTION_ENDS for token in tokens):
-        _report_all_notes(short, look)
+        _report_all_notes(short_comments, context)
         return
     rows = [
         token
-        for token in short
+        for token in short_comments
         if re.fullmatch(_CALLS, token.text) or swallowed_instructions(token.text)
     ]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
@@ -83,15 +89,15 @@ def report_instructions_in_notes(look: Look) -> None:
         if _ends_instruction(tokens, k) and not is_ping:
             rest = "; ".join(swallowed_instructions(note.text))
             text = rest or note.text.strip("/; \t")
-            look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
+            context.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
 
-def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
+def _report_all_notes(notes: Sequence[Token], context: LintContext) -> None:
     """`// I go F(1, 80); W(2)`, where the program is nothing but notes."""
     for note in notes:
         rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
         if rest:
-            look.report(codes.IN_A_NOTE, note.span, found=rest, rest=rest)
+            context.report(codes.IN_A_NOTE, note.span, found=rest, rest=rest)
             return
 
 
@@ -101,10 +107,10 @@ def swallowed_instructions(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    matches = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
-    is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
-    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in matches)
-    return matches if is_row and first else []
+    instructions = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
+    is_row = all(item in instructions or not set("()") & set(item) for item in (first, *others))
+    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in instructions)
+    return instructions if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
@@ -118,18 +124,20 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
     while k >= 0 and (depth or tokens[k].kind not in (";", "|", NEWLINE)):
         depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
         k -= 1
-    known = WORDS.get(tokens[k + 1].text)
-    return known is None or known.role.name not in ("start", "block", "arm")
+    word_row = WORDS.get(tokens[k + 1].text)
+    return word_row is None or word_row.role.name not in ("start", "block", "arm")
 
 
 # -- blocks ----------------------------------------------------------------------------------
 
 
-def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
+def report_busy_loop(
+    loop: ir.Loop | ir.While, body_context: BodyContext, context: LintContext
+) -> None:
     """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
-    procedures = look.program.procedures
+    procedures = context.program.procedures
     if (
-        look.program.tasks  # there each turn of a loop takes time
+        context.program.tasks  # there each turn of a loop takes time
         or not _is_forever(loop)
         or ir.breaks_out(loop.body)
         or any(
@@ -140,7 +148,7 @@ def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> No
         return
     word = "LOOP(FOREVER)" if isinstance(loop, ir.Loop) else "WHILE"
     head = Span(loop.span.start, loop.span.start + len(word))
-    look.report(codes.BUSY_LOOP, head, word=word)
+    context.report(codes.BUSY_LOOP, head, word=word)
 
 
 def _is_forever(loop: ir.Loop | ir.While) -> bool:
@@ -149,13 +157,13 @@ def _is_forever(loop: ir.Loop | ir.While) -> bool:
     return known_value(loop.condition) == 1
 
 
-def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
+def report_empty_blocks(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
     after its end.
     """
-    source = look.source
+    source = context.source
     for k, statement in enumerate(body):
         if not _is_empty(statement):
             continue
@@ -164,19 +172,19 @@ def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
         if "//" in text or is_noted:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
-        span = look.head(statement.span)
+        span = context.head(statement.span)
         after = _leading_instructions(body[k + 1 :], source)
         before = (
             [] if after else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
         )
         if not after and not before:
             continue
-        shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
-        values = {"head": shown, "end": end}
+        head_text, end = " ".join(source[span].split()), BLOCK_ENDS[word]
+        values = {"head": head_text, "end": end}
         for name, rows in (("example", after), ("before", before)):
             if 0 < len(rows) <= MOST_EXAMPLE_INSTRUCTIONS:
-                values[name] = "; ".join((shown, *rows, end))
-        look.report(codes.EMPTY_BLOCK, span, **values)
+                values[name] = "; ".join((head_text, *rows, end))
+        context.report(codes.EMPTY_BLOCK, span, **values)
 
 
 def _is_empty(statement: ir.Statement) -> bool:
@@ -189,48 +197,53 @@ def _is_empty(statement: ir.Statement) -> bool:
 
 def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
-    plain = [*takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)]
-    end = next((k + 1 for k, each in enumerate(plain) if isinstance(each, ir.Break)), len(plain))
-    return [source[each.span] for each in plain[:end] if not isinstance(each, ir.Read)]
+    plain_statements = [
+        *takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)
+    ]
+    end = next(
+        (k + 1 for k, each in enumerate(plain_statements) if isinstance(each, ir.Break)),
+        len(plain_statements),
+    )
+    return [source[each.span] for each in plain_statements[:end] if not isinstance(each, ir.Read)]
 
 
 # -- what nobody uses ------------------------------------------------------------------------
 
 
-def report_unused_variables(look: Look) -> None:
-    program = look.program
-    used = ir.referenced_numbers("VARIABLE", look.statements)
+def report_unused_variables(context: LintContext) -> None:
+    program = context.program
+    variables_used = ir.referenced_numbers("VARIABLE", context.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
-    for statement in look.statements:
-        if isinstance(statement, ir.Assign) and statement.variable not in used:
-            used.add(statement.variable)  # said once
+    for statement in context.statements:
+        if isinstance(statement, ir.Assign) and statement.variable not in variables_used:
+            variables_used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
             device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
             if statement.variable in owners:
                 values["own"] = owners[statement.variable].name
-            look.report(codes.UNUSED_VARIABLE, statement.span, **values)
+            context.report(codes.UNUSED_VARIABLE, statement.span, **values)
 
 
-def report_unused_readings(look: Look) -> None:
+def report_unused_readings(context: LintContext) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
-    asked = ir.referenced_numbers("SENSOR", look.statements)
-    for statement in look.statements:
-        if isinstance(statement, ir.Read) and statement.sensor not in asked:
-            asked.add(statement.sensor)  # said once
-            name = look.kit.readings[statement.sensor].name
-            look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
+    sensors_asked = ir.referenced_numbers("SENSOR", context.statements)
+    for statement in context.statements:
+        if isinstance(statement, ir.Read) and statement.sensor not in sensors_asked:
+            sensors_asked.add(statement.sensor)  # said once
+            name = context.kit.readings[statement.sensor].name
+            context.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
-def report_unused_defs(look: Look) -> None:
+def report_unused_defs(context: LintContext) -> None:
     called = {
-        statement.procedure for statement in look.statements if isinstance(statement, ir.Call)
+        statement.procedure for statement in context.statements if isinstance(statement, ir.Call)
     }
-    for number, procedure in enumerate(look.program.procedures):
+    for number, procedure in enumerate(context.program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
             values = {"name": procedure.name}
             if procedure.values:
-                names = ", ".join(look.program.variables[k] for k in procedure.values)
+                names = ", ".join(context.program.variables[k] for k in procedure.values)
                 values["usage"] = f"{procedure.name}({names})"
-            look.report(codes.UNUSED_DEF, span, **values)
+            context.report(codes.UNUSED_DEF, span, **values)

@@ -16,28 +16,29 @@ STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the r
 MOST_CHARACTERS = 120  # characters of a condition that a message can hold
 
 
-class Around(NamedTuple):
+class BodyContext(NamedTuple):
     """What a body is in: `loop` repeats it itself, `is_last` where the program ends with it."""
 
     loop: ir.Loop | ir.While | None = None
     is_repeated: bool = False  # by a loop, or in a DEF
     is_last: bool = False
-    asked: frozenset[int] = frozenset()  # sensors of the conditions around it
+    asked_sensors: frozenset[int] = frozenset()  # sensors of the conditions around it
     outermost: ir.Loop | ir.While | None = None  # of the loops around it
 
 
-class Look:
-    """A program before it is optimised, its text and tokens; `found` are its warnings so far."""
+class LintContext:
+    """A program before it is optimised, its text and tokens; `diagnostics` are its warnings so
+    far."""
 
-    def __init__(self, program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> None:
+    def __init__(self, program: ir.Program, kit: Kit, source: Source, scan: Scan) -> None:
         self.program = program
         self.kit = kit
         self.source = source
-        self.scan = scanned
-        self.found: list[Diagnostic] = []
+        self.scan = scan
+        self.diagnostics: list[Diagnostic] = []
 
     def report(self, code: Code, span: Span, **values: str) -> None:
-        self.found.append(Diagnostic(code, span, values))
+        self.diagnostics.append(Diagnostic(code, span, values))
 
     @cached_property
     def statements(self) -> list[ir.Statement | ir.Task]:
