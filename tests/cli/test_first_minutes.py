@@ -460,11 +460,11 @@ def test_board_says_where_the_build_looks(
     assert f"tsc firmware --board liner -o {home_of_it}   {then}" in done.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
     done = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
-    assert done.out.endswith("To build it:  pio run -d vm_arduino -e nano\n")
+    assert done.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
     up = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
-        f"To build it:  pio run -d {up} -e nano\n"
+        f"To build the firmware:  pio run -d {up} -e nano\n"
     )
 
 

@@ -232,11 +232,11 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     ]
     assert told(four.replace("start_button = 2", "start_button = 12")) == [
         "board.motors.driver: the shield uses pin 12 for LATCH, but board.start_button already"
-        " uses it. Use another pin there, or another motor here."
+        " uses it. Use another pin for board.start_button, or another motor of the shield."
     ]
     assert told(four.replace("M3 M4", "M2 M4")) == [
         "board.motors.right: the shield uses pin 3 for M2, but board.motors.left already uses it."
-        " Use another pin there, or another motor here."
+        " Use another pin for board.motors.left, or another motor of the shield."
     ]
     assert told(servo.replace("pin = 9", "pin = 4"))[0].startswith(
         "board.actuators.ARM.pin is pin 4, which board.motors.driver already uses."

@@ -262,7 +262,7 @@ class Scene:
     def _run(self) -> str:
         self.page.evaluate(LISTEN, SAID)
         self.page.click("#link_upload")
-        if not self._until("The robot has it|stopped", AGAIN_S):
+        if not self._until("The robot has the program|stopped", AGAIN_S):
             return f"no run: {self._said()}"
         end_s = CLOCK.now_s + AGAIN_S
         while not self.line.moves:

@@ -163,7 +163,7 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         assert max(radio.writes) == MOST
         write(page, FOREVER)
         page.click("#link_upload")
-        said(page, "The robot has it")
+        said(page, "The robot has the program")
         while not drives_now(radio.did):  # the radio is heard while the page is waited for
             page.wait_for_timeout(20)
         page.keyboard.press("Escape")

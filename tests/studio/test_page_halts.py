@@ -183,7 +183,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     said(page, "Stopped: ")
     debugging.press_margin(page, 5)
     page.click("#link_send")
-    said(page, "The robot has it")
+    said(page, "The robot has the program")
     page.click("#link_start")
     halts(page, 5)
 

@@ -112,7 +112,7 @@ def upload_until_it_runs(page: Page) -> None:
     word = page.locator("#link_said")
     for _ in range(UPLOADS):
         page.click("#link_upload")
-        word.filter(has_text=re.compile(r"The robot has it|Done\.|Stopped: ")).wait_for()
+        word.filter(has_text=re.compile(r"The robot has the program|Done\.|Stopped: ")).wait_for()
         if "Stopped: " not in word.inner_text():
             return
     raise AssertionError(f"stopped {UPLOADS} times")
@@ -127,7 +127,7 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     assert page.locator("#link_shown").inner_text() == "2.5\n1 < 2 TRUE"
     assert "MOTORS 80 80" in robot.did[before:]
     page.click("#link_send")
-    said(page, "The robot has it. ")
+    said(page, "The robot has the program. ")
     page.fill("#link_line", "SHOW(6 * 7)")
     page.keyboard.press("Enter")
     said(page, "Done.")
@@ -149,7 +149,7 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
     said(page, "The robot restarted, which ended its program.")
     assert not robot.moves
     page.click("#link_upload")  # the connection goes on
-    said(page, "The robot has it")
+    said(page, "The robot has the program")
     page.click("#stop")
     said(page, "Stopped: the robot has confirmed the stop.")
 
@@ -221,7 +221,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.fill("#trim_balance", "-7")
     page.check("#trim_left")
     page.click("#trim_set")
-    said(page, "The robot has saved it.")
+    said(page, "The robot has saved these settings.")
     pace = page.locator("#trim_pace")
     assert pace.inner_text() == "Its speed is estimated from its kit; tsc set trim measures it."
     page.click("#link_leave")
@@ -235,7 +235,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.locator("#trim_left:checked").wait_for(state="attached")
     assert page.input_value("#trim_balance") == "-7"
     page.click("#trim_set")  # leaves the pace
-    said(page, "The robot has saved it.")
+    said(page, "The robot has saved these settings.")
     assert pace.inner_text() == (
         "It drives 20 cm per second at 40 %, and 45 at 80 %."
         " It turns 100 degrees per second at 40 %, and 212.5 at 80 %."

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 STICK = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
 KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
-HAS_IT_OR_STANDS = re.compile("The robot has it|Stopped: ")
+HAS_IT_OR_STANDS = re.compile("The robot has the program|Stopped: ")
 PHONE, DESK = {"width": 390, "height": 844}, {"width": 1366, "height": 768}
 
 

@@ -150,7 +150,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
         does(page, "own")
     write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
     page.click("#link_upload" if way == "waits for it" else "#link_send")
-    said(page, re.compile("The robot has it.|Done."))
+    said(page, re.compile("The robot has the program.|Done."))
     rests(page)
     page.wait_for_timeout(1500)  # in which nothing begins by itself
     robot.push()
@@ -163,7 +163,7 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
 ) -> None:
     write(page, "LOOP(FOREVER);F(9, 80);END_LOOP")
     page.click("#link_send")
-    said(page, "The robot has it.")
+    said(page, "The robot has the program.")
     watch(page)
     robot.push()
     said(page, "The robot’s button ended “Watch the sensors”.")

@@ -358,7 +358,7 @@ def drives(page: Page, robot: PtyRobot) -> None:
     locator = page.locator("#link_said")
     for _ in range(UPLOADS):
         page.click("#link_upload")
-        locator.filter(has_text=re.compile("The robot has it|Stopped: ")).wait_for()
+        locator.filter(has_text=re.compile("The robot has the program|Stopped: ")).wait_for()
         robot.until(lambda: robot.moves or "Stopped: " in locator.inner_text(), "it drives")
         if robot.moves:
             return

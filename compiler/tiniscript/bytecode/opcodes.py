@@ -293,7 +293,7 @@ FAULTS = (
     # number, name, meaning: what stops a running program
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
-    (3, "NO_POWER",       "A move by `way`, with a power that never gets that far."),
+    (3, "NO_POWER",       "A move by `way` would never end at its power."),
     (4, "STUCK",          "Neither wheel turns in a move that the robot measures."),
     (5, "STUCK_LEFT",     "In such a move, the left wheel does not turn, but the right one does."),
     (6, "STUCK_RIGHT",    "In such a move, the right wheel does not turn, but the left one does."),

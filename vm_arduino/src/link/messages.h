@@ -167,7 +167,7 @@ enum class Answer : uint8_t {
   kUnknownMessage = 64,  // The robot's firmware does not know this message: it is older than this tsc.
   kBadLength = 65,  // A message had more or fewer bytes than the robot expects.
   kBadValue = 66,  // A message asked for something that does not exist.
-  kStale = 67,  // The robot was stopped or restarted after this was sent, so it did not do it.
+  kStale = 67,  // The robot was stopped or restarted after this was sent, so it did nothing.
   kOtherLink = 68,  // The robot uses version {detail} of the link; this tsc uses another one.
   kOtherMachine = 69,  // The robot runs programs of version {version}; this program is for another version.
   kWrongKit = 70,  // The program is for another kit; this robot's kit is {kit}.

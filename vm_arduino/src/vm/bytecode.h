@@ -313,7 +313,7 @@ enum class Fault : uint8_t {
   kNone = 0,  // It runs.
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
-  kNoPower = 3,  // A move by `way`, with a power that never gets that far.
+  kNoPower = 3,  // A move by `way` would never end at its power.
   kStuck = 4,  // Neither wheel turns in a move that the robot measures.
   kStuckLeft = 5,  // In such a move, the left wheel does not turn, but the right one does.
   kStuckRight = 6,  // In such a move, the right wheel does not turn, but the left one does.
