@@ -172,7 +172,7 @@ def test_nobody_something_else_and_another_version(
     sketch = "another sketch, not the TiniScript firmware. It sends: Hello from a sketch. Put"
     for said, answer in (
         (b"Hello from a sketch\r\n", sketch), (bytes(range(1, 256)) * 3, "not TiniScript"),
-        (b"\xff" * 99, "not TiniScript. Perhaps it uses another baud rate"),
+        (b"\xff" * 99, "not TiniScript. Perhaps the robot uses another baud rate"),
     ):  # fmt: skip
         timer = threading.Timer(0.3, pty_robot.say, [said])
         timer.start()

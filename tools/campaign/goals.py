@@ -90,7 +90,7 @@ GOALS: tuple[Goal, ...] = (
          "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", _code("@"), 1000),
     Goal("rows", "Tests that run on only a sample of rows for each commit also pass with every row: chips, random programs and codes.",
          "run of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal", ("compiler", "vm_arduino", "tests")),
-    Goal("pupils", "The messages about wrong programs, as pupils write them, have not changed; each repair helps and keeps the numbers; whatever is offered compiles.",
+    Goal("pupils", "The messages about programs with mistakes, as pupils write them, have not changed; each repair helps and keeps the numbers; whatever is offered compiles.",
          "run of all programs", 1, 1, "pytest tests/pupils tests/semantics/test_offered.py --whole -n 2 --dist worksteal", (*_COMPILER, *_code("recovery", "diagnostics", "languages"), "tests/pupils")),
     Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
          "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}", (*_code("@vm"), "tests/fuzz")),

@@ -164,7 +164,7 @@ constexpr uint8_t kReadVariablesFirstAt = 0;
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
   kOk = 0,  // The robot has done it.
-  kUnknownMessage = 64,  // The robot's firmware does not know this message: it is older than this tsc.
+  kUnknownMessage = 64,  // The robot's firmware is older than this tsc, and does not know this message.
   kBadLength = 65,  // A message had more or fewer bytes than the robot expects.
   kBadValue = 66,  // A message asked for something that does not exist.
   kStale = 67,  // The robot was stopped or restarted after this was sent, so it did nothing.
