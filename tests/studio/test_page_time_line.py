@@ -146,7 +146,7 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     read = set()
     for _ in range(5):
         if found := re.search(r"Line 3: DISTANCE > 3, yes: ([\d.]+) > 3\.", doing(page)):
-            assert doing(page).endswith("The task in line 1 had the motors."), doing(page)
+            assert doing(page).endswith("The task on line 1 had the motors."), doing(page)
             read.add(found[1])
         page.keyboard.press("ArrowRight")
     assert len(read) > 1
