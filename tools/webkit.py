@@ -119,12 +119,12 @@ def first_minute(page: Browser) -> None:
     page.data("phase", "ended")
 
 
-def mistake(page: Browser) -> None:
+def mistake(page: Browser, language: str = "es") -> None:
     page.run(
-        "const it = document.querySelector('#language'); it.value = 'es';"
+        f"const it = document.querySelector('#language'); it.value = '{language}';"
         "it.dispatchEvent(new Event('change', {bubbles: true}))"
     )
-    page.until("document.documentElement.lang === 'es'", "Spanish")
+    page.until(f"document.documentElement.lang === '{language}'", language)
     page.write("F(2, 80)\nAVANZA\n")
     page.until("/AVANZA/.test(document.querySelector('#messages').innerText)", "the message")
 
