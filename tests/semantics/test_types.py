@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tiniscript import check_text, robots
-from tiniscript.semantics.symbols import MOST_SUGGESTIONS
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 
 KIT = robots.load("tinibot").kit
 
@@ -28,11 +28,11 @@ def test_where_in_a_program_a_question_stands_does_not_matter() -> None:
 
 
 def test_a_name_of_two_sensors_is_told_which_until_there_are_enough_mistakes() -> None:
-    diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (MOST_SUGGESTIONS + 3)), KIT).diagnostics
-    assert len(diagnostics) == MOST_SUGGESTIONS + 3
+    diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (MOST_DIAGNOSTICS + 3)), KIT).diagnostics
+    assert len(diagnostics) == MOST_DIAGNOSTICS + 1
     assert (
         diagnostics[0].values["first"] == "LIGHT_R" and diagnostics[0].values["second"] == "LIGHT_L"
     )
     assert ["first" in diagnostic.values for diagnostic in diagnostics] == [
         True
-    ] * MOST_SUGGESTIONS + [False] * 3
+    ] * MOST_DIAGNOSTICS + [False]

@@ -20,8 +20,9 @@ from tiniscript.base.words import (
     names_argument,
 )
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 from tiniscript.semantics.named_values import value_of, yes_no_of
-from tiniscript.semantics.symbols import MOST_SUGGESTIONS, Scope
+from tiniscript.semantics.symbols import Scope
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 
@@ -111,7 +112,7 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int)
 def report_words_shown(scope: Scope, count: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `count`."""
     words_shown = dict.fromkeys(
-        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_SUGGESTIONS]
+        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_DIAGNOSTICS]
     )
     for k, each in enumerate(scope.diagnostics[count:], count):
         if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
@@ -125,9 +126,9 @@ def report_words_shown(scope: Scope, count: int) -> None:
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """Return the one name that `part` is a word of, or shortened: MI_VELOCIDAD for VELOCIDAD, VEL.
 
-    After MOST_SUGGESTIONS mistakes the names are not searched, so that a long program stays fast.
+    After MOST_DIAGNOSTICS mistakes the names are not searched, so that a long program stays fast.
     """
-    if part in names or len(scope.diagnostics) >= MOST_SUGGESTIONS:
+    if part in names or len(scope.diagnostics) >= MOST_DIAGNOSTICS:
         return ""
     whole_names = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
     return whole_names[0] if len(whole_names) == 1 else ""

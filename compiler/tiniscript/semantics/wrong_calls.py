@@ -26,13 +26,13 @@ from tiniscript.base.words import (
     Word,
 )
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.driven_on import find_move_end
 from tiniscript.semantics.left_out import rewrite_without_break
 from tiniscript.semantics.named_values import yes_no_of
-from tiniscript.semantics.symbols import MOST_SUGGESTIONS, Name, Scope
+from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_not_callable,
     report_placeholders,
@@ -172,7 +172,7 @@ class WrongCalls:
         values = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
         values["other"] = called + self.scope.source[node.span][len(node.word) :]
-        is_among_first = len(self.scope.diagnostics) < MOST_SUGGESTIONS
+        is_among_first = len(self.scope.diagnostics) < MOST_DIAGNOSTICS
         pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_among_first else ()
         wrong_pairs = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
         for one, other in (wrong_pairs, wrong_pairs[::-1]) if len(wrong_pairs) == 2 else ():

@@ -11,11 +11,12 @@ import re
 from tiniscript.base.source import Span
 from tiniscript.base.words import OPPOSITE_MOVES, WORDS
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.meanings import lexicon_meaning, meant_by
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
-from tiniscript.semantics.symbols import MOST_SUGGESTIONS, NUMBER, Operand, Scope
+from tiniscript.semantics.symbols import NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
 from tiniscript.syntax.ast import Def, Part
 from tiniscript.syntax.operators import SIGN_OF
@@ -54,7 +55,7 @@ class WrongValues:
             if not self._is_said(span):
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
-        names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
+        names = scope.names.items() if len(scope.diagnostics) < MOST_DIAGNOSTICS else ()
         known_names = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known_names += ["FOREVER"] if is_forever else []
@@ -80,7 +81,7 @@ class WrongValues:
         sensors = [each for each, meaning in names if meaning.kind == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
-                   for diagnostic in scope.diagnostics[-MOST_SUGGESTIONS:]):  # fmt: skip
+                   for diagnostic in scope.diagnostics[-MOST_DIAGNOSTICS:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, suggestion)
         else:
