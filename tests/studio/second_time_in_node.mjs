@@ -135,7 +135,8 @@ const PARTS = {
       notes.push(['given', given.text]);
       work.text = given.text;
     };
-    new Pupil({ panel, work, put: puts, empty: () => notes.push('empty') });
+    const views = { join: () => {}, showMates: () => {}, isBusy: false };
+    new Pupil({ panel, work, views, put: puts, empty: () => notes.push('empty'), newestRun: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
@@ -594,7 +595,7 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
-    const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: 'L', robot: 'tinibot', worlds: 2, world: {} }));
+    const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot: 'tinibot', worlds: 2, world: {} }));
     let late = () => 5;
     let verdict = '';
     let parts = 0;
@@ -770,7 +771,8 @@ const PARTS = {
     playsFetch((_, { body }) => room(JSON.parse(body)));
     const { pageState } = await page.load('page/page_state.js');
     const { Teacher } = await page.load('class/teacher.js');
-    new Teacher({ ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } });
+    const python = { ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } };
+    new Teacher({ python, openRun: async () => {} });
     await passes(10);
     const wall = page.byId('class').children.at(-2);
     const large = document.body.children.find(({ id }) => id === 'big_pupil');
@@ -805,7 +807,7 @@ const PARTS = {
         goes: () => { here.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
         speaks: () => { languages += 1; pageState.language.set('en'); },
-        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-3).click(); },
+        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-4).click(); },
         closes: () => large.close(),
         gives: () => giving.showModal(),
         waits: () => {},
@@ -1330,7 +1332,7 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
-    const LESSONS = [1, 2, 3].map((k) => ({ name: `lesson${k}`, title: `L${k}`, robot: 'tinibot', worlds: 1, world: {} }));
+    const LESSONS = [1, 2, 3].map((k) => ({ name: `lesson${k}`, title: `L${k}`, block_title: `L${k}`, robot: 'tinibot', worlds: 1, world: {} }));
     let late = () => 5;
     let fails = () => false;
     let world = 0;
@@ -1565,7 +1567,7 @@ const PARTS = {
       return answers(state);
     });
     const { Teacher } = await page.load('class/teacher.js');
-    new Teacher({ get ready() { return Promise.reject(new Broken()); }, ask() {} });
+    new Teacher({ python: { get ready() { return Promise.reject(new Broken()); }, ask() {} }, openRun: async () => {} });
     await passes(100);
     const within = (part) => (part ? [part, ...(part.children ?? []).flatMap(within)] : []);
     const parts = [page.byId('class'), ...document.body.children].flatMap(within);
