@@ -81,8 +81,8 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.report),": "report",
         "outputs.write(Path(options.record),": "record",  # of run, as a whole
         "outputs.write(Path(self.options.memory),": "memory",
-        "outputs.write(given.path,": "program",  # fmt, in place; check --fix of one program
-        "outputs.write(Path(given.name),": "programs",  # check --fix, in place
+        "outputs.write(program_input.path,": "program",  # fmt, in place; check --fix of one program
+        "outputs.write(Path(program_input.name),": "programs",  # check --fix, in place
         'path.open("a"': "csv",  # rows, and lines of a recording
         'path.open("w"': "record",
     }
