@@ -30,7 +30,7 @@ CUT = """() => {
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const holder = node.parentElement;
     if (!node.textContent.trim() || !holder.checkVisibility()) continue;
-    if (holder.closest('option, svg, #start_programs strong')) continue;
+    if (holder.closest('option, svg, #start_programs strong, .tiles strong')) continue;
     if (holder.getBoundingClientRect().width < 2) continue;
     range.selectNodeContents(node);
     const text = range.getBoundingClientRect();
