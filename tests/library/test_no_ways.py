@@ -79,7 +79,7 @@ def test_a_move_without_power_is_explained() -> None:
     for text in ("F(5 CM, 0)", "X = 0; F(5 CM, X + TIME)"):
         done = inside("run", "-e", text, "--lang", "es")
         assert done.code == 1 and done.out == "0 FAULT NO_POWER\n"
-        assert "nunca llega" in done.err
+        assert "nunca terminaría" in done.err
 
 
 @pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
