@@ -15,6 +15,7 @@ import pytest
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_lost import lose_answer, refuse, tears
 from tests.support import studio
+from tests.support.class_pages import joined, said, teaches
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import (
@@ -108,23 +109,8 @@ def ana(first: Page, pages: Pages, taught: Class, robot: PtyRobot) -> Iterator[P
     first.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
-def said(page: Page, text: str) -> None:
-    page.locator("#class_pupil [role=status]").filter(has_text=text).wait_for()
-
-
 def linked(page: Page, text: str) -> None:
     page.locator("#link_said").filter(has_text=text).wait_for()
-
-
-def joined(pages: Pages, taught: Class, name: str) -> Page:
-    page = pages.open()
-    page.click("#side_real")
-    page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
-    page.locator("#class_pupil input").nth(1).fill(name)
-    page.dblclick("[data-text=class_join]")
-    said(page, "You are in the class, ")
-    assert f"{name} (2)" not in json.dumps(taught.room.teach({"do": "class"})["pupils"])
-    return page
 
 
 def tile(teacher: Page, name: str) -> Locator:
@@ -142,12 +128,6 @@ def only_ana(taught: Class) -> None:
 
 def asks(page: Page) -> None:
     page.click("[data-text=class_ask]")
-
-
-def teaches(pages: Pages, taught: Class) -> Page:
-    page = pages.visit(taught.server.entrance(), "wall")
-    page.locator("[data-teacher=class_count]").wait_for(state="attached")
-    return page
 
 
 def test_three_pupils_share_a_robot(

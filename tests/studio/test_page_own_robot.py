@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_class import joined, teaches
 from tests.studio.test_page_lessons import FOLDERS, check, choose
 from tests.studio.test_page_watching import NOTING
 from tests.support import studio
+from tests.support.class_pages import joined, teaches
 from tests.support.studio import Pages, axe, colors_of, enter, hears, in_phase, write
 from tiniscript.lessons import catalogue
 

@@ -7,13 +7,21 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_class import joined, said, teaches
-from tests.support import studio
+from tests.support.class_pages import (
+    class_of_many,
+    enters,
+    goes_to,
+    has,
+    joined,
+    lines,
+    said,
+    teaches,
+    types,
+)
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Class, Pages, drives, image, write
 from tests.support.waiting import until
 from tiniscript import compile, robots
-from tiniscript.studio.class_keeping import MOST_PUPILS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -23,8 +31,7 @@ PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with studio.taught([]) as made:
-        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
+    with class_of_many() as made:
         yield made
 
 
@@ -44,36 +51,6 @@ def two(pages: Pages, taught: Class) -> tuple[Page, Page]:
     for page in (ana, luz):
         enters(page)
     return ana, luz
-
-
-def enters(page: Page) -> None:
-    page.locator("#class_group input").fill("Red")
-    page.click("[data-text=group_join]")
-    page.locator("html[data-group=in]").wait_for(state="attached")
-
-
-def lines(page: Page) -> list[str]:
-    found = page.evaluate("""() => { const root = document.querySelector('#editor').shadowRoot;
-        return [...root.querySelectorAll('.cm-line')].map((line) => {
-          const copy = line.cloneNode(true);
-          for (const name of copy.querySelectorAll('.cm-mate')) name.remove();
-          return copy.textContent; }); }""")
-    return [str(row) for row in found]
-
-
-def has(page: Page, *rows: str) -> None:
-    until(lambda: [row.strip() for row in lines(page) if row.strip()] == list(rows),
-          f"{rows}, but {lines(page)}", 30)  # fmt: skip
-
-
-def goes_to(page: Page, row: str) -> None:
-    """Press at the end of a line."""
-    page.locator(".cm-line").filter(has_text=row).first.click()
-    page.keyboard.press("End")
-
-
-def types(page: Page, text: str) -> None:
-    page.keyboard.type(text, delay=20)
 
 
 def begins(two: tuple[Page, Page]) -> None:

@@ -16,13 +16,11 @@ import pytest
 
 from tests.studio.test_page_blocks import PROGRAM as PROGRAM_BLOCKS
 from tests.studio.test_page_blocks import block, box_of, drag
-from tests.studio.test_page_class import joined
-from tests.studio.test_page_together import enters, goes_to, has, lines, types
 from tests.support import studio
+from tests.support.class_pages import class_of_many, enters, goes_to, has, joined, lines, types
 from tests.support.studio import Class, Pages, image, shown, write
 from tests.support.waiting import until
 from tiniscript import compile
-from tiniscript.studio.class_keeping import MOST_PUPILS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -39,8 +37,7 @@ ROWS = [row.strip() for row in PROGRAM.splitlines()]
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with studio.taught([]) as made:
-        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
+    with class_of_many() as made:
         yield made
 
 
@@ -106,6 +103,15 @@ def ends(two: tuple[Page, Page], *rows: str) -> None:
         until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
 
 
+def changes_power(page: Page, row: str) -> None:
+    """Write 95 in place of a power in the text."""
+    goes_to(page, row)
+    for _ in range(4):
+        page.keyboard.press("Backspace")
+    types(page, "95)")
+    page.keyboard.press("ArrowDown")
+
+
 def changed(*pairs: tuple[str, str]) -> list[str]:
     return [dict(pairs).get(row, row) for row in ROWS]
 
@@ -151,11 +157,7 @@ def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) ->
     ana, luz = two
     field(ana, "back")
     types(ana, "6")
-    goes_to(luz, "B(1, 40)")
-    for _ in range(4):
-        luz.keyboard.press("Backspace")
-    types(luz, "95)")
-    luz.keyboard.press("ArrowDown")
+    changes_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
     ends(two, *changed(("B(1, 40);", "B(6, 40);")))
@@ -197,11 +199,7 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     ends(two, *ROWS, "W(2);")
     ana.click("#redo")
     ends(two, *changed(("B(1, 40);", "B(7, 40);")), "W(2);")
-    goes_to(luz, "B(7, 40)")
-    for _ in range(4):
-        luz.keyboard.press("Backspace")
-    types(luz, "95)")
-    luz.keyboard.press("ArrowDown")
+    changes_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
     shown(ana)
     ana.click("#undo")  # what was his is another one's now
@@ -223,25 +221,28 @@ def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
     name.filter(has_text="Ana").wait_for()
 
 
-def random_change(page: Page, has_blocks: bool, rng: Random) -> None:
-    """Do something as a person does it: in blocks to a number, in text to a line."""
+def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
+    """Do something as a person does it: in blocks to a number, in text to a line. Return whether
+    it was still there."""
+    from playwright.sync_api import Error
+
     if has_blocks:
         found = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
         which = rng.randrange(max(1, found.count()))
         try:
             found.nth(which).click(timeout=3000)
-        except Exception:  # others have taken it away meanwhile
-            return
+        except Error:  # others have taken it away meanwhile
+            return False
         page.keyboard.press("Control+a")
         types(page, f"{rng.randrange(1, 60)}\n")
-        return
+        return True
     rows = [row for row in lines(page) if row.strip()]
     row = rng.choice(rows)
     at = page.locator(".cm-line").filter(has_text=row.strip()).first
     try:
         at.click(timeout=3000)
-    except Exception:  # others have changed it meanwhile
-        return
+    except Error:  # others have changed it meanwhile
+        return False
     page.keyboard.press("End")
     if rng.random() < 0.3 and len(rows) > 5 and not row.strip().startswith(("LOOP", "END_")):
         for key in ("Home", "Shift+End", "Delete"):
@@ -249,15 +250,18 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> None:
     else:
         types(page, f"\n{rng.choice('FBRL')}({rng.randrange(1, 9)}, {rng.randrange(20, 99)})")
     page.keyboard.press("ArrowUp")
+    return True
 
 
 def race(two: tuple[Page, Page], count: int, seed: int) -> None:
     """Let both change the program, and look at the end whether all is one."""
     ana, luz = two
     rng = Random(seed)
+    done = 0
     for _ in range(count):
         page = rng.choice(two)
-        random_change(page, page is ana, rng)
+        done += random_change(page, page is ana, rng)
+    assert done > count / 2
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     until(lambda: text_of(ana).strip() == text_of(luz).strip(), "both have the same", 60)
     shown(ana)

@@ -75,7 +75,9 @@ def read(
     wrong = mistaken_lines(text)
     if wrong:
         raise Unparsed(wrong)
-    first_lines = [piece.first_line for piece in pieces_of(scan(text))]
+    first_lines: list[int] = []  # before the formatter lays it out
+    if places is not None:
+        first_lines = [piece.first_line for piece in pieces_of(scan(text))]
     if not is_laid_out:
         text = format_source(Source(text))
     numbers = count(1)
@@ -103,7 +105,7 @@ def read(
         node = Node(name(), kind, said, note, piece.after_blank, parent=open_blocks[-1])
         tree.nodes[node.id] = node
         tree[open_blocks[-1]].inside.append(node.id)
-        if places is not None and k < len(first_lines):
+        if places is not None:
             places[node.id] = first_lines[k]
         if node.kind == BLOCK:
             open_blocks.append(node.id)

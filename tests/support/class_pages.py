@@ -1,0 +1,75 @@
+"""Pages of a class: pupils who have joined it, a group of them, and their teacher."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from tests.support import studio
+from tests.support.studio import Class, Pages
+from tests.support.waiting import until
+from tiniscript.studio.class_keeping import MOST_PUPILS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+
+@contextmanager
+def class_of_many() -> Iterator[Class]:
+    """A class without a robot, with room for all at one address."""
+    with studio.taught([]) as made:
+        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        yield made
+
+
+def said(page: Page, text: str) -> None:
+    page.locator("#class_pupil [role=status]").filter(has_text=text).wait_for()
+
+
+def joined(pages: Pages, taught: Class, name: str) -> Page:
+    page = pages.open()
+    page.click("#side_real")
+    page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
+    page.locator("#class_pupil input").nth(1).fill(name)
+    page.dblclick("[data-text=class_join]")
+    said(page, "You are in the class, ")
+    assert f"{name} (2)" not in json.dumps(taught.room.teach({"do": "class"})["pupils"])
+    return page
+
+
+def teaches(pages: Pages, taught: Class) -> Page:
+    page = pages.visit(taught.server.entrance(), "wall")
+    page.locator("[data-teacher=class_count]").wait_for(state="attached")
+    return page
+
+
+def enters(page: Page) -> None:
+    page.locator("#class_group input").fill("Red")
+    page.click("[data-text=group_join]")
+    page.locator("html[data-group=in]").wait_for(state="attached")
+
+
+def lines(page: Page) -> list[str]:
+    found = page.evaluate("""() => { const root = document.querySelector('#editor').shadowRoot;
+        return [...root.querySelectorAll('.cm-line')].map((line) => {
+          const copy = line.cloneNode(true);
+          for (const name of copy.querySelectorAll('.cm-mate')) name.remove();
+          return copy.textContent; }); }""")
+    return [str(row) for row in found]
+
+
+def has(page: Page, *rows: str) -> None:
+    until(lambda: [row.strip() for row in lines(page) if row.strip()] == list(rows),
+          f"{rows}, but {lines(page)}", 30)  # fmt: skip
+
+
+def goes_to(page: Page, row: str) -> None:
+    """Press at the end of a line."""
+    page.locator(".cm-line").filter(has_text=row).first.click()
+    page.keyboard.press("End")
+
+
+def types(page: Page, text: str) -> None:
+    page.keyboard.type(text, delay=20)
