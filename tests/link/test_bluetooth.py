@@ -25,6 +25,7 @@ from tests.support.ble_robot import (
 )
 from tests.support.command import LONG, Command, inside
 from tests.support.fake_bluez import ADVERTISED_S, FakeBluez
+from tests.support.interrupted import interrupted_bell
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript.link import known_ports
@@ -124,12 +125,9 @@ def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) ->
 
 
 def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object) -> None:
-        until(lambda: bluez.adapter.is_scanning, "it searches")
-        raise KeyboardInterrupt
-
+    bell = interrupted_bell(lambda: until(lambda: bluez.adapter.is_scanning, "it searches"))
     with monkeypatch.context() as patch:
-        patch.setattr(event_loop, "wait", interrupted)
+        patch.setattr(event_loop, "Bell", bell)
         assert inside("doctor", "--identify", "--port", "ble://nobody").code == 2
     until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 

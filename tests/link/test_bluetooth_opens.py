@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
-from concurrent import futures
+from time import sleep
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +15,7 @@ pytest.importorskip("bleak", reason="no bleak: pip install tiniscript[radio]")
 
 from bleak.exc import BleakDeviceNotFoundError, BleakError
 
+from tests.support.interrupted import interrupted_bell
 from tiniscript.link import errors
 from tiniscript.link.errors import PortError
 from tiniscript.link.transports import bluetooth, event_loop
@@ -157,12 +158,9 @@ def test_ctrl_c_leaves_the_device(
     device = Device()
     device.fails_at = stage
 
-    def press(*words: Any) -> Any:
-        futures.wait(*words)
-        raise KeyboardInterrupt
-
+    bell = interrupted_bell(lambda: sleep(event_loop.LOOK_S))
     with monkeypatch.context() as pressed:
-        pressed.setattr("tiniscript.link.transports.event_loop.wait", press)
+        pressed.setattr(event_loop, "Bell", bell)
         with pytest.raises(KeyboardInterrupt):
             connects_until(loop, device, pressed)
     assert device.clients == []

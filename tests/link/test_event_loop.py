@@ -8,6 +8,7 @@ import threading
 import pytest
 
 from tests.support.command import Command
+from tests.support.interrupted import interrupted_bell
 from tiniscript.link.transports import event_loop
 from tiniscript.link.transports.event_loop import EventLoop
 
@@ -51,13 +52,8 @@ def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
 
 def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> None:
     loop, endless = EventLoop(), Endless()
-
-    def interrupted(*_: object) -> None:
-        assert endless.has_begun.wait(100)
-        raise KeyboardInterrupt
-
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(event_loop, "wait", interrupted)
+        patch.setattr(event_loop, "Bell", interrupted_bell(lambda: endless.has_begun.wait(100)))
         loop.run(endless.work(), 100)
     assert endless.is_cancelled
     loop.close()

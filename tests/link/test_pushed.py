@@ -12,7 +12,7 @@ from tiniscript.link.transports.pushed import END_REASON, KEPT_BYTES, PushedTran
 
 
 class Waits:
-    """The condition of one thread, which counts how often it would have waited.
+    """The bell of one thread, which counts how often it would have waited.
 
     What comes meanwhile is brought by `then`.
     """
@@ -22,14 +22,8 @@ class Waits:
         self.then: list[bytes] = []
         self.port: PushedTransport | None = None
 
-    def __enter__(self) -> None:
+    def ring(self) -> None:
         """Nobody else is there."""
-
-    def __exit__(self, *_: object) -> None:
-        """The same."""
-
-    def notify_all(self) -> None:
-        """The same."""
 
     def wait(self, limit_s: float) -> None:
         assert limit_s == READ_S

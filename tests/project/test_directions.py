@@ -158,3 +158,17 @@ def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
         "assert main(['upload', '-e', 'SI|S', '--virtual', '--hurry', 'max']) == 0"
     )
     assert not {"rich", "rich.console"} & modules
+
+
+def test_nothing_that_ctrl_c_may_interrupt_waits_in_python() -> None:
+    """It waits at a Bell: a Condition keeps its lock, or gives it back twice."""
+    written_in_python = {"Barrier", "BoundedSemaphore", "Condition", "Event", "Semaphore", "Timer"}
+    for stage in ("base", "cli", "doctor", "library", "link", "virtual"):
+        for path in (PACKAGE / stage).rglob("*.py"):
+            imported = {
+                alias.name
+                for node in ast.walk(ast.parse(path.read_text("utf-8")))
+                if isinstance(node, ast.ImportFrom) and node.module == "threading"
+                for alias in node.names
+            }
+            assert not imported & written_in_python, path

@@ -39,6 +39,9 @@ class Terminal:
         """With `types` standard input is the terminal, else nothing."""
         self._ours, theirs = pty.openpty()
         fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        modes = termios.tcgetattr(theirs)
+        modes[3] |= termios.NOFLSH  # after Ctrl-C the system may drop what is written since
+        termios.tcsetattr(theirs, termios.TCSANOW, modes)
         kept = {name: value for name, value in os.environ.items() if name not in HIDDEN}
         with output.open("wb") if output else nullcontext(theirs) as out:
             self.process = subprocess.Popen(

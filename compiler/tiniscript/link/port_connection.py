@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from threading import Condition, Thread
+from threading import RLock, Thread
 from time import monotonic
 from typing import IO, Any, TypeVar
 
 import serial
 
+from tiniscript.base.bell import Bell
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Backlog, ConnectionLost, Event, TimedEvent
 from tiniscript.link.requests import DeviceInfo, Reply
@@ -52,7 +53,8 @@ class PortConnection(LinkConnection):
         self._port = port
         self._now_ms: Callable[[], int] = getattr(port, "now_ms", now_ms)
         self._lock = lock
-        self._news = Condition()
+        self._turn = RLock()  # of the session and of what is kept here
+        self._news = Bell()
         self._events = Backlog()
         self._under_way: list[PendingRequest[Any]] = []
         self._listener: Callable[[list[TimedEvent]], None] | None = None
@@ -77,7 +79,7 @@ class PortConnection(LinkConnection):
         return self._gone is not None
 
     def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        with self._news:
+        with self._turn:
             request = make(self.session)
             self._under_way.append(request)
         self._wake()
@@ -85,20 +87,19 @@ class PortConnection(LinkConnection):
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         while True:
-            with self._news:
-                if request.outcome is None and self._gone is None:
-                    self._news.wait(LOOK_S)
+            with self._turn:
                 if request.outcome is not None:
                     return request.outcome
                 if self._gone is not None:
                     raise self._bug or ConnectionLost(self._gone)
+            self._news.wait(LOOK_S)
             if look is not None:
                 look()
 
     def event(self, limit_s: float = LOOK_S) -> TimedEvent | None:
-        with self._news:
-            if not self._events and self._gone is None:
-                self._news.wait(limit_s)
+        if not self._events and self._gone is None:
+            self._news.wait(limit_s)
+        with self._turn:
             if self._events:
                 return self._events.take()
             if self._gone is not None:
@@ -106,7 +107,7 @@ class PortConnection(LinkConnection):
         return None
 
     def stop(self) -> int:
-        with self._news:
+        with self._turn:
             began_ms = self._now_ms()
             self.session.stop(began_ms)
         self._wake()
@@ -114,13 +115,13 @@ class PortConnection(LinkConnection):
 
     def end_run(self, run: int) -> None:
         """End a run whose client has gone; what others have asked for goes on."""
-        with self._news:
+        with self._turn:
             self.session.end_run(run, self._now_ms())
         self._wake()
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
         """Do no more of a request whose client has gone."""
-        with self._news:
+        with self._turn:
             self.session.withdraw(request)
 
     def tell_places(self) -> None:
@@ -128,9 +129,9 @@ class PortConnection(LinkConnection):
 
     def tell(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
-        with self._news:
+        with self._turn:
             self._events.put([(self._now_ms(), event)])
-            self._news.notify_all()
+            self._news.ring()
 
     def fail(self, bug: Exception) -> None:
         """End the line because of a bug of ours, which is passed to the waiting caller."""
@@ -142,16 +143,16 @@ class PortConnection(LinkConnection):
 
         The line's thread makes the call, and is blocked until it returns.
         """
-        with self._news:
+        with self._turn:
             self._listener = listener
 
     def runs(self, run: int) -> bool:
         """Return whether a run that was started here is still running."""
-        with self._news:
+        with self._turn:
             return self.session.is_running and self.session.run == run
 
     def close(self) -> None:
-        with self._news:
+        with self._turn:
             self._is_closing = True
         self._wake()
         self._thread.join(2 * LOOK_S)
@@ -172,14 +173,14 @@ class PortConnection(LinkConnection):
     def _run(self) -> None:
         try:
             while not self._is_closing:
-                with self._news:
+                with self._turn:
                     data = self.session.poll(self._now_ms())
                     self._notify()
                 if data:
                     self._write(data)
                 heard = self._read()
                 if heard:
-                    with self._news:
+                    with self._turn:
                         self.note_heard(heard)
                         self.session.receive(heard, self._now_ms())
                         self._notify()
@@ -189,9 +190,9 @@ class PortConnection(LinkConnection):
             self.fail(bug)
 
     def _end(self, why: str) -> None:
-        with self._news:
+        with self._turn:
             self._gone = why
-            self._news.notify_all()
+            self._news.ring()
             if self._listener is not None:
                 self._listener([])
 
@@ -217,6 +218,6 @@ class PortConnection(LinkConnection):
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in messages)
         mine = [item for item in messages if self._takes_places or item[1].name != "PLACE"]
         self._events.put(mine)
-        self._news.notify_all()
+        self._news.ring()
         if self._listener is not None and (messages or over):
             self._listener(messages)

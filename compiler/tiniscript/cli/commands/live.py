@@ -262,27 +262,32 @@ class Repl:
         self.connection.say("live_hello")
         with _history(self.known):
             while True:
-                self._print_pending_events()
                 try:
-                    line = self.read_block(input(PROMPT), lambda: input(MORE))
-                except EOFError:
-                    print()
-                    return 0
+                    if self._read_and_run():
+                        return 0
                 except KeyboardInterrupt:
                     self._stop()
-                    continue
-                if self._report_time_limit():
-                    return 0
-                self._print_pending_events()
-                request = requested_command(line, self.known)
-                if request == LEAVE:
-                    return 0
-                if request == HELP_ME:
-                    print(self._help())
-                elif line.strip():
-                    self._try(line)
-                    if self.connection.is_time_over:  # already printed
-                        return 0
+
+    def _read_and_run(self) -> bool:
+        """Run what a person types next; return whether that was the last of it."""
+        self._print_pending_events()
+        try:
+            line = self.read_block(input(PROMPT), lambda: input(MORE))
+        except EOFError:
+            print()
+            return True
+        if self._report_time_limit():
+            return True
+        self._print_pending_events()
+        request = requested_command(line, self.known)
+        if request == LEAVE:
+            return True
+        if request == HELP_ME:
+            print(self._help())
+        elif line.strip():
+            self._try(line)
+            return self.connection.is_time_over  # printed already
+        return False
 
     def _try(self, line: str) -> None:
         """Run a line; print any failure, and go on with the session."""

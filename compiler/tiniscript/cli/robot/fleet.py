@@ -11,10 +11,11 @@ from argparse import Namespace
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from threading import Event, Thread
+from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from tiniscript.base.bell import Bell
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
@@ -89,7 +90,7 @@ class Fleet:
         self.robot = robot
         self.language = language
         self.is_interrupted = False
-        self._news = Event()
+        self._news = Bell()
         self._attend: Callable[[], None] = getattr(options, "attend", lambda: None)
 
     def begin(self, work: Work) -> None:
@@ -111,7 +112,6 @@ class Fleet:
                     table.draw()
                 else:
                     self._news.wait(LOOK_INTERVAL_S)
-                    self._news.clear()
                 self._refuse_unread()
                 self._print_results(untold, table)
             except KeyboardInterrupt:
@@ -156,7 +156,6 @@ class Fleet:
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
             self._news.wait(LOOK_INTERVAL_S)
-            self._news.clear()
 
     def interrupt(self) -> None:
         """Stop every robot."""
@@ -197,7 +196,7 @@ class Fleet:
         except Exception as bug:
             member.bug = bug
             member.result = Result(False, "")
-        self._news.set()
+        self._news.ring()
 
     def _connect(self, member: Member, work: Work) -> None:
         member_options = Namespace(**{**vars(self.options), "port": member.target.port})

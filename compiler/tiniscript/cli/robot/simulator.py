@@ -9,10 +9,11 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections import deque
-from threading import Condition
+from threading import RLock
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from tiniscript.base.bell import Bell
 from tiniscript.base.trace import Event
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
@@ -64,7 +65,8 @@ class CommandSimulator(SimulatorThread):
         self._is_watched = False  # `watch` was called
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
-        self._drawing = Condition()
+        self._drawing = RLock()
+        self._drawn = Bell()
         self._undrawn: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._told: deque[Event] = deque(maxlen=MOST_EVENTS)  # what `told_ms` may be asked for
         self._rounds = 0  # rounds after which the picture is up to date
@@ -127,13 +129,15 @@ class CommandSimulator(SimulatorThread):
         expected = "STOP" if event == "STOPPED" else event
 
         def has_event() -> bool:
-            return any(event.text == expected for event in self._told)
+            with self._drawing:
+                return any(event.text == expected for event in self._told)
 
+        is_told = expected.partition(" ")[0] in TOLD_EVENTS and self._drawn.wait_until(
+            has_event, LONGEST_ROUND_S
+        )
         with self._drawing:
             started_ms = self.robot.started_ms or 0
-            if expected.partition(" ")[0] not in TOLD_EVENTS or not self._drawing.wait_for(
-                has_event, LONGEST_ROUND_S
-            ):
+            if not is_told:
                 return self.robot.now_ms - started_ms
             while True:
                 result = self._told.popleft()
@@ -142,10 +146,11 @@ class CommandSimulator(SimulatorThread):
 
     def unwatch(self) -> None:
         """Stop drawing; the last picture stays."""
-        with self._drawing:
-            if self.screen is not None:
+        if self.screen is not None:
+            with self._drawing:
                 due = self._rounds + 1  # the newest events are still to come
-                self._drawing.wait_for(lambda: self._rounds >= due, LONGEST_ROUND_S)
+            self._drawn.wait_until(lambda: self._rounds >= due, LONGEST_ROUND_S)
+        with self._drawing:
             screen, self.screen = self.screen, None
             if screen is not None:
                 if self._picture is not None:
@@ -189,7 +194,7 @@ class CommandSimulator(SimulatorThread):
                 self._frame_s = monotonic() + FRAME_S
                 self._draw(self.screen)
             self._rounds += 1
-            self._drawing.notify_all()
+        self._drawn.ring()
 
     def _draw(self, screen: Screen) -> None:
         if self._picture is not None:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import sys
+from _thread import allocate_lock, start_new_thread
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import TYPE_CHECKING
 
+from tiniscript.base.bell import Bell
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import reads_sequences
 from tiniscript.cli.texts import text
-
-if TYPE_CHECKING:
-    from threading import Timer
 
 BLINK_INTERVAL_S = 0.3
 BAR_COLUMNS = 30
@@ -77,35 +75,30 @@ NEW_WAIT_PAUSE_S = 0.5
 
 
 class Silence:
-    """Somebody waits, and has been told nothing yet, or `is_told`.
-
-    Where nobody looks on, nothing is imported.
-    """
+    """Somebody waits, and has been told nothing yet, or `is_told`."""
 
     def __init__(self, sentence: str) -> None:
         self.is_told = False
         self._said = sentence
-        self._timer: Timer | None = None
+        self._is_over = Bell()
+        self._is_cancelled = False
+        self._printing = allocate_lock()
         if sys.stderr.isatty():
-            import threading
-
-            self._lock = threading.Lock()
-            self._timer = threading.Timer(SILENCE_LIMIT_S, self._print_wait)
-            self._timer.daemon = True
-            self._timer.start()
+            start_new_thread(self._print_wait, ())  # a Thread waits, in Python, until it runs
 
     def _print_wait(self) -> None:
-        with self._lock:
-            if self._timer is not None:
+        if self._is_cancelled or self._is_over.wait(SILENCE_LIMIT_S):
+            return
+        with self._printing:
+            if not self._is_cancelled:
                 self.is_told = True
                 print(self._said, file=sys.stderr, flush=True)
 
     def cancel(self) -> None:
         """From now on nothing is said."""
-        if self._timer is not None:
-            self._timer.cancel()
-            with self._lock:
-                self._timer = None
+        self._is_over.ring()
+        with self._printing:
+            self._is_cancelled = True
 
 
 class Quiet:

@@ -13,13 +13,14 @@ import re
 import ssl
 from contextlib import suppress
 from pathlib import Path
-from threading import Condition, Lock
+from threading import Lock, RLock
 from time import monotonic
 from typing import Any, NamedTuple
 
 import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion
 
+from tiniscript.base.bell import Bell
 from tiniscript.link import errors
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
@@ -163,7 +164,8 @@ class Broker:
         self.gone = ""
         self.peer = os.urandom(4).hex()
         self.driver_s: float | None = None  # when the driver was heard last; None: nobody attends
-        self._news = Condition()
+        self._turn = RLock()
+        self._news = Bell()
         self._here: dict[str, dict[str, Present]] = {}
         self._told_s = 0.0  # when a robot was told, or a request was answered
         self._acknowledged: set[int] = set()
@@ -182,7 +184,7 @@ class Broker:
     def robot(self, group: str, robot: str) -> BrokerPort:
         """Return the port of a robot, which may be there or not. Raises PortError."""
         port = BrokerPort(self, group, robot)
-        with self._news:
+        with self._turn:
             if self.gone:
                 raise PortError(errors.UNREACHABLE, self.gone)
             self._ports[group, robot] = port
@@ -197,14 +199,15 @@ class Broker:
         """
         assert is_class(group)
         end_s = monotonic() + LIST_S
-        with self._news:
+        with self._turn:
             self._here[group] = {}
             topics = [f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"]
             asked = {self._client.subscribe(topic)[1] or 0 for topic in topics}
-            while monotonic() < end_s and not self.gone:
-                if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
-                    break
-                self._news.wait(READ_S)
+        while monotonic() < end_s and not self.gone:
+            if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
+                break
+            self._news.wait(READ_S)
+        with self._turn:
             result = list(self._here.pop(group).values())
             is_whole = asked <= self._acknowledged
             self._acknowledged -= asked
@@ -245,7 +248,7 @@ class Broker:
 
     def forget(self, port: BrokerPort) -> None:
         """Let another client have the robot."""
-        with self._news:
+        with self._turn:
             if self._ports.get((port.group, port.robot)) is port:
                 del self._ports[port.group, port.robot]
         with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
@@ -270,10 +273,9 @@ class Broker:
             raise PortError(errors.UNREACHABLE, _error_text(why)) from None
         self._client.loop_start()
         end_s = monotonic() + CONNECT_S
-        with self._news:
-            while self._reason is None and not self.gone and monotonic() < end_s:
-                self._news.wait(READ_S)
-            reason = self._reason
+        while self._reason is None and not self.gone and monotonic() < end_s:
+            self._news.wait(READ_S)
+        reason = self._reason
         if reason == "":
             return
         self.close()
@@ -283,20 +285,20 @@ class Broker:
 
     def _on_connect(self, *rest: Any) -> None:
         code = rest[3]
-        with self._news:
+        with self._turn:
             self._reason = str(code) if code.is_failure else ""
-            self._news.notify_all()
+            self._news.ring()
 
     def _on_subscribe(self, _: Any, __: Any, number: int, *rest: Any) -> None:
-        with self._news:
+        with self._turn:
             self._acknowledged.add(number)
             self._told_s = monotonic()
-            self._news.notify_all()
+            self._news.ring()
 
     def _on_disconnect(self, *_: Any) -> None:
-        with self._news:
+        with self._turn:
             self.gone = self.gone or self._client.too_large or "the broker has gone"
-            self._news.notify_all()
+            self._news.ring()
             for port in self._ports.values():
                 port.end(self.gone)
 
@@ -305,7 +307,7 @@ class Broker:
             words = message.topic.split("/")
         except UnicodeDecodeError:
             return
-        with self._news:
+        with self._turn:
             if len(words) == 3:
                 self._take_presence(words[1], words[2], bytes(message.payload))
             elif len(words) == 5 and not message.retain:
@@ -323,7 +325,7 @@ class Broker:
         name = payload[1:].decode("utf-8", "replace")
         here[robot] = Present(robot, name, payload[:1] == b"+")
         self._told_s = monotonic()
-        self._news.notify_all()
+        self._news.ring()
 
 
 class BrokerPort(PushedTransport):

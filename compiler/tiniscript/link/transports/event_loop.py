@@ -9,11 +9,12 @@ from __future__ import annotations
 import asyncio
 import atexit
 from collections.abc import Coroutine
-from concurrent.futures import wait
 from contextlib import suppress
-from threading import Event, Lock, Thread
+from threading import Lock, Thread
 from time import monotonic
 from typing import Any, TypeVar
+
+from tiniscript.base.bell import Bell
 
 LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C interrupts nothing that waits
 CANCEL_S = 1.0  # timeout of what has been cancelled
@@ -36,25 +37,24 @@ class EventLoop:
 
         After the time limit, or Ctrl-C, the coroutine is cancelled.
         """
-        is_over = Event()
+        is_over = Bell()
+        tasks: list[asyncio.Task[T]] = []
 
-        async def work() -> T:
-            try:
-                return await coroutine
-            finally:
-                is_over.set()
+        def begin() -> None:
+            tasks.append(self._loop.create_task(coroutine))
+            tasks[0].add_done_callback(lambda _: is_over.ring())
 
-        future = asyncio.run_coroutine_threadsafe(work(), self._loop)
+        self._loop.call_soon_threadsafe(begin)
         end_s = monotonic() + limit_s
         try:
-            while not wait([future], max(0.0, min(LOOK_S, end_s - monotonic()))).done:
+            while not is_over.wait(max(0.0, min(LOOK_S, end_s - monotonic()))):
                 if monotonic() >= end_s:
                     raise TimeoutError
         except BaseException:
-            future.cancel()
+            self._loop.call_soon_threadsafe(lambda: tasks[0].cancel())
             is_over.wait(CANCEL_S)
             raise
-        return future.result()
+        return tasks[0].result()
 
     def close(self) -> None:
         """Cancel all tasks, and end the thread. The process ends: nobody runs anything more."""

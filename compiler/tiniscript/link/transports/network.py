@@ -7,8 +7,7 @@ address that is not of a local network is refused, and a name proves nothing.
 from __future__ import annotations
 
 from ipaddress import ip_address
-from threading import Event
-from time import monotonic
+from time import monotonic, sleep
 from typing import NamedTuple
 
 from zeroconf import DNSQuestionType, Error, IPVersion, ServiceBrowser, ServiceInfo, Zeroconf
@@ -70,7 +69,7 @@ def list_robots() -> list[AnnouncedRobot]:
     result = []
     with _network() as network:
         browser = ServiceBrowser(network, SERVICE, listener=Listener())  # type: ignore[arg-type]
-        Event().wait(LISTED_S)
+        sleep(LISTED_S)
         browser.cancel()
         until_s = monotonic() + ADDRESSES_S
         for name in sorted(names):

@@ -5,8 +5,9 @@ Knows what a `PortConnection` uses of a serial port to read, and no way by which
 
 from __future__ import annotations
 
-from threading import Condition
+from threading import Lock
 
+from tiniscript.base.bell import Bell
 from tiniscript.link.transports import READ_S
 
 KEPT_BYTES = 65_536  # of somebody who sends more than is read; more is lost
@@ -17,7 +18,8 @@ class PushedTransport:
     """`in_waiting`, `read`, `cancel_read` are as in pyserial; any thread may `bring` and `end`."""
 
     def __init__(self) -> None:
-        self._news = Condition()
+        self._turn = Lock()
+        self._news = Bell()
         self._heard = bytearray()
         self._gone = ""  # why the connection has ended
         self._is_cancelled = False
@@ -31,9 +33,9 @@ class PushedTransport:
 
         Raises OSError where the connection has ended and all of it was read.
         """
-        with self._news:
-            if not (self._heard or self._gone or self._is_cancelled):
-                self._news.wait(READ_S)
+        if not (self._heard or self._gone or self._is_cancelled):
+            self._news.wait(READ_S)
+        with self._turn:
             self._is_cancelled = False
             result = bytes(self._heard[:size])
             del self._heard[:size]
@@ -42,18 +44,18 @@ class PushedTransport:
             return result
 
     def cancel_read(self) -> None:
-        with self._news:
+        with self._turn:
             self._is_cancelled = True
-            self._news.notify_all()
+            self._news.ring()
 
     def bring(self, data: bytes | bytearray) -> None:
         """Bytes have come."""
-        with self._news:
+        with self._turn:
             self._heard += data[: KEPT_BYTES - len(self._heard)]
-            self._news.notify_all()
+            self._news.ring()
 
     def end(self, why: str) -> None:
         """The connection has ended; the first reason counts."""
-        with self._news:
+        with self._turn:
             self._gone = self._gone or why or END_REASON
-            self._news.notify_all()
+            self._news.ring()

@@ -1,0 +1,39 @@
+"""What wakes a thread that waits for news of another one, wherever a signal interrupts it.
+
+A Condition and an Event of `threading` are written in Python: a Ctrl-C inside them leaves their
+lock held, or released twice. The main thread waits at a Bell, and holds a Lock or an RLock, which
+are of the interpreter.
+"""
+
+from __future__ import annotations
+
+from _thread import allocate_lock  # as threading has it, which takes a millisecond to import
+from collections.abc import Callable
+from contextlib import suppress
+from time import monotonic
+
+
+class Bell:
+    """Wakes one waiting thread; a ring that nobody waits for is kept for the next wait."""
+
+    def __init__(self) -> None:
+        self._silence = allocate_lock()
+        self._silence.acquire()
+
+    def ring(self) -> None:
+        with suppress(RuntimeError):  # it has rung, and nobody has heard it yet
+            self._silence.release()
+
+    def wait(self, limit_s: float) -> bool:
+        """Wait for a ring, at most so long; return whether there was one."""
+        return self._silence.acquire(timeout=limit_s)
+
+    def wait_until(self, is_so: Callable[[], bool], limit_s: float) -> bool:
+        """Wait at most so long until something is so, of which a ring tells; return whether."""
+        end_s = monotonic() + limit_s
+        while not is_so():
+            left_s = end_s - monotonic()
+            if left_s <= 0:
+                return False
+            self.wait(left_s)
+        return True

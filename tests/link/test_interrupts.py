@@ -1,0 +1,99 @@
+"""Ctrl-C, wherever it falls: it is nothing but a KeyboardInterrupt, and the line goes on."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import closing, suppress
+
+import pytest
+
+from tests.support.waiting import until
+from tiniscript.base.bell import Bell
+from tiniscript.link.messages import STOP_BYTES
+from tiniscript.link.port_connection import PortConnection
+from tiniscript.link.session import Session
+from tiniscript.link.transports.event_loop import EventLoop
+from tiniscript.link.transports.pushed import PushedTransport
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timer of signals")
+
+INTERRUPTS = 1_500
+FEW = 8  # of what takes a while to be cancelled
+
+
+class Port(PushedTransport):
+    def __init__(self) -> None:
+        super().__init__()
+        self.written = b""
+
+    def write(self, data: bytes) -> None:
+        self.written += data
+
+    def close(self) -> None:
+        self.end("closed")
+
+
+def hail(work: Callable[[], object], count: int = INTERRUPTS) -> None:
+    """Repeat work while Ctrl-C is pressed again and again. Whatever else it raises passes."""
+    rng = random.Random(1)
+    pressed: list[int] = []  # a callback of the interpreter drops what is raised in it
+
+    def press(number: int, _: object) -> None:
+        pressed.append(number)
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, press)
+    try:
+        for _ in range(count):
+            pressed.clear()
+            with suppress(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, rng.uniform(1e-5, 4e-4))
+                while not pressed:
+                    work()
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_a_line_goes_on_and_still_stops() -> None:
+    port = Port()
+    with closing(PortConnection(port, Session(1))) as line:
+
+        def work() -> None:
+            line.runs(1)
+            line.event(1e-5)
+            line.end_run(1)
+
+        hail(work)
+        port.written = b""
+        line.stop()
+        until(lambda: bytes(STOP_BYTES) in port.written, "the stop is sent")
+
+
+@pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
+def test_an_event_loop_goes_on() -> None:
+    loop = EventLoop()
+    hail(lambda: loop.run(asyncio.sleep(0), 100), FEW)
+    assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
+    loop.close()
+
+
+def test_a_bell_rings_for_who_waits() -> None:
+    bell = Bell()
+
+    def work() -> None:
+        bell.ring()
+        bell.wait(1e-5)
+        bell.wait(1e-5)  # gives the interpreter up, without which it may miss a signal
+
+    hail(work)
+    bell.ring()
+    bell.ring()
+    assert bell.wait(0)
+    assert not bell.wait(0)
+    assert bell.wait_until(lambda: True, 0)
+    bell.ring()
+    assert not bell.wait_until(lambda: False, 0.01)
