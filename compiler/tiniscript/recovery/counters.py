@@ -155,7 +155,7 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
             while rest.means("to", "until"):
                 rest.k += 1
             bound = _plus(rest.number(), 1)
-            if lexicon_meaning(rest.text(), "unit")[:1] == ("steps",):
+            if rest.unit() == "steps":
                 rest.k += 1
                 step = rest.number()
     else:
@@ -191,9 +191,13 @@ class _Rest:
         self.k += is_there
         return is_there
 
+    def unit(self) -> str:
+        """Return the unit that a word is, "" for none."""
+        return (*lexicon_meaning(self.text(), "unit")[:1], "")[0]
+
     def number(self) -> int | None:
-        """Pass a whole number, None for anything else."""
+        """Pass a whole number, None for anything else: an amount with a unit is no count."""
         is_there = self.k < len(self.row) and self.row[self.k].kind is NUMBER
         result = int(self.text()) if is_there and self.text().isdecimal() else None
         self.k += is_there
-        return result
+        return result if self.unit() in ("", "steps") else None
