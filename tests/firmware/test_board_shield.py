@@ -120,6 +120,7 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
     return {**powers, **dict.fromkeys(sides[1].split(), right)}
 
 
+@pytest.mark.sampled("chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 @pytest.mark.parametrize("name", SIDES)
 def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:

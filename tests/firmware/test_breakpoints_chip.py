@@ -191,6 +191,7 @@ def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> No
     assert bool(features & TEXT_LEVEL) is (chip.board == "mega")
 
 
+@pytest.mark.sampled("board", "environment")
 @pytest.mark.parametrize(("board", "environment"), [*ENVIRONMENT_WITH_BREAKPOINTS.items()])
 def test_what_halts_leaves_the_stack_its_room(
     board: str, environment: str, sketches: Callable[[str], Path]

@@ -119,6 +119,7 @@ CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
 }
 
 
+@pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("what", CHANGES)
 def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:

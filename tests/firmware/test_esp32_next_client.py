@@ -84,6 +84,7 @@ def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
     return robot.now_ms - began_ms
 
 
+@pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", PLACES)
 @pytest.mark.parametrize("wrong", WRONGS)
 def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:

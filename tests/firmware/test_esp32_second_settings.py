@@ -93,6 +93,7 @@ def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[se
     return seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
 
 
+@pytest.mark.sampled("second")
 @pytest.mark.parametrize("second", [*ENDS][:5])
 @pytest.mark.parametrize("first", ENDS)
 def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> None:

@@ -116,6 +116,7 @@ SAID_MS = 30_000  # "tsc waits 30 s"
 CLAIMS = ["nothing", "cut", "cut, later not", "held", "held and cut", "taken and cut"]
 
 
+@pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
 @pytest.mark.parametrize("what", CLAIMS)
 def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:

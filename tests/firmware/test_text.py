@@ -106,6 +106,7 @@ def test_every_sentence_in_its_language(language: str) -> None:
         robot.wait(4000)
 
 
+@pytest.mark.sampled("language", "says")
 @pytest.mark.parametrize(
     "language, says",
     [

@@ -124,6 +124,7 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
     assert happened(robot) == SAVED_BACK
 
 
+@pytest.mark.sampled("at_ms", keep=3)
 @pytest.mark.parametrize("at_ms", range(0, 60, 7))
 def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
     robot, _, before = read_back()

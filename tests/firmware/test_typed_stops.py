@@ -166,6 +166,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     return late_ms
 
 
+@pytest.mark.sampled("name", keep=15)
 @pytest.mark.parametrize("name", ALL)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """No sample here: a commit that loses a stop must not pass. Each spelling is typed after each

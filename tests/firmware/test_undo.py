@@ -160,6 +160,7 @@ ASKED = [
 ]
 
 
+@pytest.mark.sampled("steps", keep=20)
 @pytest.mark.parametrize("steps", ASKED, ids=", ".join)
 def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
     steps: tuple[str, ...],

@@ -177,6 +177,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
         one.talk(250)
 
 
+@pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     """What is held is mostly read, and what was let go is never read later than 0.5 s after."""
@@ -408,6 +409,7 @@ def test_a_robot_says_that_it_has_one_where_its_kit_leaves_room(count: int) -> N
     assert bool(session.robot.values.features & REMOTE) == kit.has_remote == (count <= 8)
 
 
+@pytest.mark.sampled("defines")
 @pytest.mark.parametrize("defines", [(), ("tiniscript_without_seals",)], ids=["seals", "none"])
 def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     defines: tuple[str, ...],

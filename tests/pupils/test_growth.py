@@ -31,6 +31,7 @@ def work(text: str) -> int:
     return calls
 
 
+@pytest.mark.sampled("begin", "piece", "end", keep=3)
 @pytest.mark.parametrize(
     ("begin", "piece", "end"),
     [

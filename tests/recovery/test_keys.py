@@ -35,6 +35,7 @@ PLACES = (
 ORDERS = ("F(1, 60)", "S")
 
 
+@pytest.mark.sampled("said", "side", keep=100)
 @pytest.mark.parametrize(("said", "side"), CASES)
 def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(said: str, side: str) -> None:
     for place in PLACES:

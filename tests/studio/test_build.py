@@ -164,6 +164,7 @@ def test_no_address_of_the_building_computer_is_in_it(page: Path) -> None:
         assert str(ROOT).encode() not in path.read_bytes(), path.name
 
 
+@pytest.mark.long
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", ["Python", "modules"])
 def test_the_same_sources_give_the_same_page(

@@ -177,6 +177,7 @@ def is_kept(page: TornPage) -> None:
         assert after or accepted >= number, f"press {number} was told, and stopped nothing"
 
 
+@pytest.mark.sampled("seed", keep=20)
 @pytest.mark.parametrize("seed", range(60))
 def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: int) -> None:
     chance = Random(seed)

@@ -385,6 +385,7 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
             assert not judged(found, 3.0), found
 
 
+@pytest.mark.long
 def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:

@@ -499,6 +499,7 @@ LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map(
 })"""
 
 
+@pytest.mark.long
 def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
     for screen in SCREENS[:2]:
         page.set_viewport_size({"width": screen[0], "height": screen[1]})
@@ -515,6 +516,7 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                     assert count and below <= 1 and height >= 40, (screen, name, level, words)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("screen", SCREENS[:3])
 def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -> None:
     width, height = screen
@@ -601,6 +603,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(pages: Pages) -> None:
     assert "show" in offered(page)
 
 
+@pytest.mark.long
 def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> None:
     """Where the robot can tell: in the first world it stops before the wall."""
     for robot in robots.names():
@@ -742,6 +745,7 @@ IN_BLOCKS = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", IN_BLOCKS)
 def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
     """By somebody who drags, and has chosen few blocks."""

@@ -382,6 +382,7 @@ COVERED = """() => {
 }"""
 
 
+@pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (820, 1180), (390, 844)], ids=str)
 def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, int]) -> None:
     """Also where blocks are as wide and as high as what is seen of them."""

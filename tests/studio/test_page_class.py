@@ -337,6 +337,7 @@ STANDS = """() => { window.now = performance.now(); window.each = 0; window.slic
 SIZE = "async (each) => { await each.decode(); return [each.naturalWidth, each.naturalHeight]; }"
 
 
+@pytest.mark.long
 def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
     first: Page, pages: Pages, taught: Class
 ) -> None:

@@ -123,6 +123,7 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
     return found
 
 
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
     text, lines = PROGRAMS[name]
@@ -131,6 +132,7 @@ def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, na
     assert walk(page, "#link_upload", "#link_go_on", text) == wanted
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> None:
     """From the first one on. Two parts that the compiler has joined are one step."""
@@ -343,6 +345,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     assert "MOTORS 80 80" not in robot.did[before:]
 
 
+@pytest.mark.long
 def test_a_recording_of_a_halted_program_is_as_long_as_one_that_was_not(page: Page) -> None:
     put(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
     page.click("#link_upload")

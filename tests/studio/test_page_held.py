@@ -231,6 +231,7 @@ def danced(page: Page) -> None:
     page.locator("html[data-phase=running]").wait_for(state="attached")
 
 
+@pytest.mark.long
 def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes(
     visits: Pages,
 ) -> None:
@@ -268,6 +269,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         page.context.close()
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", OF_THE_COMPILER)
 def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     visits: Pages, name: str

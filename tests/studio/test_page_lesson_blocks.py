@@ -142,6 +142,7 @@ READ = """() => {
 NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_what_a_lesson_names_of_a_block_is_what_the_block_says(page: Page, language: str) -> None:
     """Nothing that is read there is of a text; the only codes are names that a program gives."""
@@ -181,6 +182,7 @@ def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: s
     assert finding.locator(".on_block").count() == 1
 
 
+@pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
 def test_what_is_below_of_a_step_is_announced_by_a_shadow(
     page: Page, size: tuple[int, int]

@@ -191,6 +191,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
 PAGES = {(1366, 768): 500, (1024, 600): 140, (390, 844): 200, (844, 390): 150}
 
 
+@pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", PAGES, ids=lambda size: "x".join(map(str, size)))
 def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]) -> None:
     """On a laptop each step is seen whole, elsewhere six lines of it."""

@@ -56,6 +56,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     assert PINK in found and GREEN not in found
 
 
+@pytest.mark.sampled("what", keep=2)
 @pytest.mark.parametrize(
     "what",
     [
@@ -95,6 +96,7 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
     assert traces[0] == traces[1] and "SHOW" in str(traces[0])
 
 
+@pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
 def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     """And its stars are added up, each lesson's once."""

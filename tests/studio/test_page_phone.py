@@ -191,6 +191,7 @@ F(5, 60) UNTIL(DISTANCE < 10);
 """
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
     """Letters are 12 pixels high, what is touched is 24, and a long question has more rows: all of

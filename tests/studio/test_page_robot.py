@@ -204,6 +204,7 @@ PLACES = """() => 'arena controls told run pause step speed world values'.split(
 })"""
 
 
+@pytest.mark.sampled("screen")
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
     """Nor when it ends; a task's sentence is the longest that is said above the values.

@@ -178,6 +178,7 @@ def words_of(name: Locator) -> Any:
     return {"x": left + 8, "y": top + 6, "width": width - 16, "height": height - 14}
 
 
+@pytest.mark.long
 def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
     """It looks the same without the mark that plays it."""
     page = pages.open("start", viewport={"width": 1366, "height": 768})

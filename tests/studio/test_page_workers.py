@@ -128,6 +128,7 @@ def is_own(page: Page, server: serving.Server) -> None:
     assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER}"]
 
 
+@pytest.mark.sampled("options")
 @pytest.mark.parametrize("name", ["evil.js", serving.WORKER])
 @pytest.mark.parametrize("options", [{}, {"updateViaCache": "all"}], ids=["", "kept by browsers"])
 def test_no_worker_of_a_stranger_hears_the_code(

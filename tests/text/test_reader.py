@@ -220,6 +220,7 @@ RIGHT = (
 )  # fmt: skip
 
 
+@pytest.mark.sampled("behind")
 @pytest.mark.parametrize("behind", ["", "  ", "// note", " // note"])
 @pytest.mark.parametrize("line", RIGHT)
 def test_what_is_missing_at_the_end_is_missing_after_the_last_character(

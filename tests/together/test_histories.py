@@ -110,6 +110,7 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
     history(seed, DEEDS, 2 + seed % 3)
 
 
+@pytest.mark.long
 def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
     made, refused = _counts([lesson(seed, 3) for seed in range(3)])
     assert made > 300

@@ -227,6 +227,7 @@ def around(word: Word) -> str:
 CALLED = [word for word in (*WORDS.values(), *(it.word for it in KIT.actuators)) if word.arguments]
 
 
+@pytest.mark.sampled("word", keep=8)
 @pytest.mark.parametrize("word", CALLED, ids=lambda word: word.text)
 def test_every_argument_at_its_edges(word: Word) -> None:
     samples = [argument.sample for argument in word.arguments]
