@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tiniscript.studio import serving
+from tests.support.waiting import HANGS_S
+from tiniscript.studio import attending, serving
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
@@ -22,6 +23,13 @@ if TYPE_CHECKING:
 def own(server: serving.Server) -> str:
     """The name in a request of the `server` that a file has."""
     return f"{serving.HOST}:{server.server_port}"
+
+
+@pytest.fixture
+def unhurried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page may be silent for as long as a busy computer keeps it so: its robot drives on."""
+    monkeypatch.setattr(attending, "HEARD_S", HANGS_S)
+    monkeypatch.setattr(attending, "LEFT_S", HANGS_S)
 
 
 @pytest.fixture(scope="package")

@@ -37,6 +37,8 @@ from tiniscript.studio.attending import LATCH_S
 if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
+pytestmark = pytest.mark.usefixtures("unhurried")
+
 KIT = robots.load("tinibot").kit
 WHOLE = "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
 HOSTILE = "<img src=x onerror=1>"

@@ -32,6 +32,8 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
+pytestmark = pytest.mark.usefixtures("unhurried")
+
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
 # A program, and the lines of its breakpoints.

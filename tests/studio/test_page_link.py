@@ -472,6 +472,7 @@ def unmarked(page: Page) -> None:
         page.locator(mark).wait_for(state="detached")
 
 
+@pytest.mark.usefixtures("unhurried")
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     write(page, DRIVE)
     page.click("#view_blocks")

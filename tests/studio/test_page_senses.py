@@ -21,6 +21,8 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
+pytestmark = pytest.mark.usefixtures("unhurried")
+
 SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
 MEASURED = 40  # values
 FOREVER_SHOW = "LOOP(FOREVER);SHOW(7);W(0.1);END_LOOP"
