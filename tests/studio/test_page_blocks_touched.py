@@ -268,6 +268,24 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     speak(page, "en")
 
 
+def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Page) -> None:
+    """Else another change would bring it back, later."""
+    text = "// one\nSI|BEEP(0.5, 440);\nF(5, 80);\n"
+    start(page, text)
+    for seen, typed in (("80", "12"), ("one", "two"), ("440", "330")):
+        page.locator(f"{PROGRAM} .blocklyField", has_text=seen).last.click()
+        page.locator(".blocklyWidgetDiv input").wait_for()
+        page.keyboard.type(typed)
+        becomes(page, text.replace(seen, typed))
+        page.keyboard.press("Escape")
+        becomes(page, text)
+    pitch(page).first.click()
+    page.locator(".piano").get_by_text("E", exact=True).click()
+    becomes_other(page, text)
+    page.keyboard.press("Escape")
+    becomes(page, text)
+
+
 def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()

@@ -16,6 +16,18 @@ export function letHear(act) {
   hear = act;
 }
 
+/**
+ * Blockly does not tell that Escape has taken back what was typed.
+ * @param {any} field
+ * @param {() => void} act what a key does in it
+ */
+function tellTakenBack(field, act) {
+  const typed = field.getValue();
+  act();
+  const value = field.getValue();
+  if (value !== typed) Blockly.Events.fire(new Blockly.Events.BlockChange(field.getSourceBlock(), 'field', field.name ?? null, typed, value));
+}
+
 /** A number with at most three decimals; what a person types is made to fit, what a text says stays. */
 export class NumberField extends Blockly.FieldNumber {
   /** @param {string | number} value */
@@ -70,7 +82,7 @@ export class NumberField extends Blockly.FieldNumber {
   onHtmlInputKeyDown_(event) {
     const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!this.isPitch || !way) {
-      super.onHtmlInputKeyDown_(event);
+      tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
       return;
     }
     event.preventDefault();
@@ -118,6 +130,11 @@ export class NameField extends Blockly.FieldTextInput {
     const plain = text.toUpperCase().trim().replace(/\W+/g, '_').replace(/^[^A-Z]+/, '');
     return plain || null;
   }
+
+  /** @param {KeyboardEvent} event */
+  onHtmlInputKeyDown_(event) {
+    tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+  }
 }
 
 /** Seconds, or the unit of the word that is chosen. */
@@ -150,5 +167,10 @@ export class LineField extends Blockly.FieldTextInput {
   /** @param {any} value */
   doClassValidation_(value) {
     return String(value ?? '').replace(/[\r\n\0]+/g, ' ');
+  }
+
+  /** @param {KeyboardEvent} event */
+  onHtmlInputKeyDown_(event) {
+    tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
   }
 }
