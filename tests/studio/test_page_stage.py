@@ -84,6 +84,17 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     hears(page, lambda: page.evaluate(AREA) == small, "as before")
 
 
+def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
+    """As a lesson's is, whose goal would be out of sight."""
+    write(page, "SI|F(0.1, 20);\n")
+    page.select_option("#world", "free")
+    page.click("#run")
+    in_phase(page, "ended")
+    assert page.locator("html[data-big]").count()
+    page.select_option("#world", "light")
+    assert page.locator("html[data-big]").count() == 0
+
+
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
     page: Page, language: str

@@ -24,9 +24,10 @@ END_LOOP;
 ` },
   obstacle: { robot: 'tinibot', world: 'obstacles', text: `\
 SI|LOOP(FOREVER);
-  F(FOREVER, 80) UNTIL(DISTANCE < 15);
+  F(FOREVER, 70) UNTIL(DISTANCE < 20);
   BEEP(0.1, 880);
-  R(0.5, 60);
+  B(0.5, 60);
+  R(1, 60);
 END_LOOP;
 ` },
   line: { robot: 'liner', world: 'line', text: `\

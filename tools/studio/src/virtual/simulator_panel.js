@@ -402,6 +402,7 @@ export class SimulatorPanel {
     this.#drawing.letGo();
     this.#preview = null;
     this.#rest();
+    this.#stage?.rest();
     this.#drawing.forget();
   }
 

@@ -71,6 +71,11 @@ export class Stage {
     this.#show();
   }
 
+  /** What stood there before a run of another robot or world is seen whole, as somebody first sees it. */
+  rest() {
+    this.#shrink();
+  }
+
   #shrink() {
     if (!('big' in root.dataset) || ['running', 'paused'].includes(root.dataset['phase'] ?? '')) return;
     delete root.dataset['big'];

@@ -1,0 +1,26 @@
+"""The programs behind the pictures of the start screen."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.support.command import inside
+from tests.support.node import in_node
+
+SCRIPT = Path(__file__).parent / "beginnings_in_node.mjs"
+SECONDS = 90
+
+
+def test_no_picture_of_the_start_shows_a_robot_that_bumps(tmp_path: Path) -> None:
+    (row,) = in_node(SCRIPT)
+    beginnings = json.loads(row)
+    assert len(beginnings) > 5
+    for name, beginning in beginnings.items():
+        program = tmp_path / "program.ts"
+        program.write_text(beginning["text"], "utf-8")
+        where = ("--robot", beginning["robot"], "--world", beginning["world"])
+        done = inside(
+            "upload", program, "--virtual", *where, "--for", str(SECONDS), "--hurry", "max"
+        )
+        assert "touched nothing" in done.out, (name, done.out)
