@@ -316,7 +316,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     """What a stranger retains reaches no terminal raw."""
-    inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker answers")
+    inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
     place = ("--broker", f"127.0.0.1:{broker.port}")
     for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
         inside("class", *words, *place).gives(3, "no robot of the class class")

@@ -47,7 +47,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     ]
     assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"
     assert "no program" in robot and robot[-1].startswith("20 round trips: ")
-    assert ports[0] == "Ports of this computer:" and f"{pty_robot.port}   last used" in ports
+    assert ports[0] == "Ports on this computer:" and f"{pty_robot.port}   last used" in ports
     assert pty_robot.did == []
     pty_robot.ask(lambda robot: before.append(robot.memory()))
     assert before[0] == before[1]
@@ -77,7 +77,7 @@ def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobo
 def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
     """Another kit than that of the robot that was named, weak batteries, and a bad line."""
     on(pty_robot, "doctor", "--robot", "liner").gives(
-        3, out=("(tinibot), not that of liner", "--robot tinibot")
+        3, out=("(tinibot), not the kit of liner", "--robot tinibot")
     )
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
@@ -175,7 +175,7 @@ def test_an_upload_says_what_is_there_instead_of_a_robot(
     """It asks nothing but HELLO, and hears what a board says when it starts."""
     with PtyEnd(board(9600)) as pty_end:
         words = ("upload", "-e", "SI|F(1, 50)", "--port", pty_end.port)
-        done = tsc(*words).gives(3, f"no TiniScript robot answers on {pty_end.port}", said)
+        done = tsc(*words).gives(3, f"no TiniScript robot responds on {pty_end.port}", said)
         assert "speed" not in done.err
     with PtyEnd(board(9600)) as pty_end:
         rows = json.loads(tsc("doctor", "--ports", "--ask", "--port", pty_end.port, "--json").out)

@@ -318,4 +318,4 @@ def test_no_more_places_are_kept_than_a_file_holds(
 
 @pytest.mark.parametrize("robot", ["", "7", "ANA", "1234567g", "123456789", "-1234567"])
 def test_only_an_id_is_accepted(tsc: Tsc, robot: str) -> None:
-    tsc("set", "owner", f"--accept={robot}").gives(2, "is not the id")
+    tsc("set", "owner", f"--accept={robot}").gives(2, "is not a robot's id")

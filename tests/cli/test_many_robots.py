@@ -58,7 +58,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         named = {port: row for port, row in rows.items() if not row["is_absent"]}
         assert set(named) == {pupil.port for pupil in pupils}
         assert {port for port, row in named.items() if not row["is_done"]} == bad
-        assert "nothing answers" in str(rows[pupils[SILENT].port]["said"])
+        assert "nothing responds" in str(rows[pupils[SILENT].port]["said"])
         assert "--robot liner" in str(rows[pupils[OTHER_KIT].port]["said"])
         for pupil in pupils:
             if pupil.port not in bad:
@@ -228,12 +228,12 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_LIMIT_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4
-    assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
+    assert done.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
     monkeypatch.setattr(ports, "list_ports", list)
     monkeypatch.setattr(opening, "ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     inside("doctor", "--identify", "--all").gives(
-        3, "Done: 4 of 5.", out=f"R9 ({known}): nothing answers"
+        3, "Done: 4 of 5.", out=f"R9 ({known}): nothing responds"
     )
     for end in ends:
         os.close(end)
@@ -241,7 +241,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
 def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
+    for language, words in (("en", "no robot responds"), ("es", "ningún robot responde")):
         inside("stop", "--all", "--lang", language).gives(3, words)
         assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2
         assert inside("doctor", "--port", "a\0b", "--port", "x", "--lang", language).code == 2

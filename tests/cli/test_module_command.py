@@ -54,7 +54,7 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
         *UNSEEN,
         "?      PIN 4711: the module reports that it has done this",
         *UNSEEN,
-        "ok     57600 baud: done; the module answers at this speed",
+        "ok     57600 baud: done; the module responds at this speed",
         "Now switch the module off, connect it to the robot as before, switch it on and"
         " pair it again.",
     ]

@@ -200,7 +200,7 @@ def test_a_file_that_cannot_be_played_says_why(
     [
         (("run", "-e", TEXT, "--replay", "r"), "--replay any more. Try:  tsc run run.tsr"),
         (("run", "-e", TEXT, "--world", "line"), "--world works only with --record"),
-        (("run", "p.bin", "--record", "new"), "needs the program's text"),
+        (("run", "p.bin", "--record", "new"), "needs the program's source"),
         (("run", "-e", TEXT, "--record", "new", "--world", "nowhere"), "nowhere"),
         (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "that come with tsc"),
         (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not work"),
@@ -216,7 +216,7 @@ def test_a_file_that_cannot_be_played_says_why(
         (("upload", "-e", TEXT, "--detach", "--record", "new"), "--record needs a run"),
         (("upload", "-e", TEXT, "--no-run", "--record", "new"), "--record needs a run"),
         (("upload", "-e", TEXT, "--all", "--record", "new"), "--record needs a run"),
-        (("upload", "p.bin", "--virtual", "--record", "new"), "needs the program's text"),
+        (("upload", "p.bin", "--virtual", "--record", "new"), "needs the program's source"),
         (("upload", "-e", TEXT, "--virtual", "--record", "letter"), "tsc did not write it."),
     ],
 )  # fmt: skip

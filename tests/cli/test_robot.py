@@ -138,7 +138,7 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
     assert pty_robot.heard == b""
     assert "robot tinibot" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
     pty_robot.switch_off()
-    assert "nothing answers" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
+    assert "nothing responds" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
     assert "there is no port" in tsc("doctor", "--ports", "--ask", "--port", "/dev/no-such").out
 
 
@@ -155,7 +155,7 @@ def test_a_person_without_a_port_is_asked_for_one(
     monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     done = tsc("doctor", "--identify").gives(0, f"  2  {pty_robot.port}   a robot\n")
-    assert done.err.count("Its number: ") == 3
+    assert done.err.count("Number in the list: ") == 3
     assert tsc("doctor", "--identify").err == ""  # it is remembered
 
 
@@ -168,7 +168,7 @@ def test_nobody_something_else_and_another_version(
             3, f"uses version {MAJOR} of the link"
         )
     pty_robot.switch_off()
-    tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")
+    tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing responds")
     sketch = "another sketch, not the TiniScript firmware. It sends: Hello from a sketch. Put"
     for said, answer in (
         (b"Hello from a sketch\r\n", sketch), (bytes(range(1, 256)) * 3, "not TiniScript"),

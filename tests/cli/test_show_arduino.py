@@ -43,7 +43,7 @@ def test_a_program_that_is_too_large_for_a_machine_is_none_for_a_sketch(tsc: Tsc
 def test_what_cannot_be_is_said(tsc: Tsc, tmp_path: Path) -> None:
     image = tmp_path / "a.bin"
     assert tsc("compile", "-e", PROGRAM, "-o", image).code == 0
-    tsc("show", "--arduino", image).gives(2, "needs its text.")
+    tsc("show", "--arduino", image).gives(2, "needs its source.")
     tsc("show", "--arduino", "--json", "-e", PROGRAM).gives(2, "one of them.")
     done = tsc("show", "-e", PROGRAM, "-o", tmp_path / "b.ino")
     assert done.code == 2 and "--arduino" in done.err and not (tmp_path / "b.ino").exists()

@@ -58,7 +58,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
 def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
     """On a computer without any port with a question, else as one of the ports."""
     terminal = Terminal("upload", "-e", "SI|F(0.1, 50)", size=SIZE)
-    match = terminal.until(r"\[Y/n\]|(\d+) +\S[^\n]*\nIts number:")
+    match = terminal.until(r"\[Y/n\]|(\d+) +\S[^\n]*\nNumber in the list:")
     if match[1]:
         terminal.type(f"{match[1]}\n" if is_wanted else "\x04")
     else:

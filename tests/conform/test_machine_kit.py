@@ -262,11 +262,11 @@ def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_pa
 
 
 HOSTILE = {
-    "hang": ("time.sleep(600)", "did not finish its answer in 1 s", 3),
+    "hang": ("time.sleep(600)", "did not finish its response in 1 s", 3),
     "crash": ("sys.exit('no such opcode')", "exit code 1: no such opcode", 20),
     "flood": ("while True: os.write(1, b'0 SHOW 1\\n' * 999)", "wrote far too much output", 3),
     "more": ("for row in sys.stdin:\n  if row == 'run\\n': os.write(1, b'0 DONE\\n0 DONE\\n')",
-             "after the end of its answer", 20),
+             "after the end of its response", 20),
 }  # fmt: skip
 
 
@@ -277,7 +277,7 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
     done = conform(tsc, command, "--timeout", timeout_s).gives(1, out=said)
     assert done.out.splitlines()[-1].startswith("0 of ")
-    assert "too many got no answer." in done.out
+    assert "too many got no response." in done.out
     rows = found_by(tsc, command, "--timeout", timeout_s)
     assert [row["what"] for row in rows] == [what] * tried
 

@@ -191,7 +191,7 @@ def flood(peer: socket.socket) -> None:
     [
         (lambda peer: None, "disappeared"),
         (lambda peer: peer.recv(1), "disappeared"),
-        (flood, "answers HELLO"),
+        (flood, "responds to HELLO"),
     ],
     ids=["closes", "closes later", "floods"],
 )

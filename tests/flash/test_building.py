@@ -494,7 +494,7 @@ def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> Done:
 
 def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
     done = written(clone, tmp_path)
-    done.gives(3, "no robot answers", out="firmware for tinibot32 was written to the esp32dev")
+    done.gives(3, "no robot responds", out="firmware for tinibot32 was written to the esp32dev")
 
 
 @pytest.mark.parametrize("code", [1, -9])

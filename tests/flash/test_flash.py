@@ -148,7 +148,7 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
     """The robot's own firmware answers nothing that avrdude says."""
     with Uno(firmware("uno", tmp_path, shared(tmp_path_factory)), tells_sleep=False) as uno:
         uno.go()
-        tsc(package, "--port", uno.pty).gives(3, f"no bootloader answers on {uno.pty}", "HC-05")
+        tsc(package, "--port", uno.pty).gives(3, f"no bootloader responds on {uno.pty}", "HC-05")
         uno.pause()
         assert not [event for event in uno.events if event.what == "crash"]
 
@@ -170,7 +170,9 @@ def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
     of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
     with new_board(of) as uno:
-        tsc(package, "--port", uno.pty).gives(3, "does not contain what was written to it. Unplug")
+        tsc(package, "--port", uno.pty).gives(
+            3, "the firmware on the board does not match what was written. Unplug"
+        )
 
 
 def test_a_port_in_use_is_said(package: Path) -> None:
@@ -399,7 +401,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
 
 @pytest.mark.parametrize(("words", "said"), [
     ([], "on which port"),
-    (["--port", ""], "--port takes the name of a port"),
+    (["--port", ""], "--port takes a port's name"),
     (["--port", "socket://localhost:1"], "is a network or radio port."),
     (["--port", "/dev/none"], "there is no port /dev/none"),
     (["--port", "x", "--chip", "teensy"], "uno, nano, nano-old or mega, not teensy"),

@@ -68,7 +68,7 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert form[2].endswith("last restart: power on")
     assert "12345678" not in report.read_text("utf-8")
     # a busy computer may be late
-    answers = r"1\. It answers: \d+ of 20 arrived at once, and 0 arrived damaged"
+    answers = r"1\. It responds: \d+ of 20 arrived at once, and 0 arrived damaged"
     assert re.fullmatch(answers, form[3])
     assert [row.endswith(f": {BLANK_FIELD}") for row in form[6::3]] == [True] * (
         len(FORM_STEPS) - 1
@@ -84,7 +84,7 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
-    assert form[2:4] == ["robot: none answered", f"1. It answers: {BLANK_FIELD}"]
+    assert form[2:4] == ["robot: none responded", f"1. It responds: {BLANK_FIELD}"]
 
 
 @pytest.mark.parametrize("before", ["", "(\n"])

@@ -58,7 +58,7 @@ def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path
     own = tmp_path / "mine.toml"
     own.write_text(TEXTS["tinibot"], encoding="utf-8")
     done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
-    assert "Your robot has the kit of tinibot" in done.err
+    assert "Your robot has the same kit as tinibot" in done.err
     own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
     done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
     assert done.err == (

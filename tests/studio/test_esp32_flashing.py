@@ -165,4 +165,4 @@ def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Pat
         page.get_by_text("Connecting").first.wait_for()
         until(lambda: page.evaluate("window.rom.starts") == 1, "it starts")
         assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(whole)})]") == list(whole)
-        page.get_by_text("Nothing answers.").wait_for()  # the simulated chip is no robot
+        page.get_by_text("Nothing responds.").wait_for()  # the simulated chip is no robot

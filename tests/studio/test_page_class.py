@@ -452,7 +452,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     asks(ana)
-    linked(ana, "Nothing answers.")
+    linked(ana, "Nothing responds.")
     said(ana, "You are in the class, ")
 
 
@@ -559,7 +559,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     row.locator("button").click()
     row.filter(has_text="Ana is getting the work back.").wait_for()
     noted(ana, "Your teacher gave you back your work.")
-    said(ana, "The teacher’s computer does not answer.")
+    said(ana, "The teacher’s computer is not responding.")
     assert "F(1, 77)" in str(taught.room.work())
     ana.reload()
     checked(ana)

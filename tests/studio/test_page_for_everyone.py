@@ -198,7 +198,7 @@ def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
     assert page.get_by_role("button", name=said).inner_text() == "Line 1"
     assert page.get_by_role("textbox", name="Program").count() == 1
     assert page.get_by_role("combobox", name="Robot").count() == 1
-    page.get_by_role("button", name="Do it: line 1, B(2, 80)").wait_for()
+    page.get_by_role("button", name="Apply the fix: line 1, B(2, 80)").wait_for()
     write(page, "SI|IF(DISTANCE < 10)\nS")  # no full stop stands after a word of a program
     for place in ("#messages li", "#first_message"):
         assert " has no ENDIF – Try: " in page.inner_text(place)

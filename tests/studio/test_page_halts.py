@@ -156,9 +156,9 @@ def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
     halts(page, 13)
     assert page.locator("#link_values div").all_inner_texts() == [
         "N\n3",
-        "task in line 2\nwaiting",
-        "task in line 5\nusing the motors",
-        "task in line 9\nwaiting for the motors",
+        "task on line 2\nwaiting",
+        "task on line 5\nusing the motors",
+        "task on line 9\nwaiting for the motors",
     ]
 
 

@@ -188,7 +188,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     drives(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "tsc studio no longer answers")
+    said(page, "tsc studio has stopped responding")
     page.context.set_offline(False)
     wrong = first[0].wrong
     assert wrong and all("ERR_INTERNET_DISCONNECTED" in each for each in wrong)

@@ -111,7 +111,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
     torn = tears(page, "beat", refuse, times=1000)  # but one that goes on is told
-    said(page, "tsc studio no longer answers")
+    said(page, "tsc studio has stopped responding")
     assert torn
 
 
@@ -133,7 +133,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page.click("#link_look")
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
-    said(page, "tsc studio no longer answers")
+    said(page, "tsc studio has stopped responding")
     page.evaluate(LISTEN)
     page.click("#link_connect")
     said(page, "Connected: ")
@@ -271,11 +271,11 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     page.evaluate(LISTEN)
     write(page, FOREVER)
     page.click("#link_upload")
-    said(page, "The robot no longer answers")
+    said(page, "The robot has stopped responding")
     page.wait_for_timeout(4000)
     told = [each.split(";")[0] for each in page.evaluate("window.told")]
     assert told[0] == "Sending…"
-    assert [each for each in told if each == "The robot no longer answers"] == told[-1:]
+    assert [each for each in told if each == "The robot has stopped responding"] == told[-1:]
 
 
 def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
@@ -286,7 +286,7 @@ def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     robot.switch_off()
     page.evaluate(LISTEN)
     page.click("#link_identify")
-    said(page, "The robot no longer answers")
+    said(page, "The robot has stopped responding")
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 

@@ -168,14 +168,14 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 @pytest.mark.parametrize(
     ("data", "said"),
     [
-        (b"a letter", "It is damaged, or is not a run (line 1)."),
-        (real((1, "DONE")).encode()[:-10], "Its end is missing (after line 2)."),
-        (b'{"tiniscript_recording": 1}', "It was recorded by an older version"),
+        (b"a letter", "The file is damaged, or is not a run (line 1)."),
+        (real((1, "DONE")).encode()[:-10], "The end of the file is missing (after line 2)."),
+        (b'{"tiniscript_recording": 1}', "The run was recorded by an older version"),
         (
             real((1, "DONE")).replace('run":1', 'run":9').encode(),
-            "It was recorded by a newer version.",
+            "The run was recorded by a newer version.",
         ),
-        (b" " * 1_100_000, "It is too long"),
+        (b" " * 1_100_000, "The run is too long"),
     ],
     ids=["letter", "cut", "older", "newer", "huge"],
 )

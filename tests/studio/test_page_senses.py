@@ -245,7 +245,7 @@ def test_a_port_where_nothing_answers_says_so_within_three_seconds(
     page.click("#link_connect")
     said(page, "Connecting")
     page.clock.run_for(2900)
-    assert "Nothing answers at this port yet." in page.locator("#link_said").inner_text()
+    assert "There is no response on this port yet." in page.locator("#link_said").inner_text()
     page.close()
 
 

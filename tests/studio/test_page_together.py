@@ -176,7 +176,7 @@ def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
     ana.context.set_offline(True)
     goes_to(ana, "F(1, 80)")
     types(ana, "\nW(4)\n")
-    ana.locator("#class_group", has_text="does not answer").wait_for()
+    ana.locator("#class_group", has_text="is not responding").wait_for()
     goes_to(luz, "S;")
     types(luz, "\nW(5)\n")
     ana.context.set_offline(False)

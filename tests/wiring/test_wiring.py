@@ -219,15 +219,15 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
 
 def test_what_a_robot_does_not_have_is_not_said() -> None:
     said = {name: " ".join(_sentences(name)) for name in robots.names()}
-    assert "jumpers at ENA" in said["tinibot"]
-    assert "jumpers at ENA" not in said["liner"]
+    assert "jumpers on ENA" in said["tinibot"]
+    assert "jumpers on ENA" not in said["liner"]
     assert "S+" not in said["tinibot"]
     assert "S+" in said["grabber"]
     assert "tsc doctor --module --port P --baud 57600" in said["grabber"]
     assert "tsc doctor --module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
     assert "STATE stays unconnected" in said["liner"]
-    assert "10 kΩ resistors at STBY" in said["liner"]
+    assert "10 kΩ resistors on STBY" in said["liner"]
     assert "Unplug the HC-05" in said["liner"]
 
 
