@@ -17,7 +17,7 @@ from tools import uno
 from tools.bench import __main__ as bench
 from tools.bench import link, page
 
-PAGE = """From `python -m tools.bench.link`, and `python -m tools.bench.ways`;
+PAGE = """`python -m tools.bench.link` measures it, and `python -m tools.bench.ways`;
 again `python -m tools.bench.link`, (`python -m
 tools.bench.ways 20 --uno`), and `python -m tests.link.test_typed_stops 1000000`.
 """

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from tools import ROOT
 
 PAGE = ROOT / "docs" / "en" / "figures.md"
-# A paragraph that says where the figures below it come from, or a heading.
-_BEGINS = re.compile(r"^(?:From `python -m ([\w.]+)[^`]*`|#)")
+# A paragraph that says what measures the figures below it, or a heading.
+_BEGINS = re.compile(r"^(?:`python -m ([\w.]+)[^`]*` measures |#)")
 
 
 class Table(NamedTuple):
