@@ -170,7 +170,7 @@ def limit_table() -> str:
         ("open joins", limits.JOINS, "", deep),
         ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nothing: it is always so"),
     )
-    return table(("what", "at most", "", "refused by"), rows)
+    return table(("what", "at most", "", "rejected by"), rows)
 
 
 def device_table() -> str:
@@ -206,7 +206,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
     "refusals": partial(numbered, ("number", "reason", "when"), image.REFUSALS),
     "instructions": instruction_table,
     "operands": operand_table,
-    "rules": partial(numbered, ("number", "rule", "refused"), verify.RULES),
+    "rules": partial(numbered, ("number", "rule", "rejected"), verify.RULES),
     "roles": role_table,
     "faults": fault_table,
     "limits": limit_table,
