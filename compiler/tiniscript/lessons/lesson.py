@@ -150,7 +150,7 @@ KINDS: dict[str, Kind] = {
     "reaches": Kind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
                     (WITHIN, Number("by_seconds", 0.1, LARGEST_NUMBER, LARGEST_NUMBER), Number("by_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER)), places=1, words="sensor", flags=("either_way",)),
     "stays_in": Kind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
-    "stands_before": Kind("at the end it stands `low_cm` to `high_cm` before whatever is ahead of it; with `at`, before that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
+    "stands_before": Kind("at the end it stands `low_cm` to `high_cm` from whatever is ahead of it; with `at`, in front of that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
     "faces": Kind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
     "never_touches": Kind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
     "follows": Kind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, LARGEST_NUMBER))),
