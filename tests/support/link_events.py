@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.link.outcomes import Event, LostEvent, ShownEvent, StartedEvent
-from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, StoppedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, ReadingEvent, StoppedEvent
 
 EVENTS: tuple[Event, ...] = (
     ShownEvent(7, 0),
@@ -11,6 +11,7 @@ EVENTS: tuple[Event, ...] = (
     StoppedEvent(1),
     DoneEvent(1),
     HaltedEvent(1, 2, 0),
+    ReadingEvent(1, 2, 12_500, 20),
     LostEvent(),
     StartedEvent(1, 1),
 )

@@ -42,7 +42,7 @@ def header(command: str) -> str:
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
             "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
-            "MOST_BREAKPOINTS",
+            "MOST_BREAKPOINTS", "UNTOLD",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -88,17 +88,24 @@ def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
     requests = {request.number: request for request in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
-    first = len(rows) - len(messages.OF_BREAKPOINTS)
-    own = f"    tini_of_breakpoints(  //\n{''.join(rows[first:])}    )\n"
+    end = len(rows) - len(messages.OF_READINGS)
+    first = end - len(messages.OF_BREAKPOINTS)
+    own = f"    tini_of_breakpoints(  //\n{''.join(rows[first:end])}    )\n"
+    own += f"    tini_of_readings(  //\n{''.join(rows[end:])}    )\n"
     table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows[:first])}{own}}};\n"
     return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
 
 
 def _last_request() -> str:
-    """Return kLastRequest: the requests for breakpoints come last, and not every robot has them."""
-    last = _requests()[-len(messages.OF_BREAKPOINTS) :]
-    assert tuple(message.name for message in last) == messages.OF_BREAKPOINTS
-    number = f"kHasBreakpoints ? {last[-1].number} : {last[0].number - 1}"
+    """Return kLastRequest: the requests that not every robot has come last."""
+    parts = messages.OF_BREAKPOINTS, messages.OF_READINGS
+    names = [name for part in parts for name in part]
+    last = _requests()[-len(names) :]
+    assert [message.name for message in last] == names
+    end = last[0].number - 1 + len(parts[0])
+    number = f"kTellsReadings    ? {last[-1].number}\n"
+    number += f"                                 : kHasBreakpoints ? {end}\n"
+    number += f"                                                   : {last[0].number - 1}"
     return f"constexpr uint8_t kLastRequest = {number};\n"
 
 

@@ -142,6 +142,10 @@ class Requester:
         """Ask where the tasks of what runs are."""
         return self._ask("read_tasks", ReadTasksReply)
 
+    def tell_readings(self, is_on: bool) -> PendingRequest[EmptyReply]:
+        """Have READING come for each changed reading of a program, in this session."""
+        return self._ask("tell_readings", EmptyReply, is_on=is_on)
+
     def identify(self) -> PendingRequest[EmptyReply]:
         return self._ask("identify", EmptyReply)
 

@@ -18,6 +18,7 @@ from tiniscript.link.messages import (
     MINOR,
     OWNED,
     OWNERS,
+    READINGS,
     SEALS,
     STATE_FAULTED,
     STATE_IDLE,
@@ -245,6 +246,13 @@ class Handshake:
             yield from requests.retry_while_busy(Request("BREAK", {"places": places}), EmptyReply)
         )
 
+    def tell_readings(self, is_on: bool) -> Exchange[EmptyReply]:
+        assert self.robot
+        if not self.robot.values.features & READINGS:
+            return Reply(STATUSES["NO_READINGS"])
+        request = Request("TELL_READINGS", {"is_on": int(is_on)})
+        return (yield from requests.send_single(request, EmptyReply))
+
     def name(self, name: bytes) -> Exchange[EmptyReply]:
         reply = yield from requests.save_and_confirm(Request("NAME", {"name": name}), EmptyReply)
         if reply.status in (OK, *requests.ACCEPTING_STATUSES) and self.robot:
@@ -282,6 +290,7 @@ _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "upload": Handshake.upload,
     "undo": lambda handshake: requests.retry_while_busy(Request("UNDO"), ReceiptReply),
     "break_at": Handshake.break_at,
+    "tell_readings": Handshake.tell_readings,
     "name": Handshake.name,
     "trim": lambda handshake, trim: requests.save_and_confirm(
         Request("TRIM", {"trim": trim}), TrimReply

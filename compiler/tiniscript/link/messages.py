@@ -97,6 +97,7 @@ MOST_BREAKPOINTS = 4
 VARIABLE_BYTES, TASK_BYTES = 4, 7  # of one
 VARIABLES_BYTES = 13 * VARIABLE_BYTES  # in one frame
 TASKS_BYTES = 5 * TASK_BYTES  # of all, the main one is the last
+UNTOLD = 0x80  # flag of the sensor of READING: others before this one were not told
 SHOW_PLACE_BYTES = 3  # of a SHOW: its run, and where its instruction is (16 bits)
 COUNTER_BYTES = 4
 
@@ -143,7 +144,7 @@ MODES = (
 TEXT_LEVEL, REMOTE, PLACES, OWNERS, OWNED = 0x0003, 0x0004, 0x0008, 0x0010, 0x0020
 TEXT_ALLOWED = 0x0040
 YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
-BREAKPOINTS = 0x0800
+BREAKPOINTS, READINGS = 0x0800, 0x1000
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
     (REMOTE, "REMOTE", "Its programs can read KEY_UP and the rest of a remote control: KEYS."),
@@ -168,6 +169,7 @@ FEATURES = (
         "BREAKPOINTS",
         "Its programs can halt at places: BREAK, RESUME, READ_VARIABLES, READ_TASKS.",
     ),
+    (READINGS, "READINGS", "It can report what its programs read: TELL_READINGS."),
 )
 # What a remote control says: the keys that are held, a bit for each, and where its pad is, in percent
 # to the right and up. It counts for so long: an older word of a client that has gone moves nothing.
@@ -305,6 +307,8 @@ MESSAGES = (
              "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
     _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
+    _message(29, "TELL_READINGS", True, "is_on:u8", "",
+             "Sets whether the robot sends READING to this session."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
              "A value that a program shows. `place`: its run, and where its SHOW is."),
@@ -314,13 +318,17 @@ MESSAGES = (
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
     _message(37, "HALTED", False, "", "run:u8 at:u16 task:u8",
              "The program is halted before a statement. Repeated: it still is."),
+    _message(38, "READING", False, "", "run:u8 sensor:u8 value:i32 ms:u16",
+             "The program has read another value than before from a sensor. `ms`: since the start."),
 )
 FIRST_ACTING = 6
 RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
 OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know,
 OF_REMOTE = ("KEYS",)  # and only those with a remote control
-# These are the last ones, so that the table of a robot without breakpoints ends before them.
+# These are the last ones, so that the table of a robot without them ends before. A robot that tells
+# readings has breakpoints.
 OF_BREAKPOINTS = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
+OF_READINGS = ("TELL_READINGS",)
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {
@@ -362,6 +370,7 @@ STATUSES = {
     "UNREADABLE": 93,
     "NO_REMOTE": 94,
     "NO_BREAKPOINTS": 95,
+    "NO_READINGS": 96,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {

@@ -10,7 +10,13 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Literal, NamedTuple, get_args
 
-from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, StoppedEvent
+from tiniscript.link.payloads import (
+    DoneEvent,
+    FaultEvent,
+    HaltedEvent,
+    ReadingEvent,
+    StoppedEvent,
+)
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
 # our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
@@ -106,6 +112,7 @@ Event = (
     | StoppedEvent
     | DoneEvent
     | HaltedEvent
+    | ReadingEvent
     | TextEvent
     | MissedEvent
     | LostEvent
@@ -132,7 +139,7 @@ class ConnectionLost(Exception):
 
 
 MOST_EVENTS = 500  # events
-DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO")  # the others say what the robot does
+DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO", "READING")  # the others say what the robot does
 
 TimedEvent = tuple[int, Event]  # arrival time (ms), event
 

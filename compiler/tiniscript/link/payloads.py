@@ -66,7 +66,7 @@ class FetchReply(NamedTuple):
 
 
 class EmptyReply(NamedTuple):
-    """What is in the reply to STOP, CLEAR, NAME, CLAIM, IDENTIFY, ABORT, BREAK."""
+    """What is in the reply to STOP, CLEAR, NAME, CLAIM, IDENTIFY, ABORT, BREAK, TELL_READINGS."""
 
 
 class ReceiptReply(NamedTuple):
@@ -182,6 +182,16 @@ class HaltedEvent(NamedTuple):
     name: Literal["HALTED"] = "HALTED"
 
 
+class ReadingEvent(NamedTuple):
+    """The program has read another value than before from a sensor. `ms`: since the start."""
+
+    run: int
+    sensor: int
+    value: int
+    ms: int
+    name: Literal["READING"] = "READING"
+
+
 SentReply = (
     HelloReply
     | PingReply
@@ -225,4 +235,5 @@ REPLIES: dict[str, type[SentReply]] = {
     "RESUME": ResumeReply,
     "READ_VARIABLES": ReadVariablesReply,
     "READ_TASKS": ReadTasksReply,
+    "TELL_READINGS": EmptyReply,
 }

@@ -104,7 +104,7 @@ _WAITING_STATUSES = (
 )  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
 _PREPARING_MESSAGES = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS",
-              "READ_VARIABLES", "READ_TASKS")  # fmt: skip
+              "READ_VARIABLES", "READ_TASKS", "TELL_READINGS")  # fmt: skip
 _ACTING_MESSAGES = [message.name for message in MESSAGES
           if FIRST_ACTING <= message.number < FIRST_EVENT
           and message.name not in _PREPARING_MESSAGES]  # fmt: skip

@@ -15,6 +15,7 @@
 #include "../../src/firmware/firmware.h"
 #include "../../src/firmware/persistence.h"
 #include "../../src/firmware/program.h"
+#include "../../src/firmware/readings.h"
 #include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
 #include "../../src/link/frames.h"
@@ -347,10 +348,11 @@ void robot_off() {
 }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
+  const int32_t before = *value;
   *value = sensor < table.sensors
                ? table.readings[sensor]
                : remote_reading(static_cast<uint8_t>(sensor - table.sensors));
-  return true;
+  return note_reading(sensor, before, *value);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {

@@ -205,6 +205,8 @@ Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
   return Answer::kOk;
 }
 
+void port_tell_readings(bool is_on) { say("READINGS %u", static_cast<unsigned>(is_on)); }
+
 void port_resume(ResumeHow how) { say("RESUME %u", static_cast<unsigned>(how)); }
 
 uint16_t port_shown_at() { return port.at; }

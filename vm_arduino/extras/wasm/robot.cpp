@@ -8,6 +8,7 @@
 #include "../../src/robot.h"
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/readings.h"
 #include "../../src/firmware/remote.h"
 #include "../../src/link/port.h"
 #include "../../src/store/layout.h"
@@ -154,8 +155,9 @@ bool robot_read(uint8_t sensor, int32_t* value) {
   const bool is_own = sensor < own.sensors;
   note(kRead, sensor, is_own ? 0 : remote_reading(static_cast<uint8_t>(sensor - own.sensors)));
   host_look();
+  const int32_t before = *value;
   *value = reading;
-  return true;
+  return note_reading(sensor, before, reading);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {

@@ -4,6 +4,7 @@
 
 #include "board.h"
 
+#include "../firmware/readings.h"
 #include "../firmware/remote.h"
 #include "../robot.h"
 #include "../text/kit_words.h"
@@ -150,9 +151,12 @@ void robot_off() {
 }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  if (!kHasRemote || sensor < kBoardSensors) return read_sensor(sensor, value);
+  const int32_t before = *value;
+  if (!kHasRemote || sensor < kBoardSensors) {
+    return read_sensor(sensor, value) && note_reading(sensor, before, *value);
+  }
   *value = remote_reading(static_cast<uint8_t>(sensor - kBoardSensors));
-  return true;
+  return note_reading(sensor, before, *value);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms); }

@@ -38,7 +38,7 @@ void begin_identity(const BootInfo& boot_info) {
   identity.reset = boot_info.reset;
   const bool has_remote = readings_of(board_sensors()) != board_sensors();
   identity.features = static_cast<uint8_t>(kRobotTextLevel) | (has_remote ? kRemote : 0) | kPlaces;
-  if (kHasBreakpoints) identity.more_features = kMoreBreakpoints;
+  if (kHasBreakpoints) identity.more_features = kMoreBreakpoints | kMoreReadings;
 }
 
 void make_identity() { identity.id = identity.nonce; }

@@ -12,6 +12,7 @@
 #include "halting.h"
 #include "persistence.h"
 #include "program.h"
+#include "readings.h"
 #include "remote.h"
 #include "state.h"
 #include "trim.h"
@@ -87,6 +88,7 @@ void begin_run(const uint8_t* image) {
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
   run_image = image;
   if (kHasBreakpoints) begin_halting(image, length);
+  if (kTellsReadings) begin_readings();
   is_start_due = false;
   may_start = false;
   link.let_go();

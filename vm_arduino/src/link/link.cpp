@@ -100,7 +100,9 @@ void Link::turn() {
 void Link::send_due() {
   Link* const self = near(this);
   if (self->without_checksum_ != nullptr) self->write_checksum();
-  if (self->due_ != 0 && self->left_ == 0) self->send();
+  if (kTellsReadings) self->catch_up();
+  const bool is_due = kTellsReadings ? self->has_due() : self->due_ != 0;
+  if (is_due && self->left_ == 0) self->send();
 }
 
 // Writes the checksum into an image that is complete otherwise.
@@ -275,8 +277,12 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       said_.detail = payload[kReadVariablesFirstAt];
       if (said_.detail >= kVariables) found = Answer::kBadValue;
       break;
+    case Message::kTellReadings:
+      if (kTellsReadings) tell_readings(payload[kTellReadingsIsOnAt] != 0);
+      break;
     case Message::kReadTasks:
     case Message::kHalted:
+    case Message::kReading:
     case Message::kStatus:
     case Message::kShow:
     case Message::kFault:
@@ -377,6 +383,7 @@ uint8_t Link::hello(const uint8_t* payload) {
   if (is_new) {
     renew();
     if (kHasBreakpoints) forget_breakpoints();
+    if (kTellsReadings) forget_readings();
   }
   if (is_new || may_seal()) expire();
   if (is_new) forget_answer();

@@ -133,11 +133,13 @@ class Link {
     is_attached_ = is_ready_ = false;
     let_go();
     console_.drop();
+    if (kTellsReadings) forget_readings();
   }
 
   // Nobody is connected any more: whoever comes next begins a session.
   void forget_client() {
     if (kHasBreakpoints) forget_breakpoints();
+    if (kTellsReadings) forget_readings();
     is_open_ = false;
     due_ = 0;
     left_ = 0;
@@ -171,6 +173,9 @@ class Link {
   static constexpr uint8_t kDueHalted = 16;
   static constexpr uint8_t kDueText = kHasBreakpoints ? 32 : 16;
 
+  // A run's end comes after its readings.
+  static constexpr uint8_t kBeforeReadings = static_cast<uint8_t>(~(kDueFault | kDueDone));
+
   // Times that run down to 0: until a client without frames no longer counts as listening, until
   // STOPPED is sent again, until a second of silence has passed, until text may follow the last
   // frame, until the remote control says nothing any more, until HALTED is sent again; and, as
@@ -187,6 +192,14 @@ class Link {
   static constexpr uint8_t kIsAsked = 2;
   static constexpr uint8_t kIsConfirmed = 4;
   static constexpr uint8_t kHeldBack = 8;
+
+  // What SHOW sends.
+  struct tini_packed ShownValue {
+    int32_t value;
+    bool is_yes_no;
+    uint8_t run;
+    uint16_t at;
+  };
 
   // A reply before it is written. The detail follows a status other than OK.
   struct Said {
@@ -299,6 +312,23 @@ class Link {
   void tell_tasks();
   void tell_variables();
 
+  // readings: `link_readings.cpp`
+  void tell_readings(bool is_on);
+  void forget_readings() {
+    if (tells_readings_) tell_readings(false);
+  }
+  bool has_reading() const {
+    return kTellsReadings && tells_readings_ && is_listened_to() && port_has_reading();
+  }
+  // Whether the line would be free without readings.
+  bool is_late() const { return kTellsReadings && left_ <= behind_; }
+  bool has_late_value() const { return kTellsReadings && has_late_value_; }
+  bool has_due() const { return due_ != 0 || has_late_value() || has_reading(); }
+  void catch_up();
+  bool keep_value(int32_t value, bool is_yes_no);
+  void send_late_value();
+  void send_reading();
+
   // writing: `link_writing.cpp`
   bool is_listened_to() const;
   void note_end(uint8_t due);
@@ -363,6 +393,11 @@ class Link {
   tini_with_transports bool was_stopped_;
   tini_with_breakpoints bool has_breakpoints_;  // of this session
   tini_with_breakpoints bool owns_halt_;  // it was told of the last halt: that ends with it
+  tini_with_readings bool tells_readings_;  // to this session
+  tini_with_readings bool has_late_value_;
+  tini_with_readings uint8_t behind_;  // by how many bytes readings delay what is sent
+  tini_with_readings uint8_t late_epoch_;
+  tini_with_readings ShownValue late_value_;
   tini_with_remote RemoteKeys remote_;  // what the remote control has said last
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];

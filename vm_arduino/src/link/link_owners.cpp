@@ -48,7 +48,8 @@ bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_se
 tini_noinline void Link::expire() {
   Identity& its = port_identity();
   its.features &= static_cast<uint8_t>(~kYours);
-  constexpr uint8_t kStays = kMoreBreakpoints | (kHasSeals ? kMoreSeals | kMoreWifiRests : 0);
+  constexpr uint8_t kStays =
+      kMoreBreakpoints | kMoreReadings | (kHasSeals ? kMoreSeals | kMoreWifiRests : 0);
   its.more_features = kStays != 0 ? its.more_features & kStays : 0;
   drop_seal();
   rights_ &= kHeldBack;

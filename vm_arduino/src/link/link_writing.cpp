@@ -23,14 +23,6 @@ constexpr uint8_t kSmallFetch = kSmallFrame - kHeadBytes - kCrcBytes - 3;
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 
-// What SHOW sends.
-struct tini_packed Shown {
-  int32_t value;
-  bool is_yes_no;
-  uint8_t run;
-  uint16_t at;
-};
-
 template <class Type>
 uint8_t byte_of(Type value) {
   return static_cast<uint8_t>(value);
@@ -81,14 +73,16 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.
   const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
-  if (left_ != 0 || (due_ & first) != 0) return false;
+  if ((left_ != 0 && !(is_heard && is_late())) || (due_ & first) != 0) return false;
+  if (has_late_value()) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
     if (kHasText) show_text(value, is_yes_no);
     return true;
   }
+  if (kTellsReadings && keep_value(value, is_yes_no)) return true;
   if (separate()) return false;
-  const Shown shown = {value, is_yes_no, port_status().run, port_shown_at()};
+  const ShownValue shown = {value, is_yes_no, port_status().run, port_shown_at()};
   begin_event(Message::kShow);
   put_all(&shown, sizeof shown);
   close();
@@ -106,6 +100,8 @@ void Link::send() {
     due_ &= static_cast<uint8_t>(~kDueHalted);
   }
   const uint8_t first = static_cast<uint8_t>(due_ & -due_);
+  if (kTellsReadings && has_late_value_) return send_late_value();
+  if (kTellsReadings && (first & kBeforeReadings) == 0 && has_reading()) return send_reading();
   if (first == 0) return;
   if (kHasText && first == kDueText) return send_text();
   if (separate()) return;

@@ -37,6 +37,9 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {1, 1},  // READ_VARIABLES
     {0, 0},  // READ_TASKS
     )
+    tini_of_readings(  //
+    {1, 1},  // TELL_READINGS
+    )
 };
 
 }  // namespace tiniscript

@@ -52,6 +52,7 @@ constexpr uint16_t kTrustBytes = 2048;
 constexpr uint8_t kMostPad = 100;
 constexpr uint16_t kHoldMs = 500;
 constexpr uint8_t kMostBreakpoints = 4;
+constexpr uint8_t kUntold = 128;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -77,6 +78,7 @@ constexpr uint16_t kByTeacher = 256;
 constexpr uint16_t kSeals = 512;
 constexpr uint16_t kWifiRests = 1024;
 constexpr uint16_t kBreakpoints = 2048;
+constexpr uint16_t kReadings = 4096;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
@@ -105,16 +107,20 @@ enum class Message : uint8_t {
   kResume = 26,  // Continues a halted program: `how` of RESUMES.
   kReadVariables = 27,  // Asks for the variables of the running program, starting with the variable `first`: 32 bits each.
   kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
+  kTellReadings = 29,  // Sets whether the robot sends READING to this session.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
   kDone = 35,  // The program has ended.
   kHalted = 37,  // The program is halted before a statement. Repeated: it still is.
+  kReading = 38,  // The program has read another value than before from a sensor. `ms`: since the start.
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
 constexpr uint8_t kFirstActing = 6;
-constexpr uint8_t kLastRequest = kHasBreakpoints ? 28 : 24;
+constexpr uint8_t kLastRequest = kTellsReadings    ? 29
+                                 : kHasBreakpoints ? 28
+                                                   : 24;
 
 // How long the payload of each request may be, from the first one on: least and most.
 // What this robot does not know has kUnknownRequest as its least.
@@ -160,6 +166,7 @@ constexpr uint8_t kKeysYAt = 2;
 constexpr uint8_t kBreakPlacesAt = 0;
 constexpr uint8_t kResumeHowAt = 0;
 constexpr uint8_t kReadVariablesFirstAt = 0;
+constexpr uint8_t kTellReadingsIsOnAt = 0;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
@@ -191,6 +198,7 @@ enum class Answer : uint8_t {
   kUnreadable = 93,  // The robot cannot read its memory, so it does not know its owner: nobody can drive it.
   kNoRemote = 94,  // The robot's firmware has no remote control: no KEY_UP, no PAD_X.
   kNoBreakpoints = 95,  // The robot's firmware cannot halt a program at a breakpoint.
+  kNoReadings = 96,  // The robot cannot report what its programs read.
 };
 
 enum class State : uint8_t {

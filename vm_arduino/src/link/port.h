@@ -85,6 +85,7 @@ constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 constexpr uint8_t kMoreSeals = kSeals >> 8;
 constexpr uint8_t kMoreWifiRests = kWifiRests >> 8;
 constexpr uint8_t kMoreBreakpoints = kHasBreakpoints ? kBreakpoints >> 8 : 0;
+constexpr uint8_t kMoreReadings = kTellsReadings ? kReadings >> 8 : 0;
 
 // The robot's name.
 struct DeviceInfo {
@@ -203,6 +204,20 @@ const int32_t* port_variables();
 
 // Reports a task of what runs, from 0 on. False: there are no more.
 bool port_report_task(uint8_t task, TaskReport* report);
+
+// What a program has read, as READING sends it.
+struct tini_packed ToldReading {
+  uint8_t run;
+  uint8_t sensor;  // with kUntold
+  int32_t value;
+  uint16_t ms;
+};
+
+// Whether readings are noted from now on, and whether there is one that has not been told. The next
+// one that is to be told, if there is.
+void port_tell_readings(bool is_on);
+bool port_has_reading();
+ToldReading port_next_reading();
 
 // The length of the image that the robot holds.
 uint16_t port_image_length();

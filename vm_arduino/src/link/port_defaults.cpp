@@ -1,4 +1,4 @@
-// What a robot without discs or without breakpoints answers, unless it defines these itself.
+// What a robot without discs, breakpoints or readings answers, unless it defines these itself.
 
 #include "port.h"
 
@@ -15,5 +15,10 @@ __attribute__((weak)) uint8_t port_halted_task() { return 0; }
 __attribute__((weak)) void port_resume(ResumeHow) {}
 __attribute__((weak)) const int32_t* port_variables() { return nullptr; }
 __attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false; }
+
+
+__attribute__((weak)) void port_tell_readings(bool) {}
+__attribute__((weak)) bool port_has_reading() { return false; }
+__attribute__((weak)) ToldReading port_next_reading() { return {0, 0, 0, 0}; }
 
 }  // namespace tiniscript

@@ -63,6 +63,11 @@
 #define tiniscript_has_breakpoints
 #endif
 
+// What a program reads, told to a computer that wants to know: an ATmega328P lacks the RAM.
+#if defined(tiniscript_has_breakpoints) && !defined(__AVR_ATmega328P__)
+#define tiniscript_tells_readings
+#endif
+
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
 // that. Others have room for both.
 #if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
@@ -184,6 +189,16 @@ constexpr bool kHasBreakpoints = true;
 constexpr bool kHasBreakpoints = false;
 #define tini_with_breakpoints static
 #define tini_of_breakpoints(...)
+#endif
+
+#ifdef tiniscript_tells_readings
+constexpr bool kTellsReadings = true;
+#define tini_with_readings
+#define tini_of_readings(...) __VA_ARGS__
+#else
+constexpr bool kTellsReadings = false;
+#define tini_with_readings static
+#define tini_of_readings(...)
 #endif
 
 #ifdef tiniscript_has_draft

@@ -215,6 +215,7 @@ _ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     "claim": lambda message: (_bounded_number(message, "which", len(KEYS)),),
     "disown": lambda message: (_bounded_number(message, "which", len(KEYS)),),
     "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
+    "tell_readings": lambda message: (protocol.field(message, "is_on", bool),),
     "start": lambda message: (protocol.field(message, "is_detached", bool),),
     "live": lambda message: (
         protocol.data(message, "code"), _kit(message),

@@ -49,7 +49,7 @@ FULL_S = 0.02  # pause before the next try when the process has too many files o
 PAUSE_S = 0.1  # between two checks while a client has a run or a request
 REST_S = 1.0  # between two checks while none has
 _ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
-_DROPPABLE_EVENTS = ("SHOW", "TEXT")
+_DROPPABLE_EVENTS = ("SHOW", "TEXT", "READING")
 _STARTING_REQUESTS = ("upload", "live", "start")
 # that end with what they start
 _DRIVING_VERBS = ("upload", "start", "set trim", "doctor --selftest", "python")

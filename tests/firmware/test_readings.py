@@ -1,0 +1,140 @@
+"""What a program reads is told to a computer, and pins do the same at the same times.
+
+A whole robot on this computer, whose line takes as long for a byte as one of 9600 baud.
+"""
+
+from __future__ import annotations
+
+import random
+from struct import pack
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT
+from tests.machines.host_firmware import TICKS
+from tests.support.debugging import Debugged
+from tests.support.shown_in_loops import Did, apart_ms, program
+from tiniscript.link import handshake
+from tiniscript.link.frames import Frame, encode_frame
+from tiniscript.link.messages import BY_NAME, READINGS, STATUSES, UNTOLD, encode_payload
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import ReadingEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+MOST_BYTES = 17  # of READING on the line, as SHOW
+RUN_MS = 2500
+BYTE_TICKS = round(TICKS * 10_000 / 9600)
+FAST_TICKS = 0  # a line that takes no time
+# A SHOW that waits for its line begins at most a byte earlier or later: a move may then be late by
+# 20 ms, or just by more, after which all that follows is later. So far apart are runs on a line
+# that is 5 % slower or faster, too.
+MOST_APART_MS = 3
+READING = BY_NAME["READING"]
+
+
+class Ran(NamedTuple):
+    did: list[Did]
+    events: list[Event]
+    seen: list[list[int]]  # what each sensor had, one after the other
+
+    @property
+    def readings(self) -> list[ReadingEvent]:
+        return [event for event in self.events if isinstance(event, ReadingEvent)]
+
+
+def ran(text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30) -> Ran:
+    """Run a program while what its sensors see changes; it is told or not."""
+    robot = Debugged(text)
+    assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
+    rng, seen = random.Random(seed), [[0] for _ in KIT.sensors]
+    first = len(robot.robot.did)
+    robot.start()
+    robot.robot.ask(b"P", bytes([byte_ticks]))
+    events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
+    while robot.robot.now_ms < end_ms:
+        for each in seen:
+            each.append(each[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
+        values = [each[-1] for each in seen]
+        robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
+        events += robot.talk(rng.randint(1, most_ms))
+    rows = (line.split(" ", 1) for line in robot.robot.did[first:])
+    return Ran([(float(ms), what) for ms, what in rows], events, seen)
+
+
+@pytest.mark.sampled("seed", keep=10)
+@pytest.mark.parametrize("seed", range(100))
+def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -> None:
+    text = program(random.Random(seed))
+    alone, told = (ran(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
+    others = [ran(text, seed, False, BYTE_TICKS + more) for more in (-1, 1)]
+    most_ms = MOST_APART_MS + max(apart_ms(alone.did, other.did) for other in others)
+    assert apart_ms(alone.did, told.did) <= most_ms, text
+    shown = [[event for event in each.events if event.name == "SHOW"] for each in (alone, told)]
+    assert abs(len(shown[0]) - len(shown[1])) <= max(2, len(shown[0]) // 20)
+    assert not alone.readings
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
+    """A line that takes no time tells all; one that does tells the same, or that it does not."""
+    text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
+    every_ms = 5 if seed % 2 else 30
+    whole, told = (ran(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS))
+    assert not [event for event in whole.readings if event.sensor & UNTOLD]
+    for sensor in range(len(KIT.sensors)):
+        all_of_it = [event for event in whole.readings if event.sensor == sensor]
+        at = 0
+        for event in told.readings:
+            if event.sensor & ~UNTOLD != sensor:
+                continue
+            if not event.sensor & UNTOLD:
+                assert event == all_of_it[at], "nothing is left out before it"
+                at += 1
+            else:  # it is what was read last
+                before = [k for k, each in enumerate(all_of_it) if each.ms <= event.ms]
+                assert before and before[-1] >= at and all_of_it[before[-1]].value == event.value
+                at = before[-1] + 1
+
+
+def test_a_line_that_is_too_slow_says_so() -> None:
+    text = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
+    told = ran(text, 1, True, BYTE_TICKS, most_ms=5)
+    assert [event for event in told.readings if event.sensor & UNTOLD]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_end_of_a_run_is_told_after_its_readings(seed: int) -> None:
+    text = "SI|LOOP(10);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.01);END_LOOP"
+    names = [event.name for event in ran(text, seed, True, BYTE_TICKS).events]
+    assert names.count("DONE") == 1 and names[-1] == "DONE" and "READING" in names
+
+
+def test_no_reading_takes_more_of_a_line_than_a_value() -> None:
+    rng = random.Random(1)
+    for _ in range(2000):
+        value, ms = rng.randrange(-1 << 31, 1 << 31), rng.randrange(1 << 16)
+        values = {"run": rng.randrange(256), "sensor": rng.randrange(256), "value": value, "ms": ms}
+        payload = encode_payload(READING.reply, values)
+        seq, epoch = rng.randrange(256), rng.randrange(256)
+        wire = encode_frame(Frame(READING.number, seq, epoch, payload, is_reply=True))
+        assert len(wire) <= MOST_BYTES
+
+
+def test_another_session_is_told_nothing() -> None:
+    robot = Debugged("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
+    assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
+    robot.session = Session(2, 9600, KIT.fingerprint)
+    assert robot.robot.until(robot.session, robot.session.hello()) == OK
+    robot.start()
+    assert not [event for event in robot.talk(500) if isinstance(event, ReadingEvent)]
+
+
+def test_a_robot_that_cannot_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = Debugged("SI|SHOW(1)")
+    assert robot.session.robot is not None
+    assert robot.session.robot.values.features & READINGS
+    monkeypatch.setattr(handshake, "READINGS", 0)
+    request = robot.session.tell_readings(True)
+    assert robot.robot.until(robot.session, request) == STATUSES["NO_READINGS"]
