@@ -97,6 +97,45 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert "el virtual, 5 a los 0.2 s" in done.err
 
 
+READS = """LOOP(6)
+  F(0.2, 60)
+  X = DISTANCE * 2
+  SHOW(X)
+  IF(X < 60); SHOW(1); B(0.1, 50); ENDIF
+END_LOOP
+F(FOREVER, 60) UNTIL(DISTANCE < 20)
+SHOW(LIGHT_L + LIGHT_R)"""
+
+
+def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
+    tmp_path: Path,
+) -> None:
+    program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
+    program.write_text(READS)
+    done = inside("upload", program, "--virtual", "--world", "obstacles", "--record", file)
+    assert done.gives(0, "").err == ""
+    recording = decode(file.read_bytes())
+    read = {row.event.split()[1] for row in recording.rows if row.is_reading}
+    assert read == {"DISTANCE", "LIGHT_L", "LIGHT_R"}
+    values = sum(row.event.startswith("SHOW") for row in recording.rows)
+    for world in ("obstacles", "line"):
+        done = inside("run", file, "--world", world)
+        assert (done.code, done.err) == (0, f"Both did the same. Values compared: {values + 1}.\n")
+
+
+def test_a_robot_that_does_not_report_readings_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(upload, "READINGS", 0)
+    program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
+    program.write_text("X = DISTANCE;SHOW(1)")
+    done = inside("upload", program, "--virtual", "--record", file).gives(0)
+    assert "This robot does not report what its program reads" in done.err
+    assert not [row for row in decode(file.read_bytes()).rows if row.is_reading]
+    done = inside("run", file).gives(0)
+    assert "the recording lacks that reading" in done.err
+
+
 @pytest.mark.parametrize("hurry", ["20", "max"])
 def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     tmp_path: Path, hurry: str

@@ -10,9 +10,11 @@ import pytest
 
 from tests.studio.runs_again import differs, recorded
 from tiniscript import compile, robots
+from tiniscript.link.messages import UNTOLD
+from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
 from tiniscript.studio.playing import Parting, PlayedRun, play, ready
-from tiniscript.studio.recordings import BadRecording, Row, Rows, decode, encode, head
+from tiniscript.studio.recordings import BadRecording, Row, Rows, ToldReadings, decode, encode, head
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
@@ -273,3 +275,62 @@ def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
         played.set_breakpoints((0, 3))
         played.go(37)
     assert played.parting == Parting("again", len(rows))
+
+
+UNTOLD_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
+
+
+@pytest.mark.parametrize("value", ["8", "9"])
+@pytest.mark.parametrize("is_known_again", [False, True])
+def test_behind_a_reading_that_was_not_told_no_parting_is_marked(
+    value: str, is_known_again: bool
+) -> None:
+    rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (20, "SHOW 1"), (1040, f"SHOW {value}"),
+            (1060, "SHOW 2"), (1061, "DONE")]  # fmt: skip
+    if is_known_again:
+        rows.insert(4, (1030, "READ DISTANCE 8"))
+    there = parting(*rows, text=UNTOLD_TEXT)
+    assert (there.what, there.agreed, there.line, there.sensor) == ("unread", 1, 4, "DISTANCE")
+    wrong = parting(*rows[:2], (20, "SHOW 7"), *rows[3:], text=UNTOLD_TEXT)
+    assert wrong.what == "value", "before it"
+
+
+def test_a_sensor_that_is_shown_is_known_there_also_where_others_of_it_were_not_told() -> None:
+    rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (1020, "SHOW 9"), (1040, "DONE")]
+    assert parting(*rows, text="X = DISTANCE + 0;W(1);\nSHOW(DISTANCE)").what == "same"
+    text = "X = DISTANCE + 0;W(1);\nSHOW(DISTANCE);\nX = DISTANCE + 0;W(1)"
+    there = parting(*rows[:-1], (2040, "DONE"), text=text)
+    assert (there.what, there.line) == ("unread", 3)
+
+
+def test_a_reading_may_stand_after_rows_that_are_later() -> None:
+    text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
+    rows = [(1020, "SHOW 8"), (3, "READ DISTANCE 8"), (1021, "DONE")]
+    assert parting(*rows, text=text) == Parting("same", 2)
+    with pytest.raises(BadRecording):
+        parting((1020, "SHOW 8"), (3, "SHOW 8"), text=text)
+
+
+def test_a_reading_that_no_sensor_has_is_the_nearest_that_it_has() -> None:
+    text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
+    rows = [(3, "READ DISTANCE 9999999"), (4, "READ NOBODY 1"), (1020, "SHOW 400"), (1021, "DONE")]
+    assert parting(*rows, text=text) == Parting("same", 2)
+
+
+def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
+    """Also where more than 65 s go by between two of them, and each is 300 ms under way."""
+    kit, rng = TINIBOT.kit, random.Random(1)
+    for _ in range(200):
+        told, ms, ms_of = ToldReadings(kit), 0, dict[str, list[int]]()
+        for _ in range(20):
+            ms += rng.choice((0, 1, 20, 999, 40_000, 70_000, 150_000))
+            is_untold = rng.random() < 0.1
+            event = ReadingEvent(1, 2 | UNTOLD * is_untold, rng.randrange(400_000), ms % 65_536)
+            rows = told.rows(event, ms + rng.randrange(300))
+            assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
+            if len(rows) == 2:
+                before = ms_of.get("DISTANCE", [-1])[-1]
+                assert rows[0] == Row(before + 1, "UNREAD DISTANCE")
+            ms_of.setdefault("DISTANCE", []).append(ms)
+        assert told.untold in ([], ["DISTANCE"])
+    assert ToldReadings(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"

@@ -14,12 +14,14 @@ from tiniscript.bytecode.image import checksum
 from tiniscript.library.compiling import Compiled, compile_source, fit_to_robot
 from tiniscript.library.source_map import Map, MapLocation, map_of_compiled
 from tiniscript.robots import load
+from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.studio.recordings import (
     CUT,
     HALT,
     HELD,
     MOST_MS,
+    UNREAD,
     BadRecording,
     Recording,
     Row,
@@ -31,6 +33,8 @@ from tiniscript.virtual.world import World
 
 LEAST_OFF_MS, OFF = 250, 0.05  # how much later or earlier is the same time
 STEP_MS = 100
+NO_SENSOR = -1
+EARLY_MS = 10  # half of the time between two checks: no clock is more exact
 BEGINNING_MS = 1000  # limit for a program to begin after its button
 _WORD = re.compile(r"\w+")
 TOLD = ("SHOW", "DONE", "FAULT")  # what a real robot says of its program, too
@@ -66,6 +70,7 @@ class Ready(NamedTuple):
     places: Map
     shows: dict[int, int | None]  # the sensor that each SHOW alone shows, by its offset
     reads: tuple[int, ...]  # the offsets of what names a sensor
+    robot: Robot
 
 
 def ready(recording: Recording) -> Ready:
@@ -88,7 +93,7 @@ def ready(recording: Recording) -> Ready:
     names = {device.name for device in profile.kit.readings}
     lines = compiled.source.text.split("\n")
     reads = tuple(item.offset for item in places.places if names & _words(lines, item))
-    return Ready(recording, compiled.image, places, shows, reads)
+    return Ready(recording, compiled.image, places, shows, reads, profile)
 
 
 def _words(lines: list[str], place: MapLocation) -> set[str]:
@@ -110,18 +115,24 @@ class PlayedRun(Simulation):
         recording = ready.recording
         self.ready, self.recording = ready, recording
         self.parting: Parting | None = None
-        self._next = 0  # row of the recording
+        self._next = 0  # of the rows that change what it does
+        self._inputs = recording.rows
+        if not recording.is_virtual:
+            self._inputs = tuple(row for row in recording.rows if row.is_reading)
         self._is_over = False
         self._held_at_end = False
         self._virtual: list[Row] = []
         self._places: list[int] = []  # the line of each row that the virtual robot has told
-        self._known = set(recording.told)  # sensors whose readings the recording has
+        told = recording.told if recording.is_virtual else self._first_readings()
+        self._known = set(told)  # sensors whose readings the recording has
+        self._lost = set[int]()  # those of which the recording lacks some
+        self._shown: int | None = None  # the one whose reading the SHOW that begins has told
         self._unread: tuple[str, Row, int] | None = None
         self._recorded = self._compared_rows()
         self._seen = 0
         self._at: int | None = None  # what the program does, as far as it names a sensor
         where = recording.world or world or worlds.load(worlds.DEFAULT)
-        settings = Settings(seed=recording.seed, told=recording.told)
+        settings = Settings(seed=recording.seed, told=told)
         marks = (marks or Marks(()))._replace(is_held=False, breakpoints=())
         if not recording.is_virtual:
             marks = marks._replace(breakpoints=(*ready.shows, *ready.reads))
@@ -190,9 +201,8 @@ class PlayedRun(Simulation):
                 return self._end()
 
     def _let_in(self) -> None:
-        rows = self.recording.rows
-        while self._next < len(rows) and self._is_due(rows[self._next]):
-            row = rows[self._next]
+        while self._next < len(self._inputs) and self._is_due(self._inputs[self._next]):
+            row = self._inputs[self._next]
             self._next += 1
             if not self.recording.is_virtual:
                 self._learn(row)
@@ -206,8 +216,9 @@ class PlayedRun(Simulation):
     def _is_due(self, row: Row) -> bool:
         if self.recording.is_virtual:
             return row.ms <= self.robot.now_ms
+        due_ms = row.ms if row.event.startswith(UNREAD) else row.ms - EARLY_MS
         started_ms = self.robot.started_ms
-        return started_ms is not None and row.ms + started_ms <= self.robot.now_ms
+        return started_ms is not None and due_ms + started_ms <= self.robot.now_ms
 
     def _compare(self, is_whole: bool) -> None:
         """Find the first row that is another one than in the recording."""
@@ -280,24 +291,57 @@ class PlayedRun(Simulation):
         message = texts[len(self._places)] if len(self._places) < len(texts) else ""
         if sensor is not None and message.startswith("SHOW"):
             self.robot.sensing.tell(sensor, _number(message.removeprefix("SHOW ")))
-            self._known.add(sensor)
+            self._shown = sensor
+            if sensor not in self._lost:
+                self._known.add(sensor)
         self._places.append(place.line if place is not None else 0)
+
+    def _first_readings(self) -> dict[int, list[int]]:
+        """Return what each sensor reads first, whenever that is."""
+        found: dict[int, list[int]] = {}
+        lost = set[int]()
+        for row in self._inputs:
+            what, number, value = self._reading(row)
+            if what == UNREAD:
+                lost.add(number)
+            elif number not in lost:
+                found.setdefault(number, [value])
+        found.pop(NO_SENSOR, None)
+        return found
+
+    def _reading(self, row: Row) -> tuple[str, int, int]:
+        """Return the parts of the row of a reading; its sensor may be NO_SENSOR."""
+        what, name, *value = row.event.split(" ")
+        readings = self.ready.robot.kit.readings
+        number = next((k for k, each in enumerate(readings) if each.name == name), NO_SENSOR)
+        if not value or number == NO_SENSOR:
+            return what, number, 0
+        return (
+            what,
+            number,
+            max(readings[number].low, min(readings[number].high, _number(value[0]))),
+        )
 
     def _learn(self, row: Row) -> None:
         """The virtual sensors have the readings that the robot has told."""
-        if not row.event.startswith("READ "):
-            return
-        _, name, value = row.event.split(" ")
-        kit = self.robot.profile.kit
-        number = next((k for k, each in enumerate(kit.readings) if each.name == name), None)
-        if number is not None:
-            self.robot.sensing.tell(number, _number(value))
-            self._known.add(number)
+        what, number, value = self._reading(row)
+        if what == UNREAD:
+            self._lost.add(number)
+            self._known.discard(number)
+        elif number != NO_SENSOR:
+            self.robot.sensing.tell(number, value)
+            if number not in self._lost:
+                self._known.add(number)
 
     def _listen(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
-            if event.what == "READ" and event.values[0] not in self._known and not self._unread:
+            is_read = event.what == "READ"
+            is_shown = is_read and event.values[0] == self._shown
+            if is_shown:
+                self._shown = None
+            is_unread = is_read and not is_shown and event.values[0] not in self._known
+            if is_unread and not self._unread:
                 name = self.robot.profile.kit.readings[event.values[0]].name
                 place = self.ready.places.at(self._at) if self._at is not None else None
                 row = Row(event.time_ms - started_ms, event.text)

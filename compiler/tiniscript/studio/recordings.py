@@ -13,7 +13,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.kit import Kit
 from tiniscript.base.version import __version__
+from tiniscript.link.messages import UNTOLD
+from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.remote import Pressed
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.studio.world_form import Form, form_of, toml_of
@@ -28,17 +31,19 @@ MOST_ROW_BYTES = 600_000  # of all rows; then the recording is over
 MOST_MS = 600_000
 MOST_TEXT = 200_000  # bytes of a program
 MOST_READINGS = 10_000
+MS_TOLD = 1 << 16  # a robot tells the time of a reading modulo that
 
 VIRTUAL, REAL = "virtual", "real"
 # What somebody did: the robot did the rest. HALT is a stop over the link, or while it was held.
 KEYS, DOWN, UP, HALT, HELD = "KEYS", "BUTTON DOWN", "BUTTON UP", "HALT", "HALT HELD"
+READ, UNREAD = "READ", "UNREAD"  # a reading, and that some of its sensor are missing from then on
 END = "END"  # the recording reaches as far as this row, the last one
 CUT = ("STOPPED", "LOST", "MISSED")  # the end of a real robot's recording, not of its program
 _EVENT = re.compile(r"[A-Z_]{1,20}(?: [A-Za-z0-9_.\-]{1,60}){0,2}")
 _KEYS = re.compile(r"KEYS (\d{1,3}) (-?\d{1,3}) (-?\d{1,3})")
 _REAL = re.compile(
     r"SHOW (?:TRUE|FALSE|-?\d{1,7}(?:\.\d{1,3})?)|READ [A-Z0-9_]{1,40} (?:TRUE|FALSE|-?\d{1,7}"
-    r"(?:\.\d{1,3})?)|UNREAD|DONE|STOPPED|LOST|MISSED|FAULT [A-Z_0-9]{1,40}"
+    r"(?:\.\d{1,3})?)|UNREAD [A-Z0-9_]{1,40}|DONE|STOPPED|LOST|MISSED|FAULT [A-Z_0-9]{1,40}"
 )
 _PROGRAM = re.compile(r"[0-9a-f]{8}")
 _KIT = re.compile(r"[0-9a-f]{4}")
@@ -66,6 +71,10 @@ class Row(NamedTuple):
     def is_input(self) -> bool:
         """Whether somebody did that to a virtual robot."""
         return self.event in (DOWN, UP, HALT, HELD) or self.event.startswith("KEYS ")
+
+    @property
+    def is_reading(self) -> bool:
+        return self.event.startswith((f"{READ} ", f"{UNREAD} "))
 
     @property
     def cells(self) -> list[Any]:
@@ -135,6 +144,35 @@ class Rows:
         return True
 
 
+class ToldReadings:
+    """The rows of a real robot's run for what it tells of its readings.
+
+    `untold` are the sensors of which it could not tell all.
+    """
+
+    def __init__(self, kit: Kit) -> None:
+        self._devices = kit.readings
+        self._ms = 0  # of the last one, since the start
+        self._next_ms: dict[str, int] = {}  # after the last one of each sensor
+        self.untold: list[str] = []
+
+    def rows(self, event: ReadingEvent, since_ms: int) -> list[Row]:
+        """Return the rows of one that has come so long after the start of its run: they may be of
+        a time before the row that came last."""
+        number = event.sensor & ~UNTOLD
+        device = self._devices[number] if number < len(self._devices) else None
+        if device is None or not device.name:
+            return []
+        self._ms += (event.ms - self._ms) % MS_TOLD
+        self._ms += max(0, round((since_ms - self._ms) / MS_TOLD)) * MS_TOLD
+        found = []
+        if event.sensor & UNTOLD and device.name not in self.untold:
+            self.untold.append(device.name)
+            found.append(Row(self._next_ms.get(device.name, 0), f"{UNREAD} {device.name}"))
+        self._next_ms[device.name] = self._ms + 1
+        return [*found, Row(self._ms, f"{READ} {device.name} {device.text(event.value)}")]
+
+
 def head(
     of: str, text: str, robot: Robot, program: int, *, world: str | Form | None = None,
     seed: int = 1, told: dict[int, list[int]] | None = None, is_by_button: bool = False,
@@ -174,12 +212,15 @@ def decode(data: bytes) -> Recording:
         raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
     result = _parse_header(fields)
     rows: list[Row] = []
+    last_ms = 0
     for number, each in enumerate(lines[1:], 2):
         if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
         row = _row(each, number, result.of)
-        if row.ms < (rows[-1].ms if rows else 0):
+        is_late = not result.is_virtual and row.is_reading  # it came later than it was
+        if row.ms < last_ms and not is_late:
             raise BadRecording("unreadable", number)
+        last_ms = last_ms if is_late else row.ms
         if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
         if rows and not result.is_virtual and rows[-1].event in CUT and row.event != END:
@@ -187,7 +228,11 @@ def decode(data: bytes) -> Recording:
         rows.append(row)
     if not rows or rows[-1].event != END:
         raise BadRecording("cut", len(lines))
-    return result._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
+    *rows, end = rows
+    if not result.is_virtual:
+        rows = [row._replace(ms=min(row.ms, end.ms)) for row in rows]
+        rows.sort(key=lambda row: (row.ms, not row.is_reading))
+    return result._replace(rows=tuple(rows), end_ms=end.ms)
 
 
 def _parse_header(fields: dict[str, Any]) -> Recording:

@@ -23,6 +23,8 @@ from tiniscript.cli.robot.program_upload import (
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
+from tiniscript.cli.texts import say_aside
+from tiniscript.link.messages import READINGS
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
@@ -113,6 +115,7 @@ def _upload(
         if done_bytes and progress.draw(done_bytes):  # before that, it is what is waited for
             connection.quiet.note_words()
 
+    tells_readings = options.record is not None and _ask_for_readings(connection)
     try:
         values = send_program(connection, ready_program, options, draw_progress)
         began_s = monotonic()  # before anything else is loaded or told
@@ -128,8 +131,9 @@ def _upload(
         robot_ms = None if simulator is None else simulator.event_ms
         text, robot = options.recorded_text, connection.profile
         head = recordings.head(recordings.REAL, text, robot, values.program)
-        recorder = Recorder(options.record, head, began_s, robot_ms)
+        recorder = Recorder(options.record, head, began_s, robot_ms, robot.kit)
         printer.rows = recorder.add
+        printer.readings = recorder.add_reading if tells_readings else None
     saving = Saving(connection, printer, values)
     try:
         if options.json:
@@ -161,6 +165,17 @@ def _upload(
     finally:
         if recorder is not None:
             recorder.close()
+            if recorder.untold:
+                say_aside("record_untold", language, sensors=", ".join(recorder.untold))
+
+
+def _ask_for_readings(connection: Connection) -> bool:
+    """Have the robot tell what its program reads; return whether it does. If not, that is said."""
+    if not connection.device_info.values.features & READINGS:
+        say_aside("record_no_readings", connection.language)
+        return False
+    connection.request(lambda session: session.tell_readings(True))
+    return True
 
 
 def _receipt_line(

@@ -20,6 +20,7 @@ from tiniscript.library.shows import Finder, Show
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event, ShownEvent
+from tiniscript.link.payloads import ReadingEvent
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
@@ -72,6 +73,7 @@ class EventPrinter:
         self.shows = Finder({} if shown_map is None or program is None else {program: shown_map})
         self.has_lines = whole_map is None  # whose numbers a person knows
         self.rows = rows
+        self.readings: Callable[[ReadingEvent], None] | None = None  # gets those; nobody else does
         self.out = print_line or _print_line
         self.err = print_error or _err
         self.about = robot_fields or {}
@@ -81,7 +83,10 @@ class EventPrinter:
         if self.began_ms is None:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms
-        if event.name == "SHOW":
+        if event.name == "READING":
+            if self.readings is not None:
+                self.readings(event)
+        elif event.name == "SHOW":
             self._tell_value(since_ms, event)
         elif event.name == "DONE":
             self.say(since_ms, "DONE", "", text("robot_done", self.language))

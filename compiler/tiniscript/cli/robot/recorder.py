@@ -14,8 +14,10 @@ from threading import Lock
 from time import monotonic
 
 from tiniscript.base import files
+from tiniscript.base.kit import Kit
 from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.inputs import printable_name
+from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import END, MOST_MS, Row
 
@@ -84,10 +86,12 @@ class Recorder:
         head: str,
         began_s: float | None,
         robot_ms: Callable[[str], int] | None = None,
+        kit: Kit | None = None,
     ) -> None:
         self._began_s = began_s
         self._robot_ms = robot_ms
         self._kept = recordings.Rows()
+        self._readings = recordings.ToldReadings(kit or Kit((), ()))
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
@@ -104,6 +108,22 @@ class Recorder:
             self._rows.line(recordings.line(row))
         if not is_row_kept or name in ENDING_EVENTS:
             self._end(row.ms)
+
+    def add_reading(self, event: ReadingEvent) -> None:
+        """Add what the program has read, at the time that the robot tells."""
+        if self._is_over:
+            return
+        since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
+        for row in self._readings.rows(event, round(since_s * 1000)):
+            if self._kept.add(row):
+                self._rows.line(recordings.line(row))
+            elif self._kept.is_full:
+                return self._end(row.ms)
+
+    @property
+    def untold(self) -> list[str]:
+        """The sensors of which the robot could not tell all readings."""
+        return self._readings.untold
 
     def end(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""

@@ -68,7 +68,7 @@ class RunMonitor:
                 raise CommandError(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
                 self.printer.tell(time_ms, event)
-                if event.name != "STARTED":
+                if event.name not in ("STARTED", "READING"):
                     self.connection.quiet.note_words()
             exit_code = exit_code_of(event, run)
             if exit_code is not None:
