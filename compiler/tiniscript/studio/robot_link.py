@@ -38,6 +38,7 @@ from tiniscript.link.messages import (
     MOST_LEAST,
     MOST_PAD,
     NAME_BYTES,
+    READINGS,
     REMOTE_KEYS,
     RESUME_GO,
     RESUME_STEP,
@@ -50,6 +51,7 @@ from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import (
     HelloReply,
+    ReadingEvent,
     ReadTasksReply,
     ReadVariablesReply,
     ReceiptReply,
@@ -59,6 +61,7 @@ from tiniscript.link.remote import Pressed, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, trim_from_reply
+from tiniscript.studio.recordings import ToldReadings
 
 Json = dict[str, Any]
 T = TypeVar("T")
@@ -104,6 +107,8 @@ class RobotLink:
         self._run: _Run | None = None
         self._begun: _Run | None = None
         self._over: _Run | None = None
+        self._readings: ToldReadings | None = None
+        self._reads: tuple[_Run, int] | None = None  # the run that they are of, and when it began
         self._program_run: _Run | None = None  # of the newest program that the page has started
 
     @property
@@ -137,6 +142,8 @@ class RobotLink:
                 pending.limit_ms = limit_ms
             return pending
 
+        if do in ("upload", "start") and self._tells_readings:
+            self._connection.begin(lambda session: session.tell_readings(True))
         pending = self._connection.begin(with_limit)
         self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
 
@@ -157,7 +164,10 @@ class RobotLink:
             if event is None:
                 break
             self._follow(event[1])
-            found += self._event(event[1])
+            if isinstance(event[1], ReadingEvent):
+                found += self._rows(event[1], event[0])
+            else:
+                found += self._event(event[1])
         return found
 
     def _outcomes(self) -> list[Json]:
@@ -187,6 +197,24 @@ class RobotLink:
             self._over is not None and self._over == self._run
         ):
             self._run = None
+
+    @property
+    def _tells_readings(self) -> bool:
+        robot = self._connection.robot
+        return robot is not None and bool(robot.values.features & READINGS)
+
+    def _rows(self, event: ReadingEvent, time_ms: int) -> list[Json]:
+        """Return an event with the rows of a reading for the recording of its run."""
+        robot, run = self._connection.robot, self._known_run(event.run)
+        name = shipped_name_of_kit(robot.kit) if robot is not None else None
+        if name is None:
+            return []
+        if self._reads is None or self._reads[0] != run:  # its first one
+            self._readings = ToldReadings(robots.load(name).kit)
+            self._reads = run, time_ms - event.ms
+        assert self._readings is not None
+        rows = self._readings.rows(event, time_ms - self._reads[1])
+        return [{"event": event.name, "rows": [row.cells for row in rows]}]
 
     def _known_run(self, number: int) -> _Run:
         return _Run(self._connection.boot, number)
@@ -286,6 +314,7 @@ def about(robot: DeviceInfo) -> Json:
         "is_idle": robot.values.state in (STATE_IDLE, STATE_STOPPED),
         "has_remote": has_remote(robot),
         "has_breakpoints": bool(robot.values.features & BREAKPOINTS),
+        "has_readings": bool(robot.values.features & READINGS),
     }
 
 

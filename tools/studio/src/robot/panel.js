@@ -282,6 +282,7 @@ export class RobotPanel {
     else this.#speech.say('say_connected', { name: this.#name });
     element('link_rename_to', HTMLInputElement).value = shown(about.name);
     this.#watching.meet(about);
+    this.#page.recorder.meet(about);
     this.#way?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
 

@@ -2,13 +2,17 @@
 
 import { element, hide } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
+import { text as textOf } from '../page/texts.js';
+import { devicesOf } from '../page/words.js';
 import { Run } from '../virtual/runs.js';
 
+/** @typedef {import('./transport.js').About} About */
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 /** @typedef {import('../python.js').Checked} Checked */
 
 const MOST = 10_000; // events; then it is over
 const MOST_MS = 600_000;
+const UNREAD = 'UNREAD '; // a row that says so of a sensor
 
 export class Recorder {
   #page;
@@ -21,13 +25,21 @@ export class Recorder {
   /** Since when the program is halted. @type {number | null} */
   #halted = null;
   #isOver = true;
+  #isDeaf = false; // the robot does not tell what its program reads
+  /** The sensors of which it could not tell all. @type {Set<string>} */
+  #untold = new Set();
   #play = element('record_play', HTMLButtonElement);
 
   /** @param {{runs: import('../virtual/runs.js').Runs, play: (run: Run) => void}} page */
   constructor(page) {
     this.#page = page;
     this.#play.addEventListener('click', () => this.#run && page.play(this.#run));
-    this.#show();
+    pageState.language.subscribe(() => this.#show());
+  }
+
+  /** A robot is connected. @param {About} about */
+  meet(about) {
+    this.#isDeaf = !about.has_readings;
   }
 
   /** A robot gets a program. @param {Checked} checked */
@@ -69,12 +81,26 @@ export class Recorder {
       if (event.is_program && event.program) this.#record(event.program, performance.now());
       else this.end('STOPPED');
     }
+    if (event.event === 'READING') this.#read(event.rows ?? []);
     const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
     if (!row || this.#isOver || !this.#run) return;
     this.#began ??= performance.now();
     if (event.event !== 'SHOW') this.end(row);
     else if (this.#run.rows.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
     else this.#run.put([this.#ms, row]);
+    this.#show();
+  }
+
+  /** Rows come in the robot's own time. @param {[number, string][]} rows */
+  #read(rows) {
+    if (this.#isOver || !this.#run) return;
+    for (const row of rows) {
+      const [ms, what] = row;
+      this.#began ??= performance.now() - ms;
+      if (this.#run.rows.length >= MOST || ms > MOST_MS) return this.end('STOPPED');
+      this.#run.put(row);
+      if (what.startsWith(UNREAD)) this.#untold.add(what.slice(UNREAD.length));
+    }
     this.#show();
   }
 
@@ -87,6 +113,7 @@ export class Recorder {
     const sent = this.#sent.get(program);
     this.#run = null;
     this.#isOver = !sent;
+    this.#untold.clear();
     this.#began = began;
     if (sent) {
       const { checked, text, robot } = sent;
@@ -97,11 +124,21 @@ export class Recorder {
     this.#show();
   }
 
+  /** Whether the program names a sensor. */
+  get #reads() {
+    const { text = '', robot = '' } = this.#run?.of ?? {};
+    return devicesOf(robot, 'sensor').some((device) => text.toUpperCase().includes(device.text));
+  }
+
   get #ms() {
     return this.#began === null ? 0 : Math.round(performance.now() - this.#began);
   }
 
   #show() {
     hide(this.#play, !this.#run?.rows.length);
+    const said = element('record_lacks', HTMLElement);
+    const what = this.#untold.size ? 'record_untold' : this.#isDeaf && this.#reads ? 'record_no_readings' : null;
+    hide(said, !this.#run || !what);
+    said.textContent = this.#run && what ? textOf(what, { sensors: [...this.#untold].join(', ') }) : '';
   }
 }

@@ -11,6 +11,7 @@
  * @property {boolean} is_idle nothing runs, and no fault has ended it
  * @property {boolean} has_remote its programs can read a remote control
  * @property {boolean} has_breakpoints its programs can halt
+ * @property {boolean} has_readings it tells what its programs read
  */
 
 /**
@@ -51,6 +52,7 @@
  * @property {string} [cause]
  * @property {number} [count]
  * @property {string} [text]
+ * @property {[number, string][]} [rows] of what the program has read, for its recording
  */
 
 /**
