@@ -1,0 +1,20 @@
+// node runs_kept_in_node.mjs SOURCES: keeps runs as the page does. Reads a JSON list of lists of [rows, characters of
+// each row, characters of a file]; prints, after each run of a list, the numbers of those that are kept, and their size.
+
+import { text } from 'node:stream/consumers';
+import { pathToFileURL } from 'node:url';
+
+const { Run, Runs } = await import(pathToFileURL(`${process.argv[2]}/virtual/runs.js`).href);
+
+for (const story of JSON.parse(await text(process.stdin))) {
+  const runs = new Runs();
+  const kept = story.map(([count, length, file]) => {
+    const run = new Run({ of: 'real', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
+    runs.begin(run);
+    for (let k = 0; k < count; k += 1) run.put([k, 'x'.repeat(length)]);
+    run.file = 'x'.repeat(file);
+    runs.trim(); // at its end
+    return [runs.all.map(({ number }) => number), runs.size, run.size];
+  });
+  console.log(JSON.stringify(kept));
+}
