@@ -21,6 +21,7 @@ from tests.firmware.test_uno_trace import power
 from tests.machines import MACHINES, Senses
 from tests.oracle import programs
 from tests.oracle.words import PAPER_KIT
+from tests.support.campaign import failure_text
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.base.fixed_point import value_text
@@ -214,7 +215,7 @@ if __name__ == "__main__":
             try:
                 over += compare(program, robot)
             except AssertionError as wrong:
-                raise SystemExit(f"seed {number}: {wrong}") from None
+                raise SystemExit(f"seed {number}: {failure_text(wrong)}") from None
             ran += 1
             if ran == total:
                 break

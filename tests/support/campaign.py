@@ -6,6 +6,8 @@ import time
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
+from traceback import extract_tb
 
 
 def wanted(count: int, seed: int, *flags: str) -> Namespace:
@@ -34,3 +36,10 @@ def each_seed(check: Callable[[int], object], given: Namespace) -> None:
         if came is not None:
             found[str(came)] += 1
     print(f"{given.count}, nothing wrong: {dict(found)}, {time.monotonic() - begun_s:.0f} s")
+
+
+def failure_text(wrong: AssertionError) -> str:
+    """Return what an assertion says; of one that says nothing, where it is, and the assertion."""
+    frame = extract_tb(wrong.__traceback__)[-1]
+    place = f"{Path(frame.filename).name}:{frame.lineno}: {frame.line}"
+    return f"{place}: {wrong}" if str(wrong) else place

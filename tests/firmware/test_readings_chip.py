@@ -1,0 +1,123 @@
+"""Readings that are told delay no program on a simulated Mega either, at 9600 baud.
+
+`python -m tests.firmware.test_readings_chip 100` runs many; another number says with which seed it
+begins.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from itertools import count, islice
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_readings import BYTE_TICKS
+from tests.firmware.test_readings import ran as on_line
+from tests.firmware.test_uno_robot import KIT, MOTORS, computer, switched_on
+from tests.firmware.test_uno_trace import power
+from tests.support.campaign import failure_text
+from tests.support.images import image_of
+from tests.support.shown_in_loops import Did, apart_ms, program
+from tiniscript import robots
+from tiniscript.bytecode.image import Image
+from tiniscript.link.requests import OK
+from tools.bench import firmware_size
+from tools.bench.firmware_stack import surround
+from tools.uno import CYCLES_PER_MS, Uno, missing
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
+
+BOARD = "mega"
+RUN_MS = 1500
+CHANGES_MS = 25  # between two changes of the light
+LIGHT = ("A0", "A1")
+TOGETHER_MS = 0.05  # pins of one setting
+# Runs that begin at another time beside the computer's PINGs are apart, too.
+MOST_APART_MS = 3
+
+
+def ran(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
+    """Return what a program sets, and when since the first; and how many readings were told."""
+    wired = computer(uno)
+    session = wired.session
+    assert wired.until(session.upload(image, runs=False, saves=False)) == OK
+    assert wired.until(session.tell_readings(is_told)) == OK
+    wired.run(wait_ms)
+    assert wired.until(session.start()) == OK
+    since, rng = uno.cycle, random.Random(1)
+    for _ in range(RUN_MS // CHANGES_MS):
+        for pin in LIGHT:
+            uno.analog(pin, rng.randrange(1024))
+        wired.run(CHANGES_MS)
+    told = sum(event.name == "READING" for event in session.events())
+    end = uno.cycle
+    session.stop(wired.now_ms)
+    wired.run(200)
+    changes = sorted({change.cycle for name in MOTORS for change in uno.pins.history(name)
+                      if since < change.cycle < end})  # fmt: skip
+    lasting = [(cycle, f"{power(uno, 'left', cycle)} {power(uno, 'right', cycle)}")
+               for cycle, after in zip(changes, [*changes[1:], end], strict=False)
+               if after - cycle > TOGETHER_MS * CYCLES_PER_MS]  # fmt: skip
+    first = lasting[0][0] if lasting else 0
+    return [((cycle - first) / CYCLES_PER_MS, powers) for cycle, powers in lasting], told
+
+
+def steady_programs(first: int) -> Iterator[tuple[int, str]]:
+    """Return programs that do the same at the same times on a line that is 5 % slower or faster: of
+    others no two runs are the same."""
+    for seed in count(first):
+        text = program(random.Random(seed)).replace("DISTANCE", "LIGHT_R")  # no echo is waited for
+        usual, *others = (on_line(text, seed, False, BYTE_TICKS + more) for more in (0, -1, 1))
+        if len(usual.did) > 1 and all(apart_ms(usual.did, each.did) <= 1 for each in others):
+            yield seed, text
+
+
+def compare(text: str, uno: Uno) -> int:
+    """Run a program with and without; return how many readings were told."""
+    image = image_of(text, KIT)
+    alone, *others = (ran(image, uno, False, wait_ms)[0] for wait_ms in (0, 70, 130))
+    told, told_count = ran(image, uno, True, 0)
+    most_ms = MOST_APART_MS + max(apart_ms(alone, other) for other in others)
+    apart = apart_ms(alone, told)
+    assert apart <= most_ms, f"{apart:.1f} ms apart, others {most_ms:.1f}: {text}"
+    return told_count
+
+
+@pytest.fixture(scope="module")
+def chip(
+    sketches: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Uno]:
+    memory = tmp_path_factory.mktemp("eeprom") / BOARD
+    with switched_on(sketches(BOARD), memory, BOARD) as uno:
+        surround(uno, robots.load("tinibot"))
+        yield uno
+
+
+@pytest.mark.sampled("first", keep=2)
+@pytest.mark.parametrize("first", range(0, 100, 10))
+def test_a_mega_does_the_same_at_the_same_times_while_it_tells_readings(
+    chip: Uno, first: int
+) -> None:
+    compare(next(steady_programs(first))[1], chip)
+
+
+if __name__ == "__main__":
+    total = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    begin = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    elf = firmware_size.measure(BOARD).firmware
+    readings = 0
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        switched_on(elf, Path(folder) / "eeprom", BOARD) as robot,
+    ):
+        surround(robot, robots.load("tinibot"))
+        for number, text in islice(steady_programs(begin), total):
+            try:
+                readings += compare(text, robot)
+            except AssertionError as wrong:
+                raise SystemExit(f"seed {number}: {failure_text(wrong)}") from None
+    print(f"{total} programs on a simulated {BOARD}, {readings} readings told: none was delayed")
