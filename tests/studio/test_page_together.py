@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.studio.test_page_link import events
 from tests.support.class_pages import (
     class_of_many,
     enters,
@@ -19,7 +20,7 @@ from tests.support.class_pages import (
     types,
 )
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Class, Pages, drives, image, write
+from tests.support.studio import Class, Pages, checked, drives, image, write
 from tests.support.waiting import until
 from tiniscript import compile, robots
 
@@ -80,7 +81,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
     for page in two:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
         has(page, *both)
-        page.locator("html[data-state=checked]").wait_for(state="attached")
+        checked(page)
         until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
 
 
@@ -210,6 +211,46 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
+def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: Class) -> None:
+    ana, luz = two
+    begins(two)
+    rows = ("SPEED = 5;", "SHOW(SPEED);", "F(3, 80);", "SHOW(SPEED + 1);", "R(3, 60);")
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
+        for page in two:
+            page.click("#side_real")
+        ana.click("[data-text=class_ask]")
+        ana.locator("html[data-robot=connected]").wait_for(state="attached")
+        write(ana, "\n".join(rows) + "\n")
+        ana.locator(".cm-content").evaluate("(it) => it.blur()")
+        for page in two:
+            has(page, *rows)
+            checked(page)
+        ana.click("#link_upload")
+        for row in ("F(3, 80)", "R(3, 60)"):
+            for page in two:
+                page.locator(".cm-running", has_text=row).wait_for(state="attached")
+        assert luz.locator("#link_shown").inner_text() == "SPEED 5\nSPEED + 1 6"
+        assert not luz.locator("#link_upload").is_visible()
+        ana.click("#stop")
+        for page in two:
+            page.locator(".cm-running").wait_for(state="detached")
+        luz.locator("#link_said", has_text="stopped").wait_for()
+        luz.locator("#record_play:visible").wait_for()
+        assert events(luz) == events(ana) == ["SHOW 5", "SHOW 6", "STOPPED"]
+        for page in two:
+            page.click("#side_real")
+        ana.fill("#link_line", "SHOW(7)")  # a line is her own
+        ana.keyboard.press("Enter")
+        ana.locator("#link_shown", has_text="7").wait_for()
+        ana.click("#link_upload")
+        luz.locator(".cm-running", has_text="F(3, 80)").wait_for(state="attached")
+        assert "7" not in luz.locator("#link_shown").inner_text()
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
+        for page in two:
+            page.locator(".cm-running").wait_for(state="detached")
+
+
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -245,4 +286,38 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     program.filter(has_text="B(1, 66)").wait_for()
     teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
     assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
+    seen.close()
+
+
+def test_the_teacher_takes_part_and_leaves(
+    two: tuple[Page, Page], taught: Class, browser: Browser
+) -> None:
+    ana, luz = two
+    begins(two)
+    seen = Pages(browser, taught.server.address)
+    teacher = teaches(seen, taught)
+    tile = teacher.locator("#wall li").filter(has_text="Red")
+    tile.hover()
+    tile.locator("button.join").click()
+    teacher.locator("html[data-group=in]").wait_for(state="attached")
+    teacher.locator("#note", has_text="You are editing the program of Red together.").wait_for()
+    has(teacher, *[row.strip() for row in PROGRAM.splitlines()])
+    teacher.click("#view_text")
+    goes_to(teacher, "S;")
+    types(teacher, "\nW(9)\n")
+    for page in (ana, luz, teacher):
+        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+    ana.locator("#class_mates .mate", has_text="Teacher").wait_for()
+    goes_to(teacher, "B(1, 40)")
+    types(teacher, " ")
+    ana.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate-4").wait_for()
+    teacher.reload()
+    teacher.locator("html[data-group=in]").wait_for(state="attached")
+    has(teacher, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+    teacher.click("#run")
+    teacher.locator("html[data-robot=none]").wait_for(state="attached")
+    teacher.click("#class_leave")
+    tile.wait_for()
+    assert not teacher.locator("#class_leave").is_visible()
+    until(lambda: ana.locator("#class_mates").inner_text() == "Luz", "the teacher has left")
     seen.close()

@@ -51,6 +51,7 @@
  * @property {string} [cause]
  * @property {number} [count]
  * @property {string} [text]
+ * @property {number} [ms] of the run, where another page of the group drives the robot
  */
 
 /**
