@@ -20,16 +20,33 @@ from tests.support.class_pages import (
     types,
 )
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Class, Pages, checked, drives, image, write
+from tests.support.studio import Class, Pages, checked, drives, image, noted, write
 from tests.support.waiting import until
 from tiniscript import compile, robots
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Dialog, Page
 
 pytestmark = pytest.mark.usefixtures("unhurried")
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
+
+
+# Two looks of a pupil's page at its class.
+HEARD_TWICE = """() => new Promise((resolve) => { const own = fetch; let count = 0;
+  window.fetch = async (where, what) => { const answer = await own(where, what);
+    if (what?.body?.includes('"here"') && ++count === 2) { window.fetch = own; resolve(null); }
+    return answer; }; })"""
+# After how many milliseconds something that the class has told is seen.
+NOTES_WHEN = """(part) => { const own = fetch; let began = null;
+  window.fetch = async (where, what) => { const answer = await own(where, what);
+    const said = await answer.clone().text();
+    if (said.includes(part)) began ??= performance.now();
+    return answer; };
+  const root = document.querySelector('#editor').shadowRoot;
+  new MutationObserver((_, each) => { if (!root.textContent.includes(part)) return;
+    window.composed = performance.now() - began; window.fetch = own; each.disconnect(); })
+    .observe(root, { childList: true, subtree: true, characterData: true }); }"""
 
 
 @pytest.fixture(scope="module")
@@ -249,6 +266,109 @@ def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: 
         taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
         for page in two:
             page.locator(".cm-running").wait_for(state="detached")
+
+
+def test_another_program_is_the_group_s_only_if_somebody_wants_that(
+    two: tuple[Page, Page],
+) -> None:
+    ana, luz = two
+    begins(two)
+    rows = [row.strip() for row in PROGRAM.splitlines()]
+    asked: list[str] = []
+
+    def answers(dialog: Dialog) -> None:
+        asked.append(dialog.message)
+        if len(asked) == 1:
+            dialog.dismiss()
+        else:
+            dialog.accept()
+
+    ana.on("dialog", answers)
+    ana.click("#bar_new")
+    until(lambda: len(asked) == 1, "it asks")
+    has(ana, *rows)
+    ana.click("#bar_new")
+    has(luz)
+    has(ana)
+    assert asked == ["This replaces the program for your whole group. Replace it?"] * 2
+    ana.remove_listener("dialog", answers)
+    ana.locator(".cm-content").focus()
+    ana.keyboard.press("Control+z")
+    for page in two:
+        has(page, *rows)
+
+
+def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    rows = [row.strip() for row in PROGRAM.splitlines()]
+    taught.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
+                       "lessons": []})  # fmt: skip
+    state = taught.room.teach({"do": "class"})
+    [kept] = state["kept"]
+    number = next(each["number"] for each in state["pupils"] if each["name"] == "Luz")
+    with luz.expect_event("dialog") as asked:
+        luz.once("dialog", lambda dialog: dialog.dismiss())
+        taught.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
+    assert "whole group" in asked.value.message
+    luz.evaluate(HEARD_TWICE)  # and is asked no more
+    for page in two:
+        has(page, *rows)
+    assert [each["key"] for each in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
+    luz.click("#side_real")
+    luz.click("[data-text=group_leave]")
+    has(luz, "F(1, 77)")
+    until(lambda: not taught.room.teach({"do": "class"})["kept"], "the class has heard of it")
+    has(ana, *rows)
+    luz.locator("#class_group button", has_text="Red (Ana)").click()
+    luz.locator("html[data-group=in]").wait_for(state="attached")
+    has(luz, *rows)
+
+
+def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    ana.context.set_offline(True)
+    goes_to(ana, "LOOP(3)")
+    for key in ("Home", "Shift+ArrowDown", "Shift+ArrowDown", "Shift+ArrowDown", "Delete"):
+        ana.keyboard.press(key)
+    ana.keyboard.press("ArrowUp")
+    ana.locator("#class_group", has_text="does not answer").wait_for()
+    goes_to(luz, "B(1, 40)")
+    types(luz, "\nBEEP(1, 440)\n")
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    [group] = taught.room.teach({"do": "class"})["groups"]
+    asked = {"do": "class_text", "group": group["key"]}
+    until(lambda: "BEEP" in taught.room.teach(asked)["text"], "the class has hers")
+    ana.context.set_offline(False)
+    noted(ana, "Somebody else changed that part first, so your last change is not there.")
+    for page in two:
+        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;")
+
+
+def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
+    two: tuple[Page, Page],
+) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(ana, "F(1, 80)")
+    types(ana, "\n")
+    tells = ana.context.new_cdp_session(ana)
+    tells.send("Input.imeSetComposition", {"text": "// n", "selectionStart": 4, "selectionEnd": 4})
+    goes_to(luz, "S;")
+    types(luz, "\nW(6)")
+    ana.evaluate(NOTES_WHEN, "W(6)")
+    luz.keyboard.press("Enter")
+    until(lambda: ana.evaluate("window.composed !== undefined"), "it comes")
+    assert ana.evaluate("window.composed") >= 1500
+    tells.send("Input.insertText", {"text": "// ni"})
+    ana.keyboard.press("ArrowDown")
+    for page in two:
+        has(page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);")
 
 
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:

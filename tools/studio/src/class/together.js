@@ -281,7 +281,7 @@ export class Together {
     const isFirst = doc.lineAt(selection.main.head).from === selection.main.head; // what is put in there is before its line
     this.#view.dispatch({
       changes: after,
-      selection: selection.map(after, isFirst ? 1 : -1),
+      ...(isFirst && { selection: selection.map(after, 1) }), // else it is mapped so anyway; saying it would end a composition
       annotations: [brought.of(true), Transaction.addToHistory.of(false)],
     });
     if (shown.count > count) this.#editor.handUndo((how) => this.#takeBack(how));
