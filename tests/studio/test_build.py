@@ -24,6 +24,7 @@ from tools.builds.page_texts import page_texts
 from tools.studio.pack import NOT_HERE
 
 LARGEST = 6_000_000  # bytes of all files, gzipped, with one language: no browser fetches another
+GROUP_LARGEST = 35_000  # of what pupils fetch who edit together
 SOURCES = ROOT / "tools" / "studio"
 PACKAGE = ROOT / "compiler" / "tiniscript"
 PAGE_SOURCES = {
@@ -132,11 +133,24 @@ def test_the_page_is_small_enough(page: Path) -> None:
         for path in page.iterdir()
         if path.name not in (studio.STAMP, studio.LICENCES, serving.FIRMWARE)
     ]
-    rows = [row.split() for row in studio.size_rows(page)[1:-1]]
-    weights = {name: int(packed.replace(",", "")) for _, packed, name in rows}
+    weights = weights_of(page)
     assert {*weights} == {path.name for path in files}
     said = [sum(weights[name] for name in studio.language_files(code)) for code in languages()]
     assert sum(weights.values()) - sum(said) + max(said) <= LARGEST
+
+
+def weights_of(page: Path) -> dict[str, int]:
+    """Return the bytes of each file, packed as a server sends it."""
+    rows = [row.split() for row in studio.size_rows(page)[1:-1]]
+    return {name: int(packed.replace(",", "")) for _, packed, name in rows}
+
+
+def test_what_a_group_fetches_is_small_enough(page: Path) -> None:
+    """Though this counts all that a class has, its wall, too."""
+    weights = weights_of(page)
+    names = [name for name in weights if name.startswith(("together.", "classroom-", "class."))]
+    assert len(names) == 3
+    assert sum(weights[name] for name in names) <= GROUP_LARGEST
 
 
 def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:

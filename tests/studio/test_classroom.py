@@ -37,6 +37,7 @@ class FakeRobot:
     was_left: bool = False
     silent_s: float = 0.0
     is_half_made: bool = False
+    witness: Callable[[list[Json]], object] | None = None
 
     def leave(self, why: str) -> None:
         self.left = why

@@ -92,6 +92,19 @@ class Member:
         return " ".join(" ".join(self.page.text).split())
 
 
+class Teacher(Member):
+    """The teacher's page in a group."""
+
+    def __init__(self, school: School, key: str, before: str = "") -> None:
+        self.school, self.name, self.saw = school, "Teacher", 0
+        answer = self.asks("group_visit", group=key, name=self.name, before=before)
+        assert "failure" not in answer, answer
+        self.page = Page.of(answer["page"], answer)
+
+    def asks(self, do: str, **more: Any) -> Json:
+        return self.school.made.teach({"do": do, **more})
+
+
 @pytest.fixture
 def school(tmp_path: Path) -> School:
     return School(tmp_path / "groups")
@@ -206,6 +219,62 @@ def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) ->
     ana = Member(school, "Ana")
     ana.sends()
     assert ana.asks("group", **ana.request(waits=True))["changes"] == []
+
+
+def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
+    school: School, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANGS_S)
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    school.here(ana.token, True)
+    robot = school.connects(ana.token)
+    ana.sends()
+    luz.sends()
+    heard: list[Json] = []
+    waiting = in_thread(lambda: heard.append(luz.asks("group", **luz.request(waits=True))))
+    until(lambda: members_hold(school, luz) > 0, "the page waits")
+    group = school.made._groups.of(luz.token)
+    assert group is not None and robot.witness is not None
+    begins = {"event": "STARTED", "program": "a", "is_program": True}
+    with group.news, school.made._lock, school.made._groups._lock:  # whoever is busy with these
+        telling = in_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
+        telling.join(HANGS_S)
+        assert not telling.is_alive()
+    waiting.join(HANGS_S)
+    assert [each["event"] for each in heard[0]["runs"]] == ["STARTED"]
+    assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
+
+
+def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    eva = Member(school, "Eva", "Blue")
+    school.here(ana.token, True)
+    robot = school.connects(ana.token)
+
+    def hears(member: Member, value: str) -> bool:
+        found = json.dumps(member.sends(ran=["", 0]))
+        return f'"{value}"' in found
+
+    def tells(value: str) -> None:
+        begins = {"event": "STARTED", "program": "a", "is_program": True}
+        if robot.witness is not None:
+            robot.witness([begins, {"event": "SHOW", "value": value}])
+
+    tells("one")
+    assert hears(luz, "one") and not hears(eva, "one")
+    ana.joins("Blue")
+    tells("two")
+    assert hears(eva, "two") and not hears(luz, "two")
+    assert not hears(luz, "STARTED")  # it is over for them
+    ana.asks("group_leave")
+    tells("three")
+    assert not hears(eva, "three") and not hears(luz, "three")
+    ana.joins("Red")
+    tells("four")
+    other = school.connects(luz.token)
+    tells("five")  # the stop at the end of what she has started
+    assert hears(luz, "five")
+    assert other.witness is not None
 
 
 def in_thread(do: Callable[[], object]) -> Thread:
@@ -361,6 +430,108 @@ def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -
     [seen] = school.teaches("class")["groups"]
     assert seen["pupils"] == [school.number("Luz")]
     assert luz.sends()["others"] == []
+
+
+def test_the_teacher_takes_part_and_leaves(school: School) -> None:
+    members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
+    [seen] = school.teaches("class")["groups"]
+    teacher = Teacher(school, seen["key"])
+    assert teacher.page.text == members[0].page.text
+    [said] = [each for each in members[0].sends()["others"] if each["name"] == "Teacher"]
+    marks = {each["mark"] for each in teacher.sends()["others"]}
+    assert marks == set(range(groups.MARKS)) and said["mark"] not in marks
+    teacher.types("80", "95")
+    teacher.sends(at="i.3", writes=True)
+    members[1].sends()
+    assert "F(1, 95)" in members[1].text
+    assert school.teaches("class_text", group=seen["key"])["history"] == ["Teacher: → F(1, 95)"]
+    assert school.teaches("class")["groups"][0]["pupils"] == seen["pupils"]
+    [shown] = school.here(school.joins("Late"))["groups"]
+    assert shown["members"] == [each.name for each in members]
+    teacher.asks("group_leave")
+    assert len(members[0].sends()["others"]) == groups.MOST_MEMBERS - 1
+    assert teacher.asks("group", **teacher.request()) == {"left": True}
+
+
+def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
+    ana = Member(school, "Ana")
+    [group] = school.teaches("class")["groups"]
+    teacher = Teacher(school, group["key"])
+    for k in range(groups.MOST_MEMBERS - 1):
+        Member(school, f"P{k}")
+    late = school.joins("Late")
+    request = {"do": "group_join", "name": "Red", "text": ""}
+    assert school.made.answer(late, HERE, request) == {"failure": "group_full"}
+    assert teacher.sends()["others"][0]["name"] == ana.name
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed: int) -> None:
+    """Whatever the teacher's page does there: turns, places and robots are as without it."""
+    chance = Random(seed)
+    schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
+    both = [[Member(school, name, name) for name in NAMES] for school in schools]
+    for _ in range(40):
+        does, k = chance.choice(("wish", "connect", "join", "leave", "stop")), chance.randrange(5)
+        name, wants = chance.choice(NAMES), chance.random() < 0.8
+        for school, members in zip(schools, both, strict=True):
+            member = members[k]
+            school.now_s += 1
+            if does == "wish":
+                school.here(member.token, wants)
+            elif does == "connect" and school.here(member.token)["place"] == 0:
+                school.connects(member.token)
+            elif does == "join":
+                member.joins(name)
+            elif does == "leave":
+                member.asks("group_leave")
+            elif does == "stop":
+                member.asks("stop", group_stops=school.now_s)
+        there = schools[0].teaches("class")["groups"]
+        if there:
+            teacher = Teacher(schools[0], chance.choice(there)["key"])
+            teacher.sends(at="i.1", writes=True)
+            if chance.random() < 0.3:
+                teacher.asks("group_leave")
+        seen = [[school.here(member.token) for member in members]
+                for school, members in zip(schools, both, strict=True)]  # fmt: skip
+        assert seen[0] == seen[1]
+        asked = [[each["do"] for each in school.hosting.asked] for school in schools]
+        assert asked[0] == asked[1]
+        assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
+
+
+def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
+    ana = Member(school, "Ana")
+    [group] = school.teaches("class")["groups"]
+    teacher = Teacher(school, group["key"])
+    assert [each["name"] for each in ana.sends()["others"]] == ["Teacher"]
+    school.now_s += groups.GONE_S + 1
+    assert ana.sends()["others"] == []
+    assert teacher.asks("group", **teacher.request()) == {"left": True}
+    again = Teacher(school, group["key"], teacher.page.name)
+    assert again.page.name == teacher.page.name
+    assert [each["name"] for each in ana.sends()["others"]] == ["Teacher"]
+
+
+def test_who_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
+    ana = Member(school, "Ana")
+    [group] = school.teaches("class")["groups"]
+    before = ana.sends()
+    for _ in range(3):
+        school.teaches("class_text", group=group["key"])
+    after = ana.sends()
+    assert (before["others"], before["saw"]) == (after["others"], after["saw"])
+    with pytest.raises(BadRequest):
+        ana.asks("group_visit", group=group["key"], name="Teacher")
+    for wrong in (None, 5, "", "x" * 32):
+        request = {"do": "group_visit", "group": wrong, "name": "Teacher"}
+        assert school.made.teach(request) == {"failure": "group_gone"}
+    with pytest.raises(BadRequest):
+        school.made.teach({"do": "group_visit", "group": group["key"], "name": None})
+    school.teaches("class_over")
+    request = {"do": "group_visit", "group": group["key"], "name": "Teacher"}
+    assert school.made.teach(request) == {"failure": "class_over"}
 
 
 # -- one robot for the group ----------------------------------------------------------------------

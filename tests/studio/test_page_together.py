@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.studio.test_page_link import events
 from tests.support.class_pages import (
     class_of_many,
     enters,
@@ -19,16 +21,28 @@ from tests.support.class_pages import (
     types,
 )
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Class, Pages, drives, image, write
+from tests.support.studio import Class, Pages, checked, drives, image, noted, write
 from tests.support.waiting import until
 from tiniscript import compile, robots
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Dialog, Page
 
 pytestmark = pytest.mark.usefixtures("unhurried")
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
+
+
+# Two looks of a pupil's page at its class.
+HEARD_TWICE = """() => new Promise((resolve) => { const own = fetch; let count = 0;
+  window.fetch = async (where, what) => { const answer = await own(where, what);
+    if (what?.body?.includes('"here"') && ++count === 2) { window.fetch = own; resolve(null); }
+    return answer; }; })"""
+# When something is seen.
+NOTES_WHEN = """(part) => { const root = document.querySelector('#editor').shadowRoot;
+  new MutationObserver((_, each) => { if (!root.textContent.includes(part)) return;
+    window.seen_ms = Date.now(); each.disconnect(); })
+    .observe(root, { childList: true, subtree: true, characterData: true }); }"""
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +67,12 @@ def two(pages: Pages, taught: Class) -> tuple[Page, Page]:
     for page in (ana, luz):
         enters(page)
     return ana, luz
+
+
+def program_of(taught: Class) -> str:
+    """Return the program of the only group, as the teacher sees it."""
+    [group] = taught.room.teach({"do": "class"})["groups"]
+    return str(taught.room.teach({"do": "class_text", "group": group["key"]})["text"])
 
 
 def begins(two: tuple[Page, Page]) -> None:
@@ -80,7 +100,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
     for page in two:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
         has(page, *both)
-        page.locator("html[data-state=checked]").wait_for(state="attached")
+        checked(page)
         until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
 
 
@@ -210,6 +230,149 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
+def test_all_of_a_group_see_what_its_robot_does(two: tuple[Page, Page], taught: Class) -> None:
+    ana, luz = two
+    begins(two)
+    rows = ("SPEED = 5;", "SHOW(SPEED);", "F(3, 80);", "SHOW(SPEED + 1);", "R(3, 60);")
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
+        for page in two:
+            page.click("#side_real")
+        ana.click("[data-text=class_ask]")
+        ana.locator("html[data-robot=connected]").wait_for(state="attached")
+        write(ana, "\n".join(rows) + "\n")
+        ana.locator(".cm-content").evaluate("(it) => it.blur()")
+        for page in two:
+            has(page, *rows)
+            checked(page)
+        ana.click("#link_upload")
+        for row in ("F(3, 80)", "R(3, 60)"):
+            for page in two:
+                page.locator(".cm-running", has_text=row).wait_for(state="attached")
+        assert luz.locator("#link_shown").inner_text() == "SPEED 5\nSPEED + 1 6"
+        assert not luz.locator("#link_upload").is_visible()
+        ana.click("#stop")
+        for page in two:
+            page.locator(".cm-running").wait_for(state="detached")
+        luz.locator("#link_said", has_text="stopped").wait_for()
+        luz.locator("#record_play:visible").wait_for()
+        assert events(luz) == events(ana) == ["SHOW 5", "SHOW 6", "STOPPED"]
+        for page in two:
+            page.click("#side_real")
+        ana.fill("#link_line", "SHOW(7)")  # a line is her own
+        ana.keyboard.press("Enter")
+        ana.locator("#link_shown", has_text="7").wait_for()
+        ana.click("#link_upload")
+        luz.locator(".cm-running", has_text="F(3, 80)").wait_for(state="attached")
+        assert "7" not in luz.locator("#link_shown").inner_text()
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
+        for page in two:
+            page.locator(".cm-running").wait_for(state="detached")
+
+
+def test_another_program_is_the_group_s_only_if_somebody_wants_that(
+    two: tuple[Page, Page],
+) -> None:
+    ana, luz = two
+    begins(two)
+    rows = [row.strip() for row in PROGRAM.splitlines()]
+    asked: list[str] = []
+
+    def answers(dialog: Dialog) -> None:
+        asked.append(dialog.message)
+        if len(asked) == 1:
+            dialog.dismiss()
+        else:
+            dialog.accept()
+
+    ana.on("dialog", answers)
+    ana.click("#bar_new")
+    until(lambda: len(asked) == 1, "it asks")
+    has(ana, *rows)
+    ana.click("#bar_new")
+    has(luz)
+    has(ana)
+    assert asked == ["This replaces the program for your whole group. Replace it?"] * 2
+    ana.remove_listener("dialog", answers)
+    ana.locator(".cm-content").focus()
+    ana.keyboard.press("Control+z")
+    for page in two:
+        has(page, *rows)
+
+
+def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    rows = [row.strip() for row in PROGRAM.splitlines()]
+    taught.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
+                       "lessons": []})  # fmt: skip
+    state = taught.room.teach({"do": "class"})
+    [kept] = state["kept"]
+    number = next(each["number"] for each in state["pupils"] if each["name"] == "Luz")
+    with luz.expect_event("dialog") as asked:
+        luz.once("dialog", lambda dialog: dialog.dismiss())
+        taught.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
+    assert "whole group" in asked.value.message
+    luz.evaluate(HEARD_TWICE)  # and is asked no more
+    for page in two:
+        has(page, *rows)
+    assert [each["key"] for each in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
+    luz.click("#side_real")
+    luz.click("[data-text=group_leave]")
+    has(luz, "F(1, 77)")
+    until(lambda: not taught.room.teach({"do": "class"})["kept"], "the class has heard of it")
+    has(ana, *rows)
+    luz.locator("#class_group button", has_text="Red (Ana)").click()
+    luz.locator("html[data-group=in]").wait_for(state="attached")
+    has(luz, *rows)
+
+
+def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    ana.context.set_offline(True)
+    goes_to(ana, "LOOP(3)")
+    for key in ("Home", "Shift+ArrowDown", "Shift+ArrowDown", "Shift+ArrowDown", "Delete"):
+        ana.keyboard.press(key)
+    ana.keyboard.press("ArrowUp")
+    ana.locator("#class_group", has_text="does not answer").wait_for()
+    goes_to(luz, "B(1, 40)")
+    types(luz, "\nBEEP(1, 440)\n")
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    until(lambda: "BEEP" in program_of(taught), "the class has hers")
+    ana.context.set_offline(False)
+    noted(ana, "Somebody else changed that part first, so your last change is not there.")
+    for page in two:
+        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;")
+
+
+def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    ana.evaluate(NOTES_WHEN, "W(6)")
+    goes_to(ana, "F(1, 80)")
+    types(ana, "\n")
+    tells = ana.context.new_cdp_session(ana)
+    tells.send("Input.imeSetComposition", {"text": "// n", "selectionStart": 4, "selectionEnd": 4})
+    goes_to(luz, "S;")
+    types(luz, "\nW(6)")
+    luz.keyboard.press("Enter")
+    until(lambda: "W(6)" in program_of(taught), "the class has it")
+    there_ms = 1000 * time.time()
+    until(lambda: ana.evaluate("window.seen_ms !== undefined"), "it comes")
+    assert ana.evaluate("window.seen_ms") - there_ms >= 500
+    tells.send("Input.insertText", {"text": "// ni"})
+    ana.keyboard.press("ArrowDown")
+    for page in two:
+        has(page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);")
+
+
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -245,4 +408,38 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     program.filter(has_text="B(1, 66)").wait_for()
     teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
     assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
+    seen.close()
+
+
+def test_the_teacher_takes_part_and_leaves(
+    two: tuple[Page, Page], taught: Class, browser: Browser
+) -> None:
+    ana, luz = two
+    begins(two)
+    seen = Pages(browser, taught.server.address)
+    teacher = teaches(seen, taught)
+    tile = teacher.locator("#wall li").filter(has_text="Red")
+    tile.hover()
+    tile.locator("button.join").click()
+    teacher.locator("html[data-group=in]").wait_for(state="attached")
+    teacher.locator("#note", has_text="You are editing the program of Red together.").wait_for()
+    has(teacher, *[row.strip() for row in PROGRAM.splitlines()])
+    teacher.click("#view_text")
+    goes_to(teacher, "S;")
+    types(teacher, "\nW(9)\n")
+    for page in (ana, luz, teacher):
+        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+    ana.locator("#class_mates .mate", has_text="Teacher").wait_for()
+    goes_to(teacher, "B(1, 40)")
+    types(teacher, " ")
+    ana.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate-4").wait_for()
+    teacher.reload()
+    teacher.locator("html[data-group=in]").wait_for(state="attached")
+    has(teacher, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+    teacher.click("#run")
+    teacher.locator("html[data-robot=none]").wait_for(state="attached")
+    teacher.click("#class_leave")
+    tile.wait_for()
+    assert not teacher.locator("#class_leave").is_visible()
+    until(lambda: ana.locator("#class_mates").inner_text() == "Luz", "the teacher has left")
     seen.close()

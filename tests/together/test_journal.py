@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 from itertools import count
 from pathlib import Path
@@ -127,3 +128,18 @@ def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
     assert not list(path.parent.iterdir())
     assert Journal(path).go_on("e2") is None
     assert START in program.tree  # whoever has it goes on with it
+
+
+def test_the_newest_of_the_history_is_in_memory_and_the_rest_in_the_journal(tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    _, program = begun(path)
+    program._most_kept = 20
+    for value in range(1, 100):
+        assert changed(program, value)
+        assert len(program.log) <= 20
+    assert program.log[-1].number == 99
+    rows = [json.loads(row) for row in path.read_text().splitlines()]
+    assert [row["n"] for row in rows if "uid" in row] == list(range(1, 100))
+    late = program.news("z", 3, "e1")  # who has been away for longer gets the whole
+    assert late["whole"] == program.tree.snapshot() and "changes" not in late
+    assert len(program.news("z", 95, "e1")["changes"]) == 4

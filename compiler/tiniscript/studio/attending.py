@@ -30,11 +30,13 @@ _VOID = {"failure": "stopped_elsewhere"}
 
 class Attending:
     """`last_stop`: what is known of the newest latching stop. `stops`: the page's newest one that
-    has nothing to stop any more."""
+    has nothing to stop any more. `witness`, if there is one, hears the news, too; it must not let
+    the robot wait."""
 
     def __init__(self, clock: Callable[[], float] = monotonic, stops: int = 0) -> None:
         self.last_stop = ""
         self.stops = stops
+        self.witness: Callable[[list[Json]], object] | None = None
         self._clock = clock
         self._heard_s = clock()
         self._latched_until_s = float("-inf")
@@ -119,6 +121,9 @@ class Attending:
         with self._lock:
             for item in news:
                 self._add(item)
+        witness = self.witness
+        if witness is not None:
+            witness(news)
 
     # -- the robot --------------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import count
 from pathlib import Path
 from threading import RLock
@@ -40,7 +41,8 @@ from tiniscript.studio.class_keeping import (
     is_token,
 )
 from tiniscript.studio.entrances import new_token
-from tiniscript.studio.groups import Groups
+from tiniscript.studio.group_runs import GroupRuns
+from tiniscript.studio.groups import TEACHER, Groups
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import Hosting, list_ports, port_of
 from tiniscript.studio.names import are_alike, free_name, plain_name
@@ -134,7 +136,8 @@ class KeptWork:
 @dataclass(eq=False)
 class ClassRobot:
     """`hosted` is the connection of this turn, once the pupil's page has taken it; `waited` is the
-    place in the queue that the pupil had; `stops` is the number of the newest STOP of a group."""
+    place in the queue that the pupil had; `stops` is the number of the newest STOP of a group, and
+    `runs` is where it hears what the robot tells."""
 
     port: str
     name: str
@@ -144,6 +147,7 @@ class ClassRobot:
     began_s: float = 0.0
     free_s: float = 0.0
     stops: int = 0
+    runs: GroupRuns | None = None
 
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
@@ -431,7 +435,19 @@ class Classroom:
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
         if not answer:
             robot.hosted = self._hosting.robot_of(pupil.page)
+            self._let_group_see(robot)
         return answer
+
+    def _let_group_see(self, robot: ClassRobot) -> None:
+        """The group of who drives a robot sees what it tells, and no other one does any more."""
+        if robot.hosted is None or robot.pupil is None:
+            return
+        token = robot.pupil.token
+        runs = self._groups.runs_of(token)
+        if robot.runs is not None and robot.runs is not runs:
+            robot.runs.tell(token, [{"over": "left"}])
+        robot.runs = runs
+        robot.hosted.attending.witness = partial(runs.tell, token) if runs is not None else None
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
         asked = request.get("asked", [])
@@ -459,6 +475,7 @@ class Classroom:
     def _change_group(self, pupil: Pupil, request: Json) -> Json:
         if request["do"] == "group_leave":
             self._groups.leave(pupil.token)
+            self._see_turn_of(pupil)
             return {}
         if self._over:
             return {"failure": "class_over"}
@@ -472,7 +489,13 @@ class Classroom:
             own_turn.take_back()
         if places and self._turn_of(mates) is None:
             pupil.waits = min(places)
+        self._see_turn_of(pupil)
         return answer
+
+    def _see_turn_of(self, pupil: Pupil) -> None:
+        robot = self._turn(pupil)
+        if robot is not None:
+            self._let_group_see(robot)
 
     def _mates(self, pupil: Pupil) -> list[Pupil]:
         """Return all pupils of the group, the pupil first; of no group that one alone."""
@@ -554,6 +577,8 @@ class Classroom:
     def teach(self, request: Json) -> Json:
         """Return the answer to a request of the teacher's page. Raises BadRequest."""
         do = request.get("do")
+        if do in ("group_visit", "group_leave", "group"):
+            return self._take_part(do, request)
         if not isinstance(do, str) or not do.startswith("class"):
             return self._hosting.answer(request)
         # A list of ports may take seconds: no pupil's stop waits for it.
@@ -591,6 +616,15 @@ class Classroom:
                 raise BadRequest
             self._tend()
             return self._state()
+
+    def _take_part(self, do: str, request: Json) -> Json:
+        """Let the teacher edit with a group. That is no turn, and no place in the queue."""
+        if do == "group":
+            return self._groups.answer(TEACHER, request)
+        if do == "group_leave":
+            self._groups.leave(TEACHER)
+            return {}
+        return {"failure": "class_over"} if self._over else self._groups.visit(request)
 
     def _teach(self, do: str, pupil: Pupil) -> None:
         robot = self._turn(pupil)
@@ -806,7 +840,7 @@ class Classroom:
                 {
                     "key": group.key,
                     "name": group.name,
-                    "pupils": [self._number(token) for token in group.members],
+                    "pupils": [self._number(each.token) for each in group.pupils],
                     "version": group.program.number,
                 }
                 for group in self._groups.all()

@@ -1,4 +1,5 @@
-"""Groups of a class: up to four pupils who edit one program, each on a page of their own.
+"""Groups of a class: up to four pupils who edit one program, each on a page of their own. The
+teacher may take part, too: as one more page, which they see, and which has no part in their robot.
 
 A page sends its changes, and where its caret is; it hears those of the others in a request that is
 held until there are any. Whoever spoils the program of a group spoils nothing else: how much a
@@ -21,6 +22,7 @@ from time import monotonic
 from tiniscript.base.source import LINE_END
 from tiniscript.studio.block_reading import split_loose
 from tiniscript.studio.entrances import new_token
+from tiniscript.studio.group_runs import GroupRuns
 from tiniscript.studio.names import are_alike, plain_name
 from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, whole_number
@@ -49,12 +51,14 @@ MOST_MEMBERS = 4
 MOST_GROUPS = 30
 MOST_FOUNDED = 3  # groups with a program, by one pupil
 MOST_HELD_S = 8.0  # of a request: a connection that asks nothing for longer is left
+LOOK_S = 0.2  # between two looks at what the robot tells
 GONE_S = 20.0  # a page that is silent for longer gives its place away
 MOST_CHANGES = 50  # of a request
 CHANGE_BYTES = 64_000  # as JSON: a whole program is less
 COSTS_BYTES = 2000  # a change costs one for each of these that it begins
 CHANGES = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
-MARKS = 4  # colours
+MARKS = 4  # colours of pupils; the next one is the teacher's
+TEACHER = "teacher"  # no pupil has this token
 MOST_TOLD = 200  # changes that the teacher's page shows
 _NODE = re.compile(r"[a-z0-9.]{0,24}")
 _PAGE = re.compile(r"m[0-9]{1,6}")
@@ -95,10 +99,15 @@ class Group:
     owners: dict[str, str] = field(default_factory=dict)  # tokens by page; the newest ones
     names: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone, by page
     news: Condition = field(default_factory=Condition)
+    runs: GroupRuns = field(default_factory=GroupRuns)
 
     @property
     def text(self) -> str:
         return text_of(self.program.tree)
+
+    @property
+    def pupils(self) -> list[Member]:
+        return [each for each in self.members.values() if each.token != TEACHER]
 
 
 class Groups:
@@ -139,6 +148,19 @@ class Groups:
                 self.leave(token)
             return self._enter(group, token, name, before)
 
+    def visit(self, request: Json) -> Json:
+        """The teacher takes part in a group that there is. Raises BadRequest."""
+        name = request.get("name")
+        if not isinstance(name, str):
+            raise BadRequest
+        with self._lock:
+            group, own = self.by_key(request.get("group")), self.of(TEACHER)
+            if group is None:
+                return {"failure": "group_gone"}
+            if own is not None and own is not group:
+                self.leave(TEACHER)
+            return self._enter(group, TEACHER, plain_name(name), request.get("before"))
+
     def _named(self, name: str) -> Group | None:
         return next((item for item in self._groups.values() if are_alike(item.name, name)), None)
 
@@ -164,14 +186,15 @@ class Groups:
         with group.news:
             member = group.members.get(token)
             if member is None:
-                here = group.members.values()
-                if len(group.members) >= MOST_MEMBERS:
+                here = group.pupils
+                if token != TEACHER and len(here) >= MOST_MEMBERS:
                     silent = min(here, key=lambda each: each.heard_s)
                     if now_s - silent.heard_s <= GONE_S:
                         return {"failure": "group_full"}
                     del group.members[silent.token]
                 taken = {each.mark for each in group.members.values()}
-                mark = next(k for k in range(MARKS) if k not in taken)
+                free = (k for k in range(MARKS) if k not in taken)
+                mark = MARKS if token == TEACHER else next(free)
                 member = group.members[token] = Member(token, name, "", now_s, mark)
             if not isinstance(before, str) or group.owners.get(before) != token:
                 before = f"m{1 + max((_number(page) for page in group.owners), default=0)}"
@@ -185,15 +208,18 @@ class Groups:
                     **group.program.news(member.page, -1, "")}  # fmt: skip
 
     def leave(self, token: str) -> None:
-        """A pupil leaves the group, if there is one. What nobody has changed goes with the last."""
+        """Who has it leaves the group, if there is one. What nobody has changed goes with the last
+        pupil."""
         with self._lock:
             group = self.of(token)
             if group is None:
                 return
             with group.news:
                 del group.members[token]
+                is_over = not group.pupils and group.program.number == 0
+                if is_over:
+                    group.members.clear()
                 _tell(group)
-                is_over = not group.members and group.program.number == 0
             if is_over:
                 del self._groups[group.key]
                 group.journal.forget()
@@ -216,33 +242,46 @@ class Groups:
             if member is None or member.page != request.get("page"):
                 return {"left": True}
             member.heard_s = self._clock()
+            self._miss_teacher(group)
             is_slow = not self._take(group, member, changes)
             self._hear_caret(group, member, request)
             group.news.notify_all()
+            ran = request.get("ran")
             if request.get("waits") is True and not changes:
-                self._hold(group, member, since, saw)
+                self._hold(group, member, since, saw, ran)
             if group.members.get(token) is not member:
                 return {"left": True}
+            number, runs = group.runs.after(ran, token)
             return {
                 **group.program.news(member.page, since, epoch),
                 "group": group.name,
                 "saw": group.version,
                 "others": [_said(each) for each in group.members.values() if each is not member],
+                "ran": [group.runs.key, number],
+                **({"runs": runs} if runs else {}),
                 **({"slow": True} if is_slow else {}),
             }
 
-    def _hold(self, group: Group, member: Member, since: int, saw: int) -> None:
+    def _miss_teacher(self, group: Group) -> None:
+        """Nobody sees a teacher whose page is silent; one that comes back has left."""
+        teacher = group.members.get(TEACHER)
+        if teacher is not None and self._clock() - teacher.heard_s > GONE_S:
+            del group.members[TEACHER]
+            _tell(group)
+
+    def _hold(self, group: Group, member: Member, since: int, saw: int, ran: object) -> None:
         """Wait until there is something new, or the page asks again."""
         member.holds += 1
         held = member.holds
         group.news.notify_all()
-        group.news.wait_for(
-            lambda: (
-                (group.program.number, group.version, member.holds) != (since, saw, held)
-                or group.members.get(member.token) is not member
-            ),
-            MOST_HELD_S,
-        )
+        end_s = monotonic() + MOST_HELD_S
+        while (
+            (group.program.number, group.version, member.holds) == (since, saw, held)
+            and group.members.get(member.token) is member
+            and not group.runs.after(ran, member.token)[1]
+            and (left_s := end_s - monotonic()) > 0
+        ):  # a robot's thread, which waits for nobody, wakes nobody
+            group.news.wait(min(left_s, LOOK_S))
 
     def _take(self, group: Group, member: Member, changes: list[object]) -> bool:
         """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
@@ -288,6 +327,11 @@ class Groups:
         group = self.of(token)
         return [*group.members] if group is not None else [token]
 
+    def runs_of(self, token: str) -> GroupRuns | None:
+        """Return where what a pupil's robot tells goes: to the pupil's group, if any."""
+        group = self.of(token)
+        return group.runs if group is not None else None
+
     def is_new_stop(self, token: str, stops: int) -> bool:
         """Whether a pupil has not pressed STOP so often before; of no count it always is."""
         group = self.of(token)
@@ -300,7 +344,7 @@ class Groups:
     def shown(self) -> list[Json]:
         """Return what a pupil sees of all groups."""
         with self._lock:
-            return [{"name": item.name, "members": [each.name for each in item.members.values()]}
+            return [{"name": item.name, "members": [each.name for each in item.pupils]}
                     for item in self._groups.values()]  # fmt: skip
 
     def by_key(self, key: object) -> Group | None:

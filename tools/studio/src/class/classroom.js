@@ -15,7 +15,7 @@ import { isTeacher } from '../robot/host.js';
  * @property {() => void} empty takes the program off the page
  * @property {() => Promise<string>} newestRun its file, or nothing
  * @property {(file: File) => Promise<void>} openRun plays it
- * @property {(program: {text: string, robot: string}) => void} put another program into the editor
+ * @property {(program: {text: string, robot: string}) => boolean} put another program into the editor, unless a group is to keep its own; whether it is there
  */
 
 /** @param {Page} page */

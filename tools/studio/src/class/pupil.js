@@ -34,6 +34,7 @@ function newStay() {
     hand: /** @type {boolean | null} */ (null), // help, told at the next look
     told: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
     taken: /** @type {Given | null} */ (null), // the work that was given last
+    refused: '', // the key of work that is not to replace the program of the group
     run: 0, // the newest question for a run
     isNews: false, // the class has yet to hear that this is here
     place: -1,
@@ -193,16 +194,25 @@ export class Pupil {
     };
   }
 
-  /** Takes work that the teacher gives back, once; it is given until the class has heard of that. @param {Given | undefined} given */
+  /**
+   * Takes work that the teacher gives back, once: it is given until the class has heard of that. A pupil who does not want
+   * it in place of the group's program gets it when the page is in no group.
+   * @param {Given | undefined} given
+   */
   #take(given) {
     if (!given) return;
     const stay = this.#stay;
+    if (stay.taken?.key !== given.key) {
+      if (stay.refused === given.key && pageState.group.value) return;
+      if (!this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot })) {
+        stay.refused = given.key;
+        return;
+      }
+      stay.taken = given;
+      for (const name of given.lessons) keepDone(name);
+      element('note', HTMLElement).textContent = text('class_given');
+    }
     stay.isNews = true;
-    if (stay.taken?.key === given.key) return;
-    stay.taken = given;
-    for (const name of given.lessons) keepDone(name);
-    this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot });
-    element('note', HTMLElement).textContent = text('class_given');
   }
 
   /** @param {boolean} isUp */

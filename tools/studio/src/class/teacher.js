@@ -6,11 +6,13 @@ import { Pictures } from '../blocks/drawn.js';
 import { BigCode, BigPupil } from './big.js';
 import { Giving } from './giving.js';
 import { openWork, saveWork } from './keeping.js';
+import { Membership } from './member.js';
 import { runOf } from './run.js';
 import { button, labelled, made } from '../page/made.js';
 import { sign } from './signs.js';
 import { clock, Wall } from './wall.js';
 import { element, say } from '../page/elements.js';
+import { bugSaid } from '../page/faults.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/plain_text.js';
 import { pageState } from '../page/page_state.js';
@@ -32,6 +34,7 @@ const MOST_NAMED = 4; // hands that are named above the wall
 export class Teacher {
   #wall = new Wall({
     see: (key) => this.#showBig(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key), play: (key) => this.#play(key),
+    join: (key) => this.#visit(key),
   });
   #page;
   #pictures;
@@ -61,6 +64,10 @@ export class Teacher {
   #giving = new Giving((key, pupil) => this.#ask({ do: 'class_give_back', key, pupil }));
   #giveBack = button('class_give_back', () => this.#giving.window.showModal());
   #anew = pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' }));
+  #leave = button('', () => this.#leaveGroup());
+  /** @type {Membership} */
+  #member;
+  #visitSaid = ''; // of the group in which the teacher is
   /** @type {State | null} */
   #state = null;
   /** @type {Map<string, Known>} */
@@ -77,6 +84,11 @@ export class Teacher {
   constructor(page) {
     this.#page = page;
     this.#pictures = new Pictures(page.python, 'class_blocks');
+    this.#member = new Membership(page, {
+      say: (key) => this.#showVisit(key),
+      fails: (why) => pageState.note.set(bugSaid(why)),
+      others: () => {}, // their names are beside the lines
+    });
     const side = element('side_class', HTMLButtonElement);
     side.hidden = false;
     side.addEventListener('click', () => this.#showWall(true));
@@ -99,6 +111,8 @@ export class Teacher {
     this.#lookForPorts();
     this.#ask({ do: 'class' });
     side.click();
+    element('run', HTMLButtonElement).addEventListener('click', () => this.#member.finish());
+    if (this.#member.goOn()) this.#showStudio();
   }
 
   /** Into the page's head: how pupils come in, and STOP for all, with its answer beside it. */
@@ -111,7 +125,9 @@ export class Teacher {
     come.id = 'class_come';
     const studio = button('class_studio', () => this.#showStudio());
     studio.id = 'class_studio';
-    stop.before(studio, come, element('stops', HTMLElement));
+    this.#leave.id = 'class_leave';
+    this.#leave.hidden = true;
+    stop.before(studio, this.#leave, come, element('stops', HTMLElement));
     head.append(stop);
   }
 
@@ -154,6 +170,28 @@ export class Teacher {
   #showStudio() {
     this.#showWall(false);
     element('side_virtual', HTMLButtonElement).click();
+  }
+
+  /** Edits with a group, which sees that. It takes no robot. @param {string} key */
+  #visit(key) {
+    if (this.#member.isIn) this.#member.end();
+    this.#showStudio();
+    this.#member.join({ do: 'group_visit', group: key.slice(GROUP.length), name: text('class_teacher') });
+  }
+
+  #leaveGroup() {
+    this.#member.leave();
+    element('side_class', HTMLButtonElement).click();
+  }
+
+  /** @param {import('../page/texts.js').Key | ''} key */
+  #showVisit(key) {
+    const group = shown(pageState.group.value);
+    this.#leave.hidden = !this.#member.isIn;
+    say(this.#leave, text('class_leave_of', { name: group }));
+    if (this.#visitSaid === key) return;
+    this.#visitSaid = key;
+    pageState.note.set(key ? text(key, { group }) : '');
   }
 
   /** Plays a pupil's newest run here. @param {string} key */

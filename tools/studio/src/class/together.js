@@ -46,6 +46,7 @@ const DECIDED_MS = 2000; // for what was done before an undo
  * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
  * @property {(isHeard: boolean) => void} answers whether the class answers
  * @property {(places: Place[]) => void} places where the others are in the text
+ * @property {(event: import('../robot/panel.js').Witnessed) => void} runs the group's robot, which another page drives, has told this
  * @property {() => boolean} isBusy whether somebody has a block in the hand, or a field open
  */
 
@@ -95,8 +96,8 @@ const others = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
-// Dark enough for white letters, as beside white and beside black.
-const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8'];
+// Dark enough for white letters, as beside white and beside black; the last one is the teacher's.
+const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8', '#a3145c'];
 const looks = EditorView.baseTheme({
   '.cm-beside': { boxShadow: 'inset 4px 0 var(--mate)' },
   '.cm-mate': { marginLeft: '1ch', padding: '0 6px', borderRadius: '6px', backgroundColor: 'var(--mate)', color: '#fff', fontSize: '0.85em' },
@@ -131,6 +132,8 @@ export class Together {
   #steps = Promise.resolve();
   #isSending = false;
   #saw = 0;
+  /** Until where it is known what the robot has told. @type {[string, number]} */
+  #ran = ['', 0];
   /** @type {Other[]} */
   #others = [];
   /** @type {Shown} */
@@ -278,7 +281,7 @@ export class Together {
     const isFirst = doc.lineAt(selection.main.head).from === selection.main.head; // what is put in there is before its line
     this.#view.dispatch({
       changes: after,
-      selection: selection.map(after, isFirst ? 1 : -1),
+      ...(isFirst && { selection: selection.map(after, 1) }), // else it is mapped so anyway; saying it would end a composition
       annotations: [brought.of(true), Transaction.addToHistory.of(false)],
     });
     if (shown.count > count) this.#editor.handUndo((how) => this.#takeBack(how));
@@ -303,7 +306,7 @@ export class Together {
 
   #request() {
     const { since, epoch, kept } = this.#shown;
-    return { do: 'group', page: kept.name, since, epoch, saw: this.#saw };
+    return { do: 'group', page: kept.name, since, epoch, saw: this.#saw, ran: this.#ran };
   }
 
   /** Hears what is new, for as long as this page is in the group. */
@@ -351,6 +354,7 @@ export class Together {
     const isOther = JSON.stringify(news.others) !== JSON.stringify(this.#others);
     this.#saw = Math.max(this.#saw, news.saw);
     this.#others = news.others;
+    this.#hearRuns(news);
     if (isOther) {
       this.#mark();
       this.#heard.others(news.others);
@@ -358,6 +362,13 @@ export class Together {
     if (!news.whole && !news.changes.length && !this.#shown.pending.length) return;
     this.#news.push(news);
     await this.#step();
+  }
+
+  /** Two answers may tell the same. @param {{ran: [string, number], runs?: import('../robot/panel.js').Witnessed[]}} news */
+  #hearRuns({ ran: [key, newest], runs = [] }) {
+    const known = key === this.#ran[0] ? this.#ran[1] : 0;
+    this.#ran = [key, Math.max(known, newest)];
+    for (const event of runs) if (event.number > known) this.#heard.runs(event);
   }
 
   /** Tells the others where the caret is, now and then. */

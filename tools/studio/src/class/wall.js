@@ -17,8 +17,8 @@ import { text } from '../page/texts.js';
  * @property {string[]} lessons
  * @property {PupilRow | null} pupil null of who is not here
  */
-/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, play: (key: string) => void}} Told */
-/** @typedef {{item: HTMLElement, see: HTMLButtonElement, own: SVGElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, play: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
+/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, play: (key: string) => void, join: (key: string) => void}} Told */
+/** @typedef {{item: HTMLElement, see: HTMLButtonElement, own: SVGElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, play: HTMLButtonElement, join: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
 
 const SILENT_S = 5;
 const WIDE = 1.75; // of a tile's picture: what suits most programs
@@ -81,15 +81,16 @@ export class Wall {
     const hand = button('', () => this.#told.lower(key), sign('hand', 26));
     const out = button('', () => this.#told.remove(key), sign('out', 20));
     const play = button('', () => this.#told.play(key), sign('run', 20));
+    const join = button('', () => this.#told.join(key), sign('join', 20));
     const name = made('strong'), picture = made('img'), empty = made('span', 'class_empty');
     const badge = made('span'), pips = made('span'), said = made('span');
-    for (const [looks, each] of Object.entries({ see, hand, out, play, badge, pips, said, empty })) each.className = looks;
+    for (const [looks, each] of Object.entries({ see, hand, out, play, join, badge, pips, said, empty })) each.className = looks;
     picture.alt = '';
     picture.hidden = true;
     empty.hidden = true; // until its program is known
     const own = drawn('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, drawn('use', { href: '#drawn_robot' }));
-    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, own, see, hand, play, out);
-    return { item, see, own, name, hand, out, play, picture, empty, badge, pips, said };
+    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, own, see, hand, play, join, out);
+    return { item, see, own, name, hand, out, play, join, picture, empty, badge, pips, said };
   }
 
   /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
@@ -108,6 +109,7 @@ export class Wall {
     tile.hand.hidden = !pupil?.hand;
     tile.play.hidden = isGroup || state === 'gone' || state === 'away';
     tile.out.hidden = isGroup;
+    tile.join.hidden = !isGroup;
     const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
     tile.badge.hidden = !badge;
     if (tile.badge.dataset['said'] !== badge) {
@@ -129,6 +131,7 @@ export class Wall {
     label(tile.see, `${text('class_see_of', { name: plain })} ${more.filter(Boolean).join(', ')}`);
     label(tile.hand, text('class_lower', { name: plain }));
     label(tile.out, text('class_remove_of', { name: plain }));
+    label(tile.join, text('class_visit_of', { name: plain }));
     label(tile.play, text('class_run_of', { name: plain }));
   }
 

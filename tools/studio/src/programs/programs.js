@@ -92,11 +92,13 @@ export class Programs {
    * Puts another program into the editor; where others edit it, too, only if that is wanted for all. The one before is
    * kept, and undo brings it back, too.
    * @param {{text: string, robot: string, name: string}} program
+   * @returns {boolean} whether it is there
    */
   replace(program) {
-    if (pageState.group.value && !confirm(text('group_replace'))) return;
+    if (pageState.group.value && !confirm(text('group_replace'))) return false;
     this.keep();
     this.#page.put(program);
+    return true;
   }
 
   /** Opens the program of the page's address, if there is one; it does not run. */

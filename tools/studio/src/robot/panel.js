@@ -22,12 +22,13 @@ import { keepAt, kept } from '../page/kept.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { called, currentLanguage, text } from '../page/texts.js';
-import { LINK, robotOf } from '../page/words.js';
+import { isRobot, LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 import { nameOfShow, showAt } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 /** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
+/** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} Witnessed of the group's robot: the number among all news, and that of a value in its run */
 /** @typedef {{label: string, drawn: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**
@@ -58,7 +59,7 @@ export class RobotPanel {
   #choices = [];
   /** Words of a remote control that the newest program reads. @type {string[]} */
   #reads = [];
-  /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
+  /** @type {Checked | null} */
   #sent = null;
   /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
   #known = new Map();
@@ -73,6 +74,8 @@ export class RobotPanel {
   #flashing;
   #whenLeft = () => {};
   #line = ''; // the checksum of the newest line
+  #isWitness = false; // of a run on the robot of the group, which another page drives
+  #values = 0; // of that run, until now
   #list = element('link_port', HTMLSelectElement);
   #typed = element('link_line', HTMLInputElement);
 
@@ -137,7 +140,10 @@ export class RobotPanel {
     });
     for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
     pageState.language.subscribe(() => this.#show());
-    pageState.checked.subscribe(() => this.#offer());
+    pageState.checked.subscribe((checked) => {
+      if (pageState.group.value && checked?.image) this.#expect(checked); // whoever of the group runs it
+      this.#offer();
+    });
     this.#show();
     this.#look();
   }
@@ -242,6 +248,7 @@ export class RobotPanel {
   async #connect(open) {
     if (this.#isBusy || this.#way) return;
     this.#isBusy = true;
+    this.seeNothing();
     this.#speech.say('say_connecting');
     this.#show();
     const word = setTimeout(() => this.#speech.say('say_nothing_yet'), PORT_MS);
@@ -352,12 +359,11 @@ export class RobotPanel {
       return;
     }
     this.#speech.begin('say_sending');
-    this.#know(program);
-    this.#page.recorder.sends(program);
+    this.#expect(program);
     const start = this.#debugging.sends(program, isPaused);
     this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs: runs && !start }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
-      this.#sent = { program: sum, places: program.places, of: program };
+      this.#sent = program;
       this.#offer();
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
       if (program.start === 'SB') this.#doing.waits();
@@ -368,7 +374,7 @@ export class RobotPanel {
 
   /** A robot is driven by hand where the program that it has from here, or that is seen, reads a remote control. */
   #offer() {
-    const reads = this.#sent?.of.remote.length ? this.#sent.of.remote : pageState.checked.value?.remote ?? this.#reads;
+    const reads = this.#sent?.remote.length ? this.#sent.remote : pageState.checked.value?.remote ?? this.#reads;
     this.#reads = reads;
     const about = this.#about;
     this.#page.pad.offer('link', about && reads.length ? {
@@ -471,7 +477,7 @@ export class RobotPanel {
     else if (event.event === 'TEXT') this.#speech.add(text('say_text', { said: shown(String(event.text)) }));
     else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));
     else if (event.event === 'DONE') this.#speech.say('say_done');
-    else if (event.event === 'FAULT') this.#fault(event);
+    else if (event.event === 'FAULT') this.#fault(event, this.#sent, true);
     else if (event.event === 'LOST') this.#lose();
     else if (event.event === 'STARTED') {
       this.#stopping.forget();
@@ -483,6 +489,57 @@ export class RobotPanel {
       // A page that is hidden keeps the words why it stopped the robot.
       if (this.#stopping.isOpen || document.visibilityState !== 'hidden') this.#stopping.confirm(String(event.cause));
     }
+  }
+
+  // -- what the robot of the group says -----------------------------------------------------------
+
+  /** The robot of the group, which another page drives, has told this. @param {Witnessed} event */
+  witness(event) {
+    if (this.#way || this.#isBusy) return;
+    const { event: what, program, robot = '', nth } = event;
+    if (what === 'ROBOT') {
+      if (isRobot(robot) && robot !== pageState.robotName.value) pageState.robotName.set(robot);
+      return;
+    }
+    if (what === 'STARTED') {
+      const seen = pageState.checked.value;
+      if (seen?.image && seen.program === program) this.#expect(seen);
+      this.#isWitness = true;
+      this.#values = 0;
+      this.#speech.begin('group_runs');
+      this.#show();
+    }
+    if (nth) {
+      const count = nth - this.#values - 1;
+      this.#values = nth;
+      if (count > 0) this.#see({ event: 'MISSED', count });
+    }
+    this.#see(event);
+  }
+
+  /** @param {RobotEvent} event */
+  #see(event) {
+    this.#page.recorder.onEvent(event);
+    this.#page.place.onEvent(event);
+    if (event.event === 'OVER') this.#speech.say('group_run_over');
+    else if (event.event === 'STOPPED') this.#stopping.confirm(String(event.cause));
+    else if (event.event === 'FAULT') this.#fault(event, this.#textOf(event.program), false);
+    else this.#onEvent(event);
+  }
+
+  /** Nobody tells this page of the group's robot any more. */
+  seeNothing() {
+    if (!this.#isWitness) return;
+    this.#isWitness = false;
+    this.#page.recorder.end('LOST');
+    this.#page.place.end();
+    this.#show();
+  }
+
+  /** @param {Checked} program that the robot may run as the page's own */
+  #expect(program) {
+    this.#know(program);
+    this.#page.recorder.sends(program);
   }
 
   /** @param {Checked} program before its robot may show anything */
@@ -512,11 +569,10 @@ export class RobotPanel {
     else this.#speech.say('why_link_lost');
   }
 
-  /** @param {RobotEvent} event */
-  #fault(event) {
+  /** @param {RobotEvent} event @param {Checked | null | undefined} of a program @param {boolean} goes whether the caret goes there */
+  #fault(event, of, goes) {
     const what = faultSaid(event.fault);
-    const sent = this.#sent;
-    const place = sent?.program === event.program ? sent?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
+    const place = of?.program === event.program ? of?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
     if (!place) {
       this.#speech.tell(what);
       return;
@@ -524,13 +580,14 @@ export class RobotPanel {
     const [, line, column, end_line, end_column] = place;
     this.#speech.tell(text('say_fault', { line, what }));
     // else the places are those of another text
-    if (pageState.checked.value === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
+    if (goes && pageState.checked.value === of) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {
     const isThere = this.#about !== null;
     element('link_ways', HTMLElement).hidden = this.#way !== null;
-    element('link_drive', HTMLElement).hidden = !isThere;
+    element('link_drive', HTMLElement).hidden = !isThere && !this.#isWitness;
+    element('link_drive', HTMLElement).classList.toggle('witness', !isThere);
     element('link_connected', HTMLElement).hidden = this.#way === null;
     element('link_name', HTMLElement).textContent = this.#name;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;

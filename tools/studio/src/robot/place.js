@@ -5,7 +5,7 @@ import { rangeAt } from '../writing/parts.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 
-const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
+const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST', 'OVER'];
 
 export class RobotPlace {
   /** What the robot has told last. @type {RobotEvent | null} */

@@ -13,6 +13,7 @@ import { Run } from '../virtual/runs.js';
 const MOST = 10_000; // events; then it is over
 const MOST_MS = 600_000;
 const UNREAD = 'UNREAD '; // a row that says so of a sensor
+const KNOWN = 20; // programs
 
 export class Recorder {
   #page;
@@ -42,8 +43,10 @@ export class Recorder {
     this.#isDeaf = !about.has_readings;
   }
 
-  /** A robot gets a program. @param {Checked} checked */
+  /** A robot gets a program, or may get it from others of the group. @param {Checked} checked */
   sends(checked) {
+    this.#sent.delete(checked.program);
+    for (const [oldest] of this.#sent) if (this.#sent.size >= KNOWN) this.#sent.delete(oldest);
     this.#sent.set(checked.program, { checked, text: pageState.programText.value, robot: pageState.robotName.value });
   }
 
@@ -82,12 +85,12 @@ export class Recorder {
       else this.end('STOPPED');
     }
     if (event.event === 'READING') this.#read(event.rows ?? []);
-    const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
+    const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', OVER: 'LOST', MISSED: 'MISSED' }[event.event];
     if (!row || this.#isOver || !this.#run) return;
-    this.#began ??= performance.now();
+    this.#began = Math.min(this.#began ?? Infinity, performance.now() - (event.ms ?? 0));
     if (event.event !== 'SHOW') this.end(row);
     else if (this.#run.rows.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
-    else this.#run.put([this.#ms, row]);
+    else this.#run.put([event.ms ?? this.#ms, row]);
     this.#show();
   }
 

@@ -53,6 +53,7 @@
  * @property {number} [count]
  * @property {string} [text]
  * @property {[number, string][]} [rows] of what the program has read, for its recording
+ * @property {number} [ms] of the run, where another page of the group drives the robot
  */
 
 /**

@@ -1,0 +1,218 @@
+"""What pages of a group hear of its robot, which another page of the group drives."""
+
+from __future__ import annotations
+
+import json
+from random import Random
+from typing import Any
+
+import pytest
+
+from tiniscript.studio import group_runs
+from tiniscript.studio.group_runs import GroupRuns
+
+Json = dict[str, Any]
+DRIVERS = ("ana", "luz")
+ENDS: tuple[Json, ...] = (
+    {"event": "DONE"},
+    {"event": "STOPPED", "cause": "MESSAGE"},
+    {"event": "FAULT", "fault": "STUCK", "at": 3, "program": "p"},
+    {"event": "LOST"},
+    {"over": "left", "said": ""},
+)
+
+
+class Robot:
+    """A robot that tells of random runs, and what of that is meant for others."""
+
+    def __init__(self, chance: Random) -> None:
+        self.chance = chance
+        self.program = self.line = ""
+        self.driver = DRIVERS[0]
+        self.place: int | None = None
+        self.values = self.runs = 0
+        self.meant: list[str] = []  # the values of all runs of programs
+        self.nth: dict[str, int] = {}  # which value of its run each of them is
+        self.count = 0  # of values of a run
+
+    def tells(self) -> Json:
+        does = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
+        if not (self.program or self.line) or does == "next":
+            return self._begins() if not (self.program or self.line) else self._ends()
+        program = self.program or self.line
+        if does == "place":
+            at = self.chance.randrange(500)
+            self.place = at if self.program else self.place
+            return {"event": "PLACE", "at": at, "program": program}
+        self.values += 1
+        value = str(self.values)
+        if self.program:
+            self.meant.append(value)
+            self.count += 1
+            self.nth[value] = self.count
+        if does == "text":
+            return {"event": "TEXT", "text": value}
+        return {"event": "SHOW", "value": value, "at": 7, "program": program}
+
+    def _begins(self) -> Json:
+        self.runs += 1
+        self.count, self.place = 0, None
+        self.driver = self.chance.choice(DRIVERS)
+        kind = self.chance.choice(("program", "line", "button"))
+        program = f"{self.runs:08x}"
+        if kind == "line":
+            self.line = program
+            return {"event": "STARTED", "program": program, "is_program": False}
+        self.program = program
+        if kind == "button":
+            self.place = 0
+            return {"event": "PLACE", "at": 0, "program": program}
+        return {"event": "STARTED", "program": program, "is_program": True}
+
+    def _ends(self) -> Json:
+        self.program = self.line = ""
+        self.place = None
+        return self.chance.choice(ENDS)
+
+
+class Page:
+    """A page that looks now and then, as `together.js` does."""
+
+    def __init__(self, runs: GroupRuns, name: str) -> None:
+        self.runs, self.name = runs, name
+        self.ran: list[Any] = ["", 0]
+        self.heard: list[Json] = []
+
+    def looks(self) -> list[Json]:
+        known = self.ran[1] if self.ran[0] == self.runs.key else 0
+        number, found = self.runs.after(self.ran, self.name)
+        found = [each for each in json.loads(json.dumps(found)) if each["number"] > known]
+        self.ran = [self.runs.key, max(known, number)]
+        self.heard += found
+        return list(found)
+
+    @property
+    def values(self) -> list[str]:
+        return [str(each.get("value", each.get("text"))) for each in self.heard if "nth" in each]
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_each_hears_each_run_in_its_order(seed: int) -> None:
+    """Whatever a robot tells, and however seldom a page looks: news come once, begin and end by
+    turns, the newest place is the robot's, and what is missing can be counted."""
+    chance = Random(seed)
+    runs, robot = GroupRuns(lambda: 0.0), Robot(chance)
+    page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
+    page.looks()
+    most = chance.choice((1, 5, 60))
+    told: dict[str, list[str]] = {name: [] for name in DRIVERS}
+    for _ in range(200):
+        for _ in range(chance.randint(1, most)):
+            before = len(robot.meant)
+            news = robot.tells()
+            told[robot.driver] += robot.meant[before:]
+            runs.tell(robot.driver, [news])
+            assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
+        found = page.looks()
+        places = [each["at"] for each in found if each["event"] == "PLACE"]
+        assert len(places) <= 1
+        if robot.place is not None:
+            assert last_place(page) == robot.place
+        for each in drivers:
+            each.looks()
+    numbers = [each["number"] for each in page.heard]
+    assert numbers == sorted(set(numbers))
+    assert begin_and_end_by_turns(page)
+    assert is_part(page.values, robot.meant)
+    assert missed(page) + len(page.values) == counted(page)
+    for each in drivers:
+        assert not set(each.values) & set(told[each.name])
+    for row in page.heard:
+        value = str(row.get("value", row.get("text")))
+        assert "nth" not in row or row["nth"] == robot.nth[value]
+    if most == 1:
+        assert page.values == robot.meant
+
+
+def waiting(runs: GroupRuns) -> int:
+    return sum(len(json.dumps(row.news)) for row in runs._rows)
+
+
+def last_place(page: Page) -> int:
+    return next(int(each["at"]) for each in reversed(page.heard) if each["event"] == "PLACE")
+
+
+def begin_and_end_by_turns(page: Page) -> bool:
+    """No value and no place is outside a run."""
+    is_running = False
+    for each in page.heard:
+        if each["event"] == "STARTED":
+            is_running = True
+        elif each["event"] in ("SHOW", "TEXT", "PLACE"):
+            if not is_running:
+                return False
+        else:
+            is_running = False
+    return True
+
+
+def is_part(some: list[str], all_of_them: list[str]) -> bool:
+    """Whether they are these, in this order, some left out."""
+    rest = iter(all_of_them)
+    return all(each in rest for each in some)
+
+
+def missed(page: Page) -> int:
+    """Return what a page says of values that it has not got, as `panel.js` counts them."""
+    count = seen = 0
+    for each in page.heard:
+        if each["event"] == "STARTED":
+            seen = 0
+        if "nth" in each:
+            count += each["nth"] - seen - 1
+            seen = each["nth"]
+    return count
+
+
+def counted(page: Page) -> int:
+    """Return how many values its runs had until the newest of them that it has heard."""
+    found: list[int] = []
+    for each in page.heard:
+        if each["event"] == "STARTED":
+            found.append(0)
+        if "nth" in each:
+            found[-1] = each["nth"]
+    return sum(found)
+
+
+def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
+    runs = GroupRuns(lambda: 0.0)
+    begin = {"event": "STARTED", "program": "a", "is_program": True}
+    value = {"event": "SHOW", "value": "5"}
+    runs.tell("ana", [begin, value, {"event": "DONE"}])
+    assert Page(runs, "teo").looks() == []
+    runs.tell("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
+    heard = [each["event"] for each in Page(runs, "eva").looks()]
+    assert heard == ["STARTED", "SHOW", "PLACE"]
+    other = GroupRuns(lambda: 0.0)
+    other.tell("ana", [begin])
+    page = Page(runs, "luz")
+    page.looks()
+    page.runs = other  # after a crash of the class
+    assert [each["event"] for each in page.looks()] == ["STARTED"]
+
+
+@pytest.mark.parametrize("known", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
+def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
+    runs = GroupRuns(lambda: 0.0)
+    runs.tell("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
+    assert [each["event"] for each in runs.after(known, "teo")[1]] == ["STARTED"]
+
+
+def test_news_have_the_time_of_their_run() -> None:
+    now = [10.0]
+    runs = GroupRuns(lambda: now[0])
+    runs.tell("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
+    now[0] += 0.25
+    runs.tell("ana", [{"event": "SHOW", "value": "5"}])
+    assert [each["ms"] for each in Page(runs, "teo").looks()] == [0, 250]
