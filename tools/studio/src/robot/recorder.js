@@ -81,6 +81,7 @@ export class Recorder {
   /** @param {RobotEvent} event */
   onEvent(event) {
     if (event.event === 'STARTED') {
+      if (event.ms !== undefined) this.#isDeaf = true; // who drives for the group passes no readings on
       if (event.is_program && event.program) this.#record(event.program, performance.now());
       else this.end('STOPPED');
     }
