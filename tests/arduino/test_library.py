@@ -138,6 +138,7 @@ def test_an_image_in_flash_drives(made: Path, tmp_path_factory: pytest.TempPathF
         assert uno.pins.history("back")[-1].state == "low"
 
 
+@pytest.mark.long
 def test_the_link_of_an_example_conforms(
     made: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -308,7 +308,7 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
         line.until(lambda: not line.moves, "it stands")
 
 
-SAMPLE = 12
+SAMPLE = 6
 ROOM_CI_S = 2.0  # processes begin slowly beside others
 
 

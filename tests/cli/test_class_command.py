@@ -38,6 +38,8 @@ from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
 
+drawn = pytest.mark.sampled(of="commands for a class", keep=2)
+
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
 
@@ -129,6 +131,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     )
 
 
+@drawn
 def test_who_has_no_key_sees_and_stops(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -163,6 +166,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     tsc(room, "upload", "-e", DRIVES).gives(0)
 
 
+@drawn
 def test_who_only_looks_changes_nothing(room: Class) -> None:
     """Also where the command stood still for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
@@ -206,6 +210,7 @@ def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
         assert {name: options.get(name, "none") for name in lacks} == lacks
 
 
+@drawn
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -385,6 +390,7 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     process("class", "stop", *place, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
+@drawn
 def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
     access = Access("robots", SECRET.decode())
     topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"

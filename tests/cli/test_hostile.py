@@ -68,7 +68,7 @@ def hostile(many: int) -> dict[str, bytes]:
     }
 
 
-@pytest.mark.sampled("verb")
+@pytest.mark.sampled("verb", "name", keep=9)
 @pytest.mark.parametrize("name", sorted(hostile(0)))
 @pytest.mark.parametrize("verb", ["check", "compile", "run", "show", "fmt"])
 def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str) -> None:

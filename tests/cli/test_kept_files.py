@@ -193,6 +193,7 @@ def fresh(kept: Kept, tmp_path: Path) -> list[int]:
     return [FIRST]
 
 
+@pytest.mark.sampled("name", keep=3)
 @each_kept
 def test_a_kill_at_any_line_leaves_what_was_kept(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
@@ -240,6 +241,7 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
         assert sorted(kept.all()) == with_more(kept, before, SECOND), most
 
 
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", [name for name, kept in KEPT.items() if not kept.is_alone])
 def test_of_two_at_once_neither_loses_what_the_other_keeps(
     name: str, tmp_path: Path, request: pytest.FixtureRequest

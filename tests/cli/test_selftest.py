@@ -152,6 +152,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     assert (found["answers"]["verdict"], found["answers"]["cause"]) == ("wrong", "plain")
 
 
+@pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
 def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str) -> None:
     """With its causes, what was seen and the next step: nobody has to type another command."""

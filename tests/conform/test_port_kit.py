@@ -130,7 +130,7 @@ CHANGES: dict[str, tuple[Change, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled("what", keep=len(CHANGES) // 2)
+@pytest.mark.sampled("what", keep=len(CHANGES) // 4)
 @pytest.mark.parametrize("what", CHANGES)
 def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
     change, named = CHANGES[what]

@@ -21,7 +21,7 @@ def shown_as_power(reading: str) -> str:
     return f"SI|M({reading}, 0);W(5)"
 
 
-@pytest.mark.sampled("echo", keep=2)
+@pytest.mark.sampled("echo")
 @pytest.mark.parametrize("echo", ["10", "53", "2", "18", "21"])  # changes of port B; INT
 def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
@@ -34,7 +34,7 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     assert board.motors(START + 75)[0] == f"pwm {50 * 653 >> 8}"
 
 
-@pytest.mark.sampled("echo", "group", "mask", keep=2)
+@pytest.mark.sampled("echo", "group", "mask")
 @pytest.mark.parametrize(
     ("echo", "group", "mask"), [("14", 1, 2), ("15", 1, 1), ("A8", 2, 0), ("A15", 2, 7)]
 )
@@ -69,6 +69,7 @@ def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
     assert board.motors(START + 249)[0] == f"pwm {20 * 653 >> 8}"
 
 
+@pytest.mark.sampled("name", "reading", "channel", "millivolts", "power", keep=3)
 @pytest.mark.parametrize(("name", "reading", "channel", "millivolts", "power"), [
     ("tinibot", "LIGHT_R / 20", 0, 2500, 511 / 20),
     ("tinibot", "LIGHT_L / 20", 1, 5000, 1023 / 20),
@@ -142,7 +143,7 @@ END_WHEN
 """
 
 
-@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(24))
 def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     """Whatever others read: none waits longer than a few conversions and a round of the tasks."""
@@ -282,6 +283,7 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
     assert board.motors(START + 390)[0] == f"pwm {80 * 653 >> 8}"
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
 def test_a_remote_control_is_read_after_the_sensors_of_the_kit(name: str) -> None:
     robot = on_board(name, "mega")

@@ -61,6 +61,7 @@ def counts(board: Board, ms: float) -> tuple[int, int]:
     return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
 
 
+@pytest.mark.sampled("name")
 @each_board
 def test_each_edge_of_both_counts(name: str) -> None:
     """Fast and slow ones, and both at once; 65.6 ms apart is no glitch where the clock wraps."""
@@ -77,6 +78,7 @@ def test_each_edge_of_both_counts(name: str) -> None:
     assert counts(board, 445) == (26, 20)
 
 
+@pytest.mark.sampled("name")
 @each_board
 @pytest.mark.parametrize("span_us", [1, 5, 20, 60, 200])
 @pytest.mark.parametrize("is_high", [False, True])
@@ -118,6 +120,7 @@ def test_a_line_that_glitches_without_end_counts_again_afterwards(
     assert counts(board, 135) == (16, 16)
 
 
+@pytest.mark.sampled("name")
 @each_board
 def test_two_channels_count_back(name: str) -> None:
     robot = with_discs(name, "two_channel")
@@ -190,6 +193,7 @@ def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], Non
         run_ms(1)
 
 
+@pytest.mark.sampled("hertz")
 @pytest.mark.parametrize("program", ["F(200 CM, 60)", "M(60, 60); W(30)"])
 @pytest.mark.parametrize("hertz", [50_000, 3300])
 def test_a_typed_stop_gets_through_while_both_discs_flicker(
@@ -221,6 +225,7 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
             assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS
 
 
+@pytest.mark.sampled(of="long ways of a chip")
 def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
     """The reader of text has left room for them: it backs away from what comes near."""
     robot = Driven(sketches("nano_tinibot2"), 1, (100, 100), Roughness())

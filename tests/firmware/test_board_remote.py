@@ -25,6 +25,7 @@ BAUD = robots.load("tinibot").board.baud
 TRIES = 5
 
 
+@pytest.mark.sampled("sketch_name")
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
 def test_what_a_hand_holds_reaches_the_motors(
     sketch_name: str, sketches: Callable[[str], Path]

@@ -120,7 +120,7 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
     return {**powers, **dict.fromkeys(sides[1].split(), right)}
 
 
-@pytest.mark.sampled("chip")
+@pytest.mark.sampled("name", "chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 @pytest.mark.parametrize("name", SIDES)
 def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
@@ -161,6 +161,7 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
         previous = (left, right)
 
 
+@pytest.mark.sampled("chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     robot = shield(*SIDES["four"], chip)

@@ -50,7 +50,7 @@ def shown(board: Board, ms: float) -> int:
     return 0 if level == "low" else round(int(level.removeprefix("pwm ")) / 2.55)
 
 
-@pytest.mark.sampled("distance_cm", keep=3)
+@pytest.mark.sampled("distance_cm", keep=2)
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 99, 399])
 def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: int) -> None:
@@ -108,7 +108,7 @@ extern "C" void test_turn() {
 """
 
 
-@pytest.mark.sampled("after_ms", keep=3)
+@pytest.mark.sampled("after_ms")
 @pytest.mark.parametrize("after_ms", [0.0, 0.02, 0.04, 0.06, 0.3, 1.0, 5.0, 20.0])
 def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     """At any time of a measurement: the next reading is one of its own ping, 30 ms later."""
@@ -141,6 +141,7 @@ TWO = (
 )
 
 
+@pytest.mark.sampled("text")
 @pytest.mark.parametrize("text", [
     "SI|LOOP(FOREVER);M(DISTANCE, BEHIND);W(0.005);S;END_LOOP",
     "SI|LOOP(FOREVER);M(DISTANCE, BEHIND);W(0.005);S;W(0.02);END_LOOP",
@@ -203,7 +204,7 @@ def glitched(width_us: float) -> list[tuple[int, int]]:
     return [(phase, shown(board, ms + 31)) for ms, phase in zip(times, PHASES, strict=False)]
 
 
-@pytest.mark.sampled("width_us", keep=2)
+@pytest.mark.sampled("width_us")
 @pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
 def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
     found = glitched(width_us)
@@ -234,6 +235,7 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
 HUNG_MS = 300.0  # from the ping on
 
 
+@pytest.mark.sampled("high_ms")
 @pytest.mark.parametrize("high_ms", [38.0, 70.0, 200.0])
 def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None:
     """It holds its echo for so long, and is asked again when it has lowered it: never 0."""
@@ -245,6 +247,7 @@ def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None
     assert len(pings(board, wire(robot)[0])) >= 5
 
 
+@pytest.mark.sampled("chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> None:
     """So who asks `DISTANCE < 15` stops. It pulls the echo low for a moment, again and again."""
@@ -295,7 +298,7 @@ def approaching(seed: int, samples: int) -> tuple[list[float], list[float]]:
     return true, heard
 
 
-@pytest.mark.sampled("seed", keep=3)
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
 def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""

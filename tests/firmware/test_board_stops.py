@@ -39,6 +39,7 @@ def pulses_from(board: Board, ms: float) -> int:
     return sum(at > ms for at, _ in pulses(board, GRIPPER))
 
 
+@pytest.mark.sampled("holds")
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_stop_turns_actuators_off(holds: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
@@ -77,6 +78,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     assert not [at for at in edges if at > 50.3]
 
 
+@pytest.mark.sampled("holds")
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
     """What a profile holds, too: nobody looks after it any more."""

@@ -46,7 +46,7 @@ def each_board(test: Test) -> Test:
     return found
 
 
-@pytest.mark.sampled("case", "board", keep=4)
+@pytest.mark.sampled("case", "board", keep=2)
 @BOARDS
 @pytest.mark.parametrize("case", without_readings(), ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, robot: Uno) -> None:

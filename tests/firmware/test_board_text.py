@@ -47,6 +47,7 @@ def since_the_line_end_ms(uno: Uno) -> float:
     return (max(pins) - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
+@pytest.mark.sampled("sketch_name")
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
 def test_a_program_whose_line_never_ends_runs(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
@@ -63,6 +64,7 @@ def test_a_program_whose_line_never_ends_runs(
         assert states(robot) == OFF
 
 
+@pytest.mark.sampled("sketch_name")
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
 def test_a_start_begins_a_line_anew(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path

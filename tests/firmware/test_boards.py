@@ -188,6 +188,7 @@ STOP_PIN = 19
 STOP_US = 20.0
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", ["l298n", "two_wire"])
 def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -> None:
     text = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP"

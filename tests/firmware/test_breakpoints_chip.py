@@ -174,6 +174,7 @@ def chip(
         yield uno
 
 
+@pytest.mark.sampled("first", "chip")
 @pytest.mark.parametrize("first", [0, 100, 200])
 def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> None:
     programs_of = images(first)
@@ -192,7 +193,7 @@ def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> No
     assert bool(features & TEXT_LEVEL) is (chip.board == "mega")
 
 
-@pytest.mark.sampled("board", "environment")
+@pytest.mark.sampled(of="long ways of a chip")
 @pytest.mark.parametrize(("board", "environment"), [*ENVIRONMENT_WITH_BREAKPOINTS.items()])
 def test_what_halts_leaves_the_stack_its_room(
     board: str, environment: str, sketches: Callable[[str], Path]

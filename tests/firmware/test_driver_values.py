@@ -56,6 +56,7 @@ def names(drivers: list[Driver]) -> list[str]:
     return [f"{driver.used_by} {driver.name}" for driver in drivers]
 
 
+@pytest.mark.sampled("driver", keep=2)
 @pytest.mark.parametrize("driver", SENSORS, ids=names(list(SENSORS)))
 def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     name, wiring = wired_as(driver)
@@ -67,6 +68,7 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
     assert len(found) == 2, "its reading is the same whatever it feels"
 
 
+@pytest.mark.sampled("driver")
 @pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
 def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
     name, wiring = wired_as(driver)

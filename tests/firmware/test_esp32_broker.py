@@ -355,6 +355,7 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
 # -- ends ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled("how")
 @pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
 def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
     own, keys = brokers(), Keys()

@@ -35,6 +35,8 @@ from tiniscript.link import wifi
 from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.transports.broker import Access, Broker, Present
 
+drawn = pytest.mark.sampled(of="an ESP32 and TLS", keep=2)
+
 pytestmark = pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
 
 NAME = "broker.aula"
@@ -88,6 +90,7 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     assert motors(robot) == "MOTORS 0 0"
 
 
+@pytest.mark.sampled("what", "state", keep=3)
 @pytest.mark.parametrize(("what", "state"), [
     ("another authority", "UNTRUSTED"), ("no certificate", "UNTRUSTED"),
     ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
@@ -121,6 +124,7 @@ def test_who_is_not_trusted_gets_nothing(
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
+@drawn
 def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
     room: Room, tmp_path: Path
 ) -> None:
@@ -211,6 +215,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
         assert robot.now_ms < begun_ms + DEAD_MAN_MS
 
 
+@drawn
 def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
     """A computer that takes the connection and says nothing; then the broker."""
     keys = Keys()
@@ -228,6 +233,7 @@ def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: R
         assert broker_settings_of(robot, owner)[1] == "SEARCHING"
 
 
+@drawn
 def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Room) -> None:
     """In the first hello, in the certificate, after the handshake; and in pieces of 7 bytes."""
     cuts = CuttingNetwork(room.broker.port, (3, 200, 1500))

@@ -142,6 +142,7 @@ SERIAL = {"begin", "onReceiveError", "setRxBufferSize", "setTxBufferSize", "avai
 LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*div\w*|__\w*mod\w*")
 
 
+@pytest.mark.long
 @pytest.mark.sampled("chip", "major")
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))

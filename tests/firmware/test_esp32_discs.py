@@ -103,7 +103,8 @@ def counting(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
     return robot, pins
 
 
-@pytest.mark.sampled("profile")
+@pytest.mark.long
+@pytest.mark.sampled("profile", "major")
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
 def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> None:
@@ -113,6 +114,7 @@ def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> Non
     assert abs(pose.x_cm - 20) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
 
 
+@pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None:
     driven = Driven(SLOTTED, (100, 100))
@@ -166,6 +168,7 @@ def test_two_channels_count_back() -> None:
     assert moved([(2 - k) % 4 for k in range(10)]) == 3
 
 
+@pytest.mark.sampled("pins")
 @pytest.mark.parametrize("pins", [{"left": 34, "right": 35}, {"left": 36, "right": 39}])
 def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
     """They have no pull-up: the sensor's own one is there."""

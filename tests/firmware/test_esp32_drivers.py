@@ -32,6 +32,7 @@ def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
     return robot, first, remote(robot, keys, 2)
 
 
+@pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
     robot, page, other = pair(is_owned)
@@ -48,6 +49,7 @@ def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
     assert uploaded(robot, ends, page, SHORT) == "OK", "and so does the other one"
 
 
+@pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("is_detached", [False, True])
 def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
@@ -119,7 +121,7 @@ CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
 }
 
 
-@pytest.mark.sampled("is_owned")
+@pytest.mark.sampled("what", "is_owned", keep=3)
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("what", CHANGES)
 def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:

@@ -201,7 +201,7 @@ def check(seed: int) -> str:
     return "at once" if wait_ms < OVER_MS else "later"
 
 
-@pytest.mark.sampled("part", keep=2)
+@pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_a_robot_is_as_its_twin(part: int) -> None:
     for seed in range(part * 5, part * 5 + 5):

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from struct import pack
 
+import pytest
+
 from tests.firmware.test_esp32_transports import Ends, booted, ended
 from tests.firmware.test_esp32_wifi import SCHOOL, joined, owned, school_in_reach, state
 from tests.support.esp32_radio import in_reach, radios, talk
 from tests.support.owners import Keys
 
+drawn = pytest.mark.sampled(of="how an ESP32 joins", keep=2)
+
 TRY_MS = 15_000  # kJoinAgainMs
 
 
+@drawn
 def test_an_address_that_comes_late_is_waited_for() -> None:
     robot, owner = owned(Keys())
     ends: Ends = [(None, owner)]
@@ -25,6 +30,7 @@ def test_an_address_that_comes_late_is_waited_for() -> None:
     assert radios(robot).joins == 1, "each try would begin anew"
 
 
+@drawn
 def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
     robot, owner = owned(Keys())
     ends: Ends = [(None, owner)]
@@ -36,6 +42,7 @@ def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
     assert state(robot, owner) == ("STATION", "READY")
 
 
+@drawn
 def test_a_network_that_comes_back_is_joined() -> None:
     robot, owner = joined(Keys())
     robot.wait(TRY_MS)
@@ -47,6 +54,7 @@ def test_a_network_that_comes_back_is_joined() -> None:
         assert state(robot, owner) == ("STATION", "READY")
 
 
+@drawn
 def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
     """Where an authentication is over, the status stays "connected", and `begin` does nothing."""
     robot, owner = joined(Keys())

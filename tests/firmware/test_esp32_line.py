@@ -33,6 +33,7 @@ def framing(robot: Esp32Robot) -> int:
     return status.outcome.values.framing
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str) -> None:
     robot = typed(booted(name))

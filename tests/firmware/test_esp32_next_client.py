@@ -29,6 +29,8 @@ from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
+drawn = pytest.mark.sampled(of="places of clients", keep=1)
+
 PLACES: list[Make] = [LowEnergy, SerialPort, Network]
 
 
@@ -84,7 +86,7 @@ def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
     return robot.now_ms - began_ms
 
 
-@pytest.mark.sampled("make")
+@pytest.mark.sampled("make", "wrong", keep=3)
 @pytest.mark.parametrize("make", PLACES)
 @pytest.mark.parametrize("wrong", WRONGS)
 def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
@@ -110,6 +112,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
     assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
 
 
+@pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", PLACES[:2])
 @pytest.mark.parametrize("typed", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
 def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> None:
@@ -140,6 +143,7 @@ CUT_STOPS = [
 ]
 
 
+@pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", PLACES)
 @pytest.mark.parametrize("pause_ms", [0, 300])
 def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
@@ -161,6 +165,7 @@ def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> N
 STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
 
 
+@pytest.mark.sampled("most")
 @pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
 @pytest.mark.parametrize("requests", [1, 5, 60])
 def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
@@ -192,6 +197,7 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
 PLACE_MS = 10_000  # kPlaceMs of radio.h
 
 
+@drawn
 def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     """Not for longer than ten seconds, and where nobody comes, not at all."""
     robot, _ = owned(keys := Keys())
@@ -216,6 +222,7 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     assert happened(robot)[-1] == "MOTORS 0 0"
 
 
+@drawn
 def test_whoever_comes_too_early_costs_nobody_anything() -> None:
     robot, _ = owned(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
@@ -236,6 +243,7 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
     )
 
 
+@drawn
 def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
     robot, _ = owned(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
@@ -259,6 +267,7 @@ def has_client(robot: Esp32Robot) -> bool:
     return robot.radio("E") == b"\1"
 
 
+@drawn
 def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     """The core sends each further one away: the next try of who was sent away gets the place."""
     robot, _ = owned(keys := Keys())

@@ -89,6 +89,7 @@ def using(broker: StrictBroker, strict_brokers: list[StrictBroker]) -> tuple[Esp
     return robot, owner
 
 
+@pytest.mark.sampled("granted")
 @pytest.mark.parametrize("granted", [b"\x80\x80", b"\0\x80", b"\x80\0"])
 def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     granted: bytes, brokers: list[StrictBroker]
@@ -103,6 +104,7 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     until(robot, lambda: len(broker.said) == 1)
 
 
+@pytest.mark.sampled("granted")
 @pytest.mark.parametrize("granted", [b"\0", b"\0\0\0", b"\0\3"])
 def test_an_answer_to_something_else_is_none(granted: bytes, brokers: list[StrictBroker]) -> None:
     robot, owner = using(broker := StrictBroker(granted), brokers)

@@ -109,6 +109,7 @@ def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> N
     assert ("REFUSED" in seen) == second.startswith("refused"), seen
 
 
+@pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
 def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     """As where the signal was weak: the robot has joined, and waits for its address."""
@@ -148,7 +149,7 @@ def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
     return robot.now_ms - began_ms
 
 
-@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
 @pytest.mark.parametrize("last", ASKED)
 def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
@@ -314,7 +315,7 @@ LONGEST = len(ACCEPTED + SUBSCRIBED + MESSAGE * 3 + PINGED * 2)
 
 
 @pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
-@pytest.mark.sampled("part", keep=2)
+@pytest.mark.sampled("part", "rest")
 @pytest.mark.parametrize("part", range(6))
 def test_a_connection_that_is_cut_anywhere_is_made_again(
     cut_broker: CutBroker, part: int, rest: bytes

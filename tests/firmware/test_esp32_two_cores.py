@@ -51,6 +51,7 @@ def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProces
     )
 
 
+@pytest.mark.long
 def test_no_two_cores_touch_the_same_at_once() -> None:
     completed = run()
     assert completed.returncode == 0, (completed.stdout + completed.stderr)[-4000:]

@@ -180,7 +180,7 @@ def moves(robot: Esp32Robot) -> list[str]:
 LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
 
 
-@pytest.mark.sampled("make")
+@pytest.mark.sampled("make", "stop", keep=3)
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS", b"STOP STOP ", bytes(4), b"\x03\n"])
 def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:

@@ -414,6 +414,7 @@ def rests(robot: Esp32Robot) -> bool:
     return says_so
 
 
+@pytest.mark.sampled("reset")
 @pytest.mark.parametrize("reset", [PANIC, TASK_WATCHDOG, BROWN_OUT])
 def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int) -> None:
     keys = Keys()
@@ -438,6 +439,7 @@ def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int
 ROW = (PANIC, 1000)  # a reset, and how long after the one before
 
 
+@pytest.mark.sampled("row")
 @pytest.mark.parametrize("row", [
     [(POWER_ON, 1000)] * 4 + [ROW, (POWER_ON, 1000), ROW, (POWER_ON, 1000)],
     [(EXTERNAL, 1000)] * 4 + [ROW, (EXTERNAL, 1000), ROW, (EXTERNAL, 1000)],

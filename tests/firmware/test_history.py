@@ -537,7 +537,7 @@ def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
 KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
 
 
-@pytest.mark.sampled("part")
+@pytest.mark.sampled("kind", "part")
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("before", BEFORE)

@@ -456,6 +456,7 @@ def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
     assert table.robot.is_latched
 
 
+@pytest.mark.sampled(of="other builds of the firmware")
 def test_a_firmware_without_owners_says_so_and_is_free() -> None:
     table = Owned(defines=("tiniscript_without_owners",))
     session = table.session(Keys())

@@ -281,6 +281,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
     assert marks(robot) == []
 
 
+@pytest.mark.sampled("seed", keep=12)
 @pytest.mark.parametrize("seed", range(30))
 def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) -> None:
     """Uploads come at any moment of a save, and whatever is there when the power goes is whole."""

@@ -316,7 +316,7 @@ SOME = {"a mega": 20, "an uno": 10, "an esp32": 3}  # of each start on a commit
 PARTS = 20
 
 
-@pytest.mark.sampled("part")
+@pytest.mark.sampled("kind", "part")
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("starts", STARTS)

@@ -66,6 +66,7 @@ def run(program: Path, seed: int, sample: tuple[str, ...]) -> Found:
 # -- the plug -----------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(of="layouts of the store", keep=2)
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_old_or_new(sample: tuple[str, ...]) -> None:
     assert run(compiled(parts(SOURCES), FLAGS), 1, sample).cases > 10_000
@@ -83,6 +84,7 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
     assert found.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
 
 
+@pytest.mark.sampled(of="layouts of the store", keep=2)
 def test_the_layout_of_a_mega() -> None:
     assert run(compiled(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
 

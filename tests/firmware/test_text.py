@@ -106,7 +106,7 @@ def test_every_sentence_in_its_language(language: str) -> None:
         robot.wait(4000)
 
 
-@pytest.mark.sampled("language", "says")
+@pytest.mark.sampled(of="other builds of the firmware")
 @pytest.mark.parametrize(
     "language, says",
     [
@@ -646,6 +646,7 @@ def answered(robot: HostFirmware, line: str) -> bytes:
     return said
 
 
+@pytest.mark.sampled("cut")
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("line", ASKED)
 def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:

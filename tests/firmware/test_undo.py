@@ -231,6 +231,7 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     assert program_after_power_off(robot) == bytes_of(DRIVES)
 
 
+@pytest.mark.sampled("cut_ms", keep=18)
 @pytest.mark.parametrize("cut_ms", range(0, 160, 3))
 def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     robot, session = with_two()
@@ -335,6 +336,7 @@ def back_in(state: str) -> int:
     return SAVED if state in IN_MEMORY else EARLIER
 
 
+@pytest.mark.sampled("has_draft")
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("state", STATES)
 def test_undo_in_every_state(state: str, has_draft: bool) -> None:

@@ -23,7 +23,7 @@ COUNT = 24
 SEED = 12
 
 
-@pytest.mark.sampled("environment", "name", "more_cycles", keep=2)
+@pytest.mark.sampled("environment", "name", "more_cycles")
 @pytest.mark.parametrize(("environment", "name", "more_cycles"), [
     ("uno", "tinibot", 0),
     ("nano_liner", "liner", 0),

@@ -80,6 +80,7 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
         assert hello_reply.fault_program == image_of(AWAY).checksum
 
 
+@pytest.mark.sampled(of="hangs of an Uno")
 def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_path: Path) -> None:
     pauses = "for (uint8_t k = 0; k < 112; k++) {\n __builtin_avr_delay_cycles(16000);\n }"
     with Uno(built(tmp_path, pauses), names=NAMES, baud=BAUD) as uno:
@@ -98,6 +99,7 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
         assert states(uno) == FORWARD
 
 
+@pytest.mark.sampled(of="hangs of an Uno")
 def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
     with Uno(built(tmp_path, HANGS), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)

@@ -51,7 +51,7 @@ def own(tmp_path: Path) -> Path:
 # -- PlatformIO builds
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
     """Once: then it is ready, until anything that it is made from is another."""
     needed()
@@ -123,7 +123,7 @@ def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_ou
             assert refused.value.key == key
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -> None:
     """What it leaves out is said before, also where it is ready; it is not taken for the other."""
     needed()

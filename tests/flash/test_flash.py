@@ -341,7 +341,7 @@ def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
 # -- the files
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:

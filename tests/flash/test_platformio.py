@@ -132,7 +132,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
         assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
     log = pio(project, "run", "-e", name).gives(0).out
@@ -144,7 +144,7 @@ def test_sketch_builds(project: Path, name: str) -> None:
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None:
     with changed(
         project / "platformio.ini",
@@ -155,7 +155,7 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
         )
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
     """Tables lie where `vectors.S` has none."""
     clock = project / "src" / "boards" / "avr" / "clock.cpp"
@@ -174,7 +174,7 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
     assert BOARDS[board][4] == flash - section == int(rows["upload.maximum_size"])
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 @pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str
@@ -191,7 +191,7 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     assert held == [30_720] * 2
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
     """`tsc firmware --board` writes its header, and from then on the sketch is for it."""
     own = project / "src" / "boards" / "kits" / "own.h"

@@ -662,6 +662,7 @@ def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
     assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
 
 
+@pytest.mark.sampled("spoil", "why")
 @pytest.mark.parametrize(("spoil", "why"), [
     (lambda path: path.unlink(missing_ok=True), "1: this cannot be read: No such file"),
     (lambda path: path.write_text('[tsc]\nstopped = "S\n'), "2: this is no TOML: Illegal"),

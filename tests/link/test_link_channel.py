@@ -251,6 +251,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)
 
 
+@pytest.mark.sampled("is_large", "count", "least")
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 300, 0.9), (True, 100, 0.85)])
 def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> None:
     """No upload says done that is not, and nothing is done twice.
@@ -261,6 +262,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
     assert found["done"] > count * least, found
 
 
+@pytest.mark.sampled("is_large", "count", "least")
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""

@@ -159,6 +159,7 @@ def test_words_alone_keep_an_attached_program_alive() -> None:
     assert one.robot.did[-1].endswith("FAULTED"), "and nothing else does"
 
 
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(3))
 def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     """Whenever it is lost: 300 times in all."""

@@ -127,6 +127,7 @@ class QuietWorld(SealedWorld):
     def disturb(self) -> None: ...
 
 
+@pytest.mark.sampled("world", "is_large", "least")
 @pytest.mark.parametrize(
     ("world", "is_large", "least"),
     [

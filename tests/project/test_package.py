@@ -174,7 +174,7 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
     assert ours > 30
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+@pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
@@ -196,7 +196,7 @@ touch compiler/tiniscript/studio/page/index.html
 """
 
 
-@pytest.mark.sampled("page")
+@pytest.mark.sampled(of="source packages")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
 def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, page: str) -> None:
     """Only who is at a terminal is asked for the page, as with `python -m build --wheel`; pip,
@@ -238,6 +238,7 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     assert ("without the page" in version.stdout) == (page == "none")
 
 
+@pytest.mark.sampled(of="source packages")
 def test_an_installation_without_cases_names_the_command_that_makes_them(
     unpacked: Path, tmp_path: Path
 ) -> None:

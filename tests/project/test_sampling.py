@@ -39,6 +39,16 @@ def test_kit(kit, tone): ...
 def test_same_kit(kit): ...
 """
 
+FILE = """
+import pytest
+pytestmark = pytest.mark.sampled(files="sides", keep=2)
+@pytest.mark.sampled("way")
+@pytest.mark.parametrize("way", ["keys", "mouse"])
+def test_{0}(way): ...
+def test_more_of_{0}(): ...
+"""
+SIDES = ("left", "right", "front", "back")
+
 
 def test_a_history_that_nobody_may_read_draws_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -80,6 +90,8 @@ def collected(
     folder: Path, *words: str, of: str | None = "", commits: Sequence[str] = ("7",)
 ) -> list[tuple[list[str], str]]:
     (folder / "test_rows.py").write_text(ROWS, encoding="utf-8")
+    for side in SIDES:
+        (folder / f"test_{side}.py").write_text(FILE.format(side), encoding="utf-8")
     (folder / "pytest.ini").write_text("[pytest]", encoding="utf-8")
     asked = folder if of is None else f"{folder / 'test_rows.py'}{of}"
     plugin = Plugin(commits)
@@ -122,6 +134,28 @@ def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path:
     ((found, said),) = collected(tmp_path, *words, of=of)
     assert sum("_case" in name for name in found) == 60 and said == ""
     assert found[-4:] == [*"abcd"]
+
+
+def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> None:
+    commits = [*map(str, range(20)), "7"]
+    seen = Counter[str]()
+    drawn = collected(tmp_path, of=None, commits=commits)
+    for found, _ in drawn:
+        names = [name for name in found if any(side in name for side in SIDES)]
+        whole = [name.removeprefix("test_more_of_") for name in names if "more_of" in name]
+        assert len(whole) == 2 and len(names) == 4
+        assert {name.partition("[")[0] for name in names if "more" not in name} == {
+            f"test_{side}" for side in whole
+        }
+        seen.update(names)
+    assert len(seen) == 3 * len(SIDES)
+    assert drawn[7] == drawn[20]
+    left = f"{tmp_path / 'test_left.py'}"
+    for commit in commits:
+        ((found, _),) = collected(tmp_path, left, of=None, commits=[commit])
+        assert "test_more_of_left" in found  # it was named
+    ((found, _),) = collected(tmp_path, "--whole", of=None)
+    assert sum(side in name for name in found for side in SIDES) == 3 * len(SIDES)
 
 
 def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def test_all_cut_programs_end() -> None:
         check(program)
 
 
-@pytest.mark.sampled("program", keep=3)
+@pytest.mark.sampled("program")
 @pytest.mark.parametrize(
     "program",
     [

@@ -31,7 +31,7 @@ def work(text: str) -> int:
     return calls
 
 
-@pytest.mark.sampled("begin", "piece", "end", keep=3)
+@pytest.mark.sampled("begin", "piece", "end")
 @pytest.mark.parametrize(
     ("begin", "piece", "end"),
     [
@@ -55,7 +55,7 @@ REPEATED = [
 ]
 
 
-@pytest.mark.sampled("mistake", keep=4)
+@pytest.mark.sampled("mistake", keep=2)
 @pytest.mark.parametrize("between", ["\n", ";"], ids=["lines", "one-line"])
 @pytest.mark.parametrize("mistake", REPEATED)
 def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, between: str) -> None:

@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tests.support.rows import each_row
+from tests.support.rows import go_through
 from tiniscript import robots
 from tiniscript.base.languages import languages, table
 from tiniscript.base.source import Source, apply_edits
@@ -87,7 +87,7 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
     return found
 
 
-@pytest.mark.sampled("text", keep=30)
+@pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
     for wrong, written, value, unit in variants(text):
@@ -95,7 +95,7 @@ def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> 
         assert is_kept(written, value, unit, made), (wrong, made)
 
 
-@pytest.mark.sampled("text", keep=30)
+@pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
     """A minus is not asked for: where it goes, a move goes the other way and says so."""
@@ -112,8 +112,13 @@ def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> 
             assert written in lost or is_kept(written, value, unit, made), (wrong, made)
 
 
-@each_row("text", WRITTEN)
-def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(3))
+def test_no_repair_loses_a_sign_or_a_unit(part: int) -> None:
+    go_through(loses_nothing, WRITTEN[part::3])
+
+
+def loses_nothing(text: str) -> None:
     for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
         for word, unit, scale in units():
             written = f"{sign}{number}{space}{word}"

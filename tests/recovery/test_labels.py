@@ -31,6 +31,7 @@ def labelled(label: str, program: tuple[str, ...]) -> list[str]:
     return [f"{name} {order}" for name, order in zip(names, program, strict=True)]
 
 
+@pytest.mark.sampled("label", keep=32)
 @pytest.mark.parametrize("label", LABELS)
 def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
     for program, (begun, between) in product(PROGRAMS, PLACES):

@@ -57,7 +57,7 @@ WAITS = {"sleep(2)": "2", "time.sleep(0.5)": "0.5", "delay(1500)": "1.5", "esper
 OFF = ("stop()", "mBot.stop()", "S", "parar()")
 
 
-@pytest.mark.sampled("place", keep=2)
+@pytest.mark.sampled("place")
 @pytest.mark.parametrize("place", [it for it in PLACES if it != "{}"])
 @pytest.mark.parametrize("off", OFF)
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:

@@ -22,7 +22,7 @@ def alike(text: str) -> str:
     return "".join(plain(text).split())
 
 
-@pytest.mark.sampled("part", keep=2)
+@pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(4))
 def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
     seen = 0

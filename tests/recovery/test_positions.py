@@ -12,7 +12,7 @@ from itertools import chain
 
 import pytest
 
-from tests.support.rows import each_row
+from tests.support.rows import go_through
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import Code
@@ -63,8 +63,13 @@ def ends(text: str) -> int:
     return sum(each in WORD_OF_END for each in texts(lexemes(text)))
 
 
-@each_row("wrong", [pytest.param(example, id=example) for example in examples()])
-def test_a_row_means_the_same_wherever_its_instruction_stands(wrong: str) -> None:
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(3))
+def test_a_row_means_the_same_wherever_its_instruction_stands(part: int) -> None:
+    go_through(means_the_same_everywhere, examples()[part::3])
+
+
+def means_the_same_everywhere(wrong: str) -> None:
     alone = meant(wrong)
     if alone is None:
         return  # it needs the lines that it has in the table

@@ -137,6 +137,7 @@ ALL = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled("robot", keep=12)
 @pytest.mark.parametrize("robot", ALL)
 def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
     """Nothing is made of it: in a second a compiler says what no text of a test shows."""

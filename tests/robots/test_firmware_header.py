@@ -235,6 +235,7 @@ def test_the_header_of_an_esp32(tsc: Tsc) -> None:
 # -- the Arduino IDE's own builder
 
 
+@pytest.mark.long
 @pytest.mark.sampled("board")
 @pytest.mark.parametrize("board", sorted(arduino_builder.BOARDS))
 def test_the_arduino_builder_builds_the_sketch(

@@ -58,7 +58,7 @@ def test_nothing_else_does(around: str, behind: str) -> None:
     assert told(rest.format(f"F(FOREVER, 60){behind}")) == {}
 
 
-@pytest.mark.sampled("around", keep=2)
+@pytest.mark.sampled("around")
 @pytest.mark.parametrize("around", AROUND)
 @pytest.mark.parametrize("word", [*WORDS, "espera"])
 def test_no_word_with_forever_is_taken_for_a_move(around: str, word: str) -> None:

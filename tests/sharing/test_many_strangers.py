@@ -139,7 +139,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
     return found
 
 
-@pytest.mark.sampled("kind", keep=3)
+@pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
     for name, before, meanwhile, after in attack(kind, TESTED):

@@ -27,6 +27,8 @@ from tools.site.documents import PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import page, shelf
 
+pytestmark = pytest.mark.long  # the whole site is built
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 

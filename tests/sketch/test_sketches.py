@@ -96,7 +96,7 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
     assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
 
 
-@pytest.mark.sampled("echo_us")
+@pytest.mark.sampled("echo_us", "path", keep=3)
 @pytest.mark.parametrize("echo_us", [FAR, NEAR], ids=["far", "near"])
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path: Path, echo_us: float) -> None:
@@ -104,7 +104,7 @@ def test_examples(path: Path, echo_us: float) -> None:
     agrees(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
 
 
-@pytest.mark.sampled("number", keep=len(ANSWERS) // 6)
+@pytest.mark.sampled("number", keep=len(ANSWERS) // 10)
 @pytest.mark.parametrize("number", range(len(ANSWERS)), ids=lambda n: ANSWERS[n][0])
 def test_answers_of_lessons(number: int) -> None:
     text = ANSWERS[number][1]

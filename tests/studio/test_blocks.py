@@ -88,7 +88,7 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
         print_blocks(read(program.text, kit))
 
 
-@pytest.mark.sampled("first", keep=2)
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 1000, 250))
 def test_random_programs_are_the_same_from_their_blocks(first: int) -> None:
     for seed in range(first, first + 250):

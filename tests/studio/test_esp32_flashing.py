@@ -143,6 +143,7 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
         context.close()
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(b"nothing")
     with at_the_teachers(browser, tmp_path) as page:

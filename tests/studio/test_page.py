@@ -12,6 +12,7 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, programs, said
 from tests.studio.programs import image as image_of
+from tests.support.sampling import some_of
 from tests.support.studio import Pages, asked, checked, image, noted, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
@@ -207,8 +208,8 @@ DAMAGED = (
 )
 
 
-def test_damaged_work_does_no_harm(page: Page) -> None:
-    for kept in DAMAGED:
+def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
+    for kept in some_of(pytestconfig, "damaged work", DAMAGED):
         page.evaluate(
             "kept => { for (const s of [sessionStorage, localStorage])"
             " s.setItem('tiniscript.work', kept.shift()); }",

@@ -18,6 +18,7 @@ from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
+from tests.support.sampling import some_of
 from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.base.languages import languages
@@ -32,6 +33,8 @@ from tools.builds.studio import BLOCKLY, why_stale
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
+
+drawn = pytest.mark.sampled(of="details of blocks", keep=4)
 
 PROGRAM = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"  # no toolbox
 FLYOUT = ".blocklyFlyout:visible .blocklyBlockCanvas > .blocklyDraggable"  # no numbers in blocks
@@ -210,6 +213,7 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     becomes(page, "SI|F(2, 80);\nS;\n")
 
 
+@drawn
 def test_an_undo_keeps_the_place(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
     long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
@@ -274,6 +278,7 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     becomes(page, "SI|F(2, 80);\nS;\n")
 
 
+@drawn
 def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
@@ -372,6 +377,7 @@ def meet(a: dict[str, float], b: dict[str, float]) -> bool:
     return not (beside or a["top"] > b["bottom"] - 8 or b["top"] > a["bottom"] - 8)
 
 
+@drawn
 def test_a_message_stands_on_no_block(page: Page) -> None:
     """And one for which no room is left is put away."""
     bubble = page.locator("#blocks .blocklyBubble")
@@ -391,6 +397,7 @@ def test_a_message_stands_on_no_block(page: Page) -> None:
     bubble.wait_for(state="detached")
 
 
+@drawn
 def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
     page.click("#run")
@@ -416,8 +423,9 @@ def flyout(page: Page, group: str) -> str:
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
-def test_the_words_of_the_robot_are_blocks(page: Page) -> None:
-    for name in robots.names():
+@drawn
+def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
+    for name in some_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
         shown(page)
         said = flyout(page, "Robot")
@@ -433,6 +441,7 @@ def said_by(page: Page) -> set[str]:
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
 
 
+@drawn
 def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert said_by(page) == {
@@ -454,6 +463,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
     assert "stop" in said_by(page)
 
 
+@drawn
 def test_a_move_is_so_long_or_so_far(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
     for field, choice, says, text in (
@@ -468,6 +478,7 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
         assert said_by(page) == {"when it starts", "at", "%", *says}
 
 
+@drawn
 def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -> None:
     page.click("#view_text")
     write(page, "S;" * 1600)
@@ -550,7 +561,9 @@ def offered(page: Page) -> set[str]:
     return set(page.evaluate(OFFERED))
 
 
-def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
+def test_every_word_that_has_a_block_can_be_dragged_out(
+    page: Page, pytestconfig: pytest.Config
+) -> None:
     """And to begin with, those of several things at once. A grey block is what nobody can read."""
     kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
@@ -559,7 +572,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
     assert offered(page) == kinds
     for word in (name for name, its in WORDS.items() if its.role.name != "later"):
         assert kinds_in(read(of_word(word), robots.load("grabber").kit)) <= kinds, word
-    for name in robots.names():
+    for name in some_of(pytestconfig, "toolboxes", robots.names(), 2):
         page.select_option("#robot", name)
         start(page, with_names, "all")
         has_actuators = bool(robots.load(name).kit.actuators)
@@ -568,7 +581,9 @@ def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
         assert {"when", "task"} <= offered(page), name
 
 
-def test_a_lesson_offers_its_words_while_it_is_open(pages: Pages) -> None:
+def test_a_lesson_offers_its_words_while_it_is_open(
+    pages: Pages, pytestconfig: pytest.Config
+) -> None:
     """To somebody who has chosen few blocks, so many that one of its answers is made of them alone.
     What another lesson offers goes."""
     page = pages.open(view="blocks")
@@ -577,8 +592,9 @@ def test_a_lesson_offers_its_words_while_it_is_open(pages: Pages) -> None:
     assert page.input_value("#level") == "few" and "show" not in few
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
-    for number, folder in enumerate(catalogue.folders(), 1):
-        lesson = catalogue.load(folder)
+    folders = catalogue.folders()
+    for folder in some_of(pytestconfig, "offers", folders, 4):
+        number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
@@ -632,6 +648,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
     assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
 
 
+@drawn
 def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     """Dragged out, chosen later, and back; a number stays where it still fits."""
     page.select_option("#robot", "grabber")
@@ -647,6 +664,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
+@drawn
 def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, own in (
@@ -665,6 +683,7 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
 
+@drawn
 def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
     first, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
     text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first}{then}"
@@ -691,6 +710,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
 
 
+@drawn
 def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
     """One that is there stays out of sight, where somebody put it."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
@@ -745,6 +765,7 @@ IN_BLOCKS = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", IN_BLOCKS)
 def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
@@ -779,6 +800,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     assert page.locator("#lesson_said").get_attribute("data-verdict") == "passed", text_of(page)
 
 
+@drawn
 def test_more_cases_of_an_if(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
     for name, wanted in (
@@ -792,6 +814,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
         becomes(page, f"SI|{wanted}")
 
 
+@drawn
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
     canvas = page.locator("#blocks .blocklyBlockCanvas")
@@ -812,6 +835,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
         becomes(page, f"SI|DEF {head};\n{body}{calls}")
 
 
+@drawn
 def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
     text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
     start(page, text.format(""), "usual")
@@ -862,6 +886,7 @@ def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 
+@drawn
 def test_a_fault_is_said_at_its_block(page: Page) -> None:
     start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
     page.select_option("#speed", "20")

@@ -26,6 +26,8 @@ from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, sp
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
+drawn = pytest.mark.sampled(of="touched blocks", keep=3)
+
 SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
 GAP = 30  # pixels between a block and its message
 
@@ -106,6 +108,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     page.click("#runs_close")
 
 
+@drawn
 def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
     start(page, WHOLE)
     page.select_option("#speed", "1")
@@ -134,6 +137,7 @@ def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> 
     in_phase(page, "ended")
 
 
+@pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["keys", "menu"])
 def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
@@ -161,6 +165,7 @@ ARROWS = """all => all.map((arrow) => {
 })"""
 
 
+@drawn
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
@@ -178,6 +183,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     assert 0 < gap < 14
 
 
+@drawn
 def test_an_editor_stands_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
@@ -193,6 +199,7 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
         editor.wait_for(state="detached")
 
 
+@drawn
 def test_a_message_is_at_its_block(page: Page) -> None:
     """As near as it stands on no other one, with a line that begins at the block."""
     wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
@@ -244,6 +251,7 @@ def pitch(page: Page) -> Locator:
     return field
 
 
+@drawn
 def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     for language, name in (("en", "E"), ("es", "mi"), ("pt", "mi")):
         speak(page, language)
@@ -286,6 +294,7 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
     becomes(page, text)
 
 
+@drawn
 def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()
@@ -304,6 +313,7 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
 # -- what somebody looks for -----------------------------------------------------------------------
 
 
+@pytest.mark.sampled("language", "words")
 @pytest.mark.parametrize(
     ("language", "words"),
     [
@@ -329,6 +339,7 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
     speak(page, "en")
 
 
+@pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["search", "group"])
 def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
     page: Page, way: str
@@ -358,6 +369,7 @@ IS_SEEN = """(path) => {
 }"""
 
 
+@drawn
 def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     start(
         page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(0.1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all"

@@ -18,6 +18,7 @@ from tests.support import studio
 from tests.support.class_pages import joined, said, teaches
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
+from tests.support.sampling import some_of
 from tests.support.studio import (
     Class,
     Pages,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
 pytestmark = pytest.mark.usefixtures("unhurried")
+drawn = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
 WHOLE = "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
@@ -186,6 +188,7 @@ def test_three_pupils_share_a_robot(
     luz.close()
 
 
+@drawn
 def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(ana: Page, shared: Pages) -> None:
     for tear, times in ((lose_answer, 2), (refuse, 3)):
         tears(ana, "connect", tear, times)
@@ -250,6 +253,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     pages.wrong.clear()
 
 
+@drawn
 def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, taught: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
     room = taught.room
@@ -282,6 +286,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, taught: Cla
     teacher.evaluate("() => { AbortSignal.timeout = window.limit; }")
 
 
+@drawn
 def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
     room = taught.room
@@ -307,6 +312,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
     only_ana(taught)
 
 
+@drawn
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
     ana: Page, teacher: Page, taught: Class
 ) -> None:
@@ -377,6 +383,7 @@ DRAWINGS = """() => { window.told = []; window.drawn = [];
   URL.createObjectURL = (blob) => (window.drawn.push(newest), make(blob)); }"""
 
 
+@drawn
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Class) -> None:
     """Whatever the page writes meanwhile; and the newest is drawn then. Others wait for nothing."""
     teacher = teaches(pages, taught)
@@ -434,6 +441,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red(
     assert "STOP: 0 of 1 robots" in teacher.locator("#stops").inner_text()
 
 
+@drawn
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     asks(ana)
     linked(ana, "Connected: ")
@@ -449,6 +457,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
     teacher.click("#class_window [data-text=close]")
 
 
+@drawn
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     asks(ana)
@@ -457,7 +466,7 @@ def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
 
 
 def test_everything_is_seen_and_axe_finds_nothing(
-    ana: Page, teacher: Page, pages: Pages, taught: Class
+    ana: Page, teacher: Page, pages: Pages, taught: Class, pytestconfig: pytest.Config
 ) -> None:
     longest = joined(pages, taught, "A" * 24)
     asks(longest)
@@ -465,7 +474,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
     longest.click("#class_hand")
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     for page in (longest, teacher):
-        for width, height in SCREENS:
+        for width, height in some_of(pytestconfig, "screens of a class", SCREENS, 2):
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
                 speak(page, language)
@@ -578,6 +587,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
     return row
 
 
+@drawn
 def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
     pages: Pages, taught: Class, teacher: Page
 ) -> None:
@@ -600,6 +610,7 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
     pages.wrong.clear()
 
 
+@drawn
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, taught: Class
 ) -> None:
@@ -622,7 +633,7 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana.click("#side_real")
 
 
-@pytest.mark.sampled("erases")
+@drawn
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end(browser: Browser, erases: bool) -> None:
     with studio.taught([]) as taught:

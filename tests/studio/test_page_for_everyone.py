@@ -107,13 +107,14 @@ THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
-    """At half of the usual sizes, others in each commit; the class is in `test_page_class.py`."""
-    usual = {screen: some_of(pytestconfig, screen, SCREENS, 2) for screen in screens.SCREENS}
+    """At two sizes, others in each commit; the class is in `test_page_class.py`."""
+    usual = {screen: some_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
+    low = {screen: some_of(pytestconfig, screen, LOW) for screen in screens.SCREENS}
     axed = {screen: some_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *LOW)):
+    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             for end in (0,) if size in SCREENS else (0, 10_000):
@@ -272,6 +273,7 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
     assert visit(address, "SI|S") == compile("SI|F(7, 70)").image
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
     """A newer build waits until no tab has the old one, and is there then."""
     need(studio.missing())

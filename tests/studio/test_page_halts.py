@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
 pytestmark = pytest.mark.usefixtures("unhurried")
+drawn = pytest.mark.sampled(of="details of halts", keep=2)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
@@ -125,7 +126,7 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
     return found
 
 
-@pytest.mark.sampled("name", keep=2)
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
     text, lines = PROGRAMS[name]
@@ -149,6 +150,7 @@ def halts(page: Page, line: int) -> None:
     page.locator("html[data-halt=read]").wait_for(state="attached")
 
 
+@drawn
 def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
     put(page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,))
@@ -165,6 +167,7 @@ def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
 LOOP = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 
+@drawn
 def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
     """And stays while its text changes; a program that waits, or runs again, has it, too."""
     put(page, LOOP, ())
@@ -192,6 +195,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     halts(page, 5)
 
 
+@drawn
 def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
     put(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
@@ -206,6 +210,7 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
     halts(page, 3)
 
 
+@drawn
 def test_a_robot_has_the_first_four(page: Page) -> None:
     put(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
@@ -219,6 +224,7 @@ def test_a_robot_has_the_first_four(page: Page) -> None:
     told.wait_for(state="hidden")
 
 
+@drawn
 def test_a_robot_that_cannot_halt_says_so_and_runs(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -245,6 +251,7 @@ BROUGHT = [
 ]  # fmt: skip
 
 
+@drawn
 def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     page: Page, pages: Pages, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -302,6 +309,7 @@ def connect_again(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
 
 
+@pytest.mark.sampled("how", keep=2)
 @pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
 def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how: str) -> None:
     put(page, LOOP, (4,))

@@ -19,6 +19,8 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
 
+drawn = pytest.mark.sampled(of="held files and ports", keep=2)
+
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
 STUCK = "The port no longer accepts data."
@@ -111,6 +113,7 @@ def test_what_is_fetched_goes_on_while_something_comes_and_ends_when_nothing_doe
     ]  # fmt: skip
 
 
+@drawn
 def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -132,6 +135,7 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     assert page.evaluate("window.port.opened") == 0
 
 
+@drawn
 def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -149,6 +153,7 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     assert page.evaluate("window.port.opened") == 0
 
 
+@drawn
 def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -168,6 +173,7 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
 
 
+@drawn
 def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: serving.Server) -> None:
     page = with_serial(pages, server)
     page.evaluate("() => { window.port.open = () => new Promise(() => {}); }")
@@ -314,6 +320,7 @@ def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: P
     danced(page)
 
 
+@drawn
 def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     page.context.route("**/tiniscript.zip", lambda route: route.abort())

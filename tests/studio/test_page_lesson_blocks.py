@@ -9,6 +9,7 @@ import pytest
 
 from tests.lessons.test_forms import has_line_on_floor, of_text
 from tests.studio.test_page_blocks import drag, offered, start
+from tests.support.sampling import some_of
 from tests.support.studio import SETTLED, Pages, axe, shown, speak
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
@@ -17,6 +18,9 @@ from tiniscript.studio.block_kinds import KINDS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="blocks of lessons", keep=1)
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
 LEVELS = ["few", "usual", "all"]
@@ -48,7 +52,9 @@ def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(languag
         seen |= set(taught)
 
 
-def test_the_level_rises_to_what_a_lesson_needs_and_no_further(page: Page) -> None:
+def test_the_level_rises_to_what_a_lesson_needs_and_no_further(
+    page: Page, pytestconfig: pytest.Config
+) -> None:
     """Each kind that it needs is there without the lesson, one level below some are missing. Who
     has chosen more keeps it."""
     kinds: dict[str, set[str]] = {}
@@ -56,7 +62,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_no_further(page: Page) -> No
         page.select_option("#level", level)
         kinds[level] = offered(page)
     page.select_option("#level", "few")
-    for number in LESSONS:
+    for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed = set(page_lessons.needed(number, "en")) & kinds["all"]
         level = page.input_value("#level")
@@ -66,6 +72,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_no_further(page: Page) -> No
     assert page.input_value("#level") == "all"
 
 
+@drawn
 def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
     start(page, "SI|F(1, 80);\n")
     open_lesson(page, 6)
@@ -87,6 +94,7 @@ def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
     assert locator.all_inner_texts() == ["Robot"]
 
 
+@drawn
 def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
     page = pages.open(view="blocks", reduced_motion="reduce")
     page.click("#side_lessons")
@@ -97,6 +105,7 @@ def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
     assert path.evaluate("e => getComputedStyle(e).animationName") == "none"
 
 
+@drawn
 def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
     """Its programs are drawn, and its words are those on blocks, while blocks are seen; a screen
     reader has the text of both."""
@@ -144,12 +153,15 @@ NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_what_a_lesson_names_of_a_block_is_what_the_block_says(page: Page, language: str) -> None:
+def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
+    page: Page, language: str, pytestconfig: pytest.Config
+) -> None:
     """Nothing that is read there is of a text; the only codes are names that a program gives."""
     speak(page, language)
     shown(page)
     found = 0
-    for number in LESSONS:
+    lessons = some_of(pytestconfig, "words of lessons", LESSONS, 4)
+    for number in lessons:
         open_lesson(page, number)
         is_line_on_floor = has_line_on_floor(number)
         for k in range(page.locator("#lesson_steps button").count()):
@@ -160,9 +172,10 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(page: Page, langu
             assert not [code for code in codes if code in WORDS or not code.isidentifier()], codes
             assert not [each for each in on_blocks if NO_LABEL.search(each)], on_blocks
             found += len(on_blocks)
-    assert found > 50
+    assert found > 2 * len(lessons)
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: str) -> None:
     speak(page, language)
@@ -182,6 +195,7 @@ def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: s
     assert finding.locator(".on_block").count() == 1
 
 
+@pytest.mark.long
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
 def test_what_is_below_of_a_step_is_announced_by_a_shadow(

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.sampling import some_of
 from tests.support.studio import Pages, axe, checked, in_phase, noted, speak, turn, write
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+drawn = pytest.mark.sampled(of="details of lessons", keep=3)
 
 FOLDERS = catalogue.folders()
 SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
@@ -74,6 +78,7 @@ def rest(page: Page) -> list[str]:
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
+@drawn
 def test_any_program_can_be_checked(page: Page) -> None:
     choose(page, 1)
     for program, verdict in (
@@ -85,6 +90,7 @@ def test_any_program_can_be_checked(page: Page) -> None:
         assert (found, len(said)) == (verdict, verdict == "failed"), program
 
 
+@drawn
 def test_a_check_can_be_ended(page: Page) -> None:
     choose(page, 9)
     write(page, SLOW)
@@ -98,6 +104,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert check(page, right[0].program) == ("passed", [])  # and not the other one's verdict
 
 
+@drawn
 def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     """The robot stands at the wall that it touched; then the answer comes."""
     choose(page, 1)
@@ -114,6 +121,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     assert page.locator("html[data-phase=ended]").count() == 1
 
 
+@drawn
 def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
     choose(page, 2)
     write(page, "F(3, 80); W(9)")
@@ -129,21 +137,21 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
 RUNNING = ".blocklyBlockCanvas .running, .cm-content .running"
 
 
-def test_nothing_is_lit_once_a_run_is_over(page: Page) -> None:
+def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:
     """Whether it has come to its end, to what it missed, or was skipped or stopped."""
     choose(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
-    for view in ("#view_blocks", "#view_text"):
+    ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
+    for view, end in some_of(pytestconfig, "ends of a run", ends, 2):
         page.click(view)
-        for end in ("#lesson_end", "#stop", ""):
-            page.click("#lesson_check")
-            page.locator("#lesson_end", has_text="Skip").wait_for()
-            page.locator(RUNNING).first.wait_for(state="attached")
-            if end:
-                page.click(end)
-            page.locator("#lesson_said[data-verdict=failed]").wait_for()
-            page.locator(RUNNING).first.wait_for(state="detached", timeout=10_000)
+        page.click("#lesson_check")
+        page.locator("#lesson_end", has_text="Skip").wait_for()
+        page.locator(RUNNING).first.wait_for(state="attached")
+        if end:
+            page.click(end)
+        page.locator("#lesson_said[data-verdict=failed]").wait_for()
+        page.locator(RUNNING).first.wait_for(state="detached", timeout=10_000)
 
 
 # Names of lessons that the list does not show whole, if they are chosen.
@@ -160,6 +168,7 @@ CUT_NAMES = """() => {
 }"""
 
 
+@drawn
 def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     for language, word in (("es", "Detente"), ("pt", "Pare antes"), ("en", "Stop before")):
         speak(page, language)
@@ -191,6 +200,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
 PAGES = {(1366, 768): 500, (1024, 600): 140, (390, 844): 200, (844, 390): 150}
 
 
+@pytest.mark.long
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", PAGES, ids=lambda size: "x".join(map(str, size)))
 def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]) -> None:
@@ -236,6 +246,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     assert page.locator("#lesson_said[data-verdict]").count() == 0
 
 
+@drawn
 def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     choose(page, 12)
     _, wrong = catalogue.answers(FOLDERS[11])
@@ -260,6 +271,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     page.locator("#world option:checked", has_text="12").wait_for(state="attached")
 
 
+@drawn
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
     choose(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
@@ -276,7 +288,9 @@ def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: P
     assert page.locator(".cm-content").inner_text().startswith("SI|LOOP(4)\n  F(1, 60)")
 
 
-def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(pages: Pages) -> None:
+def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
+    pages: Pages, pytestconfig: pytest.Config
+) -> None:
     page = pages.open()
     page.route("**/lessons.zip", lambda route: route.abort())
     page.click("#side_lessons")
@@ -300,7 +314,10 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(pages: Page
     page.select_option("#speed", "20")
     assert check(page, right[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
-    for count in (0, 2, len(FOLDERS)):  # goes on with the first that is not done
+    counts = (0, 2, len(FOLDERS))
+    for count in some_of(
+        pytestconfig, "lessons done", counts
+    ):  # goes on with the first that is not done
         names = json.dumps([folder.name for folder in FOLDERS[:count]])
         page.evaluate("names => localStorage.setItem('tiniscript.lessons', names)", names)
         page.reload()
@@ -338,6 +355,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     assert axe_of == [[], []]
 
 
+@drawn
 def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
     """From a floor that is drawn, and with Back from what stands in front of it."""
     page.click("#side_virtual")

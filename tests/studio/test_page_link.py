@@ -14,6 +14,7 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import pty_robot as pty_robots
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
+from tests.support.sampling import some_of
 from tests.support.studio import (
     HUNG_MS,
     UPLOADS,
@@ -36,6 +37,8 @@ from tiniscript.studio.recordings import decode
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
+
+drawn = pytest.mark.sampled(of="details of a link", keep=4)
 
 KIT = robots.load("tinibot").kit
 PATIENCE_MS = 90_000
@@ -195,6 +198,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     wrong.clear()
 
 
+@drawn
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
     other = first[0].another(page)
     other.click("#side_real")
@@ -210,6 +214,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
         said(page, re.compile(f"{VOID}|{BLINKS}"))
 
 
+@drawn
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
     said(page, BLINKS)
@@ -242,9 +247,13 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     )
 
 
-def test_everything_is_seen_and_axe_finds_nothing(page: Page, robot: PtyRobot) -> None:
+@drawn
+def test_everything_is_seen_and_axe_finds_nothing(
+    page: Page, robot: PtyRobot, pytestconfig: pytest.Config
+) -> None:
+    screens = some_of(pytestconfig, "screens of a link", SCREENS, 2)
     for is_connected in (True, False):
-        for language, (width, height) in product(("en", "es"), SCREENS):
+        for language, (width, height) in product(("en", "es"), screens):
             page.set_viewport_size({"width": width, "height": height})
             speak(page, language)
             checked(page)
@@ -295,6 +304,7 @@ def test_why_there_is_no_connection(pages: Pages) -> None:
         said(page, "cable")
 
 
+@drawn
 def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
     assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
@@ -336,6 +346,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     pages.wrong.clear()
 
 
+@drawn
 def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
     """Also beside another text; a line of the same code has its own names."""
     shown = page.locator("#link_shown")
@@ -351,6 +362,7 @@ def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
         shown.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
+@drawn
 def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> None:
     """The next one has the same code, and is sent before the last values of the one before come."""
     shown = page.locator("#link_shown")
@@ -385,6 +397,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
     said(page, "Stopped: the robot has confirmed the stop")
 
 
+@drawn
 def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     write(page, "SHOW(5);\nW(60);\nSHOW(6)")
     upload_until_it_runs(page)
@@ -402,6 +415,7 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     assert events(page) == ["SHOW 5", "LOST"]
 
 
+@drawn
 def test_a_program_of_the_button_is_recorded_from_its_first_event(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -472,6 +486,7 @@ def events(page: Page) -> list[str]:
     return [row.event for row in decode(saved.value.path().read_bytes()).rows]
 
 
+@drawn
 def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
 
@@ -504,6 +519,7 @@ def unmarked(page: Page) -> None:
 
 
 @pytest.mark.usefixtures("unhurried")
+@drawn
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     write(page, DRIVE)
     page.click("#view_blocks")
@@ -517,6 +533,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     unmarked(page)
 
 
+@drawn
 def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
     write(page, "F(600, 80)")
     page.click("#link_upload")
@@ -553,12 +570,14 @@ def upload_until_told(page: Page, at: int) -> None:
     page.wait_for_timeout(200)
 
 
+@drawn
 def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
     write(page, "F(60, 80)")
     upload_until_told(page, 60_000)
     assert page.locator(".cm-running").count() == 0
 
 
+@drawn
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     """Both are held at the first line, then one goes on, then the other one."""
     first, second = "W(0.1)", "F(60, 80)"

@@ -19,6 +19,8 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
+drawn = pytest.mark.sampled(of="lost requests", keep=3)
+
 CONFIRMED = "Stopped: the robot has confirmed the stop."
 HIDDEN = "The robot was stopped because this page was hidden. Come back here to drive it."
 SILENT = (
@@ -103,6 +105,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
         page.unroute_all(behavior="wait")
 
 
+@drawn
 def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     drives(page, robot)
@@ -115,6 +118,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
     assert torn
 
 
+@pytest.mark.sampled("tear")
 @pytest.mark.parametrize("tear", [lose_answer, refuse, lambda route: route.abort()])
 def test_a_connect_that_is_lost_comes_again(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
@@ -125,6 +129,7 @@ def test_a_connect_that_is_lost_comes_again(
     drives(page, robot)
 
 
+@drawn
 def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -169,6 +174,7 @@ class Mute:
         route.fulfill(response=response, json=answer)
 
 
+@pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["button", "hidden"])
 def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     page: Page, robot: PtyRobot, way: str
@@ -201,6 +207,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     assert page.evaluate("window.told") == ["Stopping…", SILENT, LATE]
 
 
+@drawn
 def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # and the next stop is another one
@@ -218,6 +225,7 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
 
 
+@drawn
 def test_who_presses_five_times_stops_once_more_and_is_told_once(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -263,6 +271,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     assert page.evaluate("window.told") == ["Stopping…", SILENT]
 
 
+@drawn
 def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     """What was asked of it ends, and the link does. A slow page, which is not heard for a while,
     stops what is under way first, and that is told, too."""
@@ -278,6 +287,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     assert [each for each in told if each == "The robot has stopped responding"] == told[-1:]
 
 
+@drawn
 def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -290,6 +300,7 @@ def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 
+@drawn
 def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -301,6 +312,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     said(page, "tsc studio heard nothing from this page for a while")
 
 
+@drawn
 def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     page: Page, robot: PtyRobot
 ) -> None:

@@ -37,6 +37,7 @@ def kept(page: Page, place: str, what: object) -> None:
     page.evaluate("([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(what)])
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages) -> None:
     page = pages.open()
     assert GREEN in colors_of(page, "#arena")
@@ -56,7 +57,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     assert PINK in found and GREEN not in found
 
 
-@pytest.mark.sampled("what", keep=2)
+@pytest.mark.sampled("what")
 @pytest.mark.parametrize(
     "what",
     [
@@ -82,6 +83,7 @@ def test_what_is_kept_may_be_damaged(pages: Pages, what: object) -> None:
     assert not page.locator("#start_badge").is_visible()
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
     page = pages.open()
     traces = []
@@ -96,7 +98,7 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
     assert traces[0] == traces[1] and "SHOW" in str(traces[0])
 
 
-@pytest.mark.sampled("way")
+@pytest.mark.sampled(of="pages of their own", keep=2)
 @pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
 def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     """And its stars are added up, each lesson's once."""
@@ -128,6 +130,7 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     badge.filter(has_text=f"★ {3 + worlds}").wait_for()
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
     with studio.taught([]) as taught:
         pages = Pages(browser, taught.server.address)

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="looks of a phone", keep=2)
+
 NINE = """SI|LOOP(3)
   F(1, 80)
   BEEP(0.1, 440)
@@ -50,6 +53,7 @@ def half(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.half"))
 
 
+@drawn
 def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
     write(phone, NINE)
     phone.click("#view_blocks")
@@ -59,6 +63,7 @@ def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
     assert axe(phone) == []
 
 
+@drawn
 def test_the_messages_can_be_put_away(phone: Page) -> None:
     for wrong in ("F(-2, 80)", "F(-3, 80)"):
         write(phone, wrong)
@@ -113,6 +118,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) ->
     in_phase(phone, "running")
 
 
+@drawn
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     """On a tablet, a second tap is not for what comes to the place of the first."""
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
@@ -137,6 +143,7 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     assert page.get_attribute("#side_real", "aria-pressed") == "false"
 
 
+@drawn
 def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.click("#run")
@@ -154,6 +161,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     in_phase(phone, "ended")
 
 
+@drawn
 def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.emulate_media(forced_colors="active")
@@ -191,7 +199,7 @@ F(5, 60) UNTIL(DISTANCE < 10);
 """
 
 
-@pytest.mark.sampled("language")
+@drawn
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
     """Letters are 12 pixels high, what is touched is 24, and a long question has more rows: all of
@@ -218,6 +226,7 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
 
 
+@drawn
 def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, view="start")
 

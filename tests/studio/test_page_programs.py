@@ -23,6 +23,8 @@ from tools.builds.studio import find_tools
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+drawn = pytest.mark.sampled(of="details of programs", keep=2)
+
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 
 
@@ -90,6 +92,7 @@ REACHES = {
 }
 
 
+@drawn
 def test_a_program_gets_a_name(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
@@ -112,6 +115,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     page.click("#programs_close")
 
 
+@drawn
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
@@ -173,6 +177,7 @@ WRONG = {
 }
 
 
+@drawn
 @each_row("name", WRONG)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
@@ -186,6 +191,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     assert page.locator("img").count() == 0
 
 
+@drawn
 def test_what_cannot_be_shared_says_why(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
@@ -264,6 +270,7 @@ def pictured(page: Page) -> str:
     return str(completed.stdout)
 
 
+@drawn
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     """No phone can open an address of this computer alone, so that has none."""
     write(page, TEXT)
@@ -280,6 +287,7 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
+@drawn
 def test_the_window_opens_on_programs(page: Page) -> None:
     """Each with a picture, a large plus before them, and how one is shared is folded away."""
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
@@ -348,6 +356,7 @@ def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
 MOVE = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it
 
 
+@drawn
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     """From the text, too; unless there are too many of them."""
     for view in ("text", "blocks"):
@@ -375,6 +384,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
+@drawn
 def test_what_is_shared_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

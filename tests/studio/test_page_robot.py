@@ -53,7 +53,7 @@ def at_rest(page: Page) -> None:
     page.select_option("#world", "obstacles")
 
 
-@pytest.mark.sampled("name", "robot", "world", keep=2)
+@pytest.mark.sampled("name", "robot", "world")
 @pytest.mark.parametrize(
     ("name", "robot", "world"),
     [

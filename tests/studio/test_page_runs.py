@@ -18,6 +18,9 @@ from tiniscript.studio.recordings import REAL, Row, decode, encode, head
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="earlier runs", keep=2)
+
 KEYS = (
     "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_A);\nSHOW(RANDOM(1, 99));\nEND_IF;\n"
     "W(0.05);\nEND_LOOP"
@@ -76,6 +79,7 @@ def opened(page: Page, data: bytes | str, file: Path) -> None:
     page.set_input_files("#run_file", file)
 
 
+@drawn
 def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> None:
     ran(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
@@ -93,6 +97,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     in_phase(page, "paused")
 
 
+@drawn
 def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
     for number in range(12):
         ran(page, f"SI|SHOW({number})", f"SHOW {number}")
@@ -137,6 +142,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#runs_close")
 
 
+@drawn
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
     opened(page, data, tmp_path / "run.tsr")
@@ -147,6 +153,7 @@ def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path
     page.select_option("#robot", "tinibot")
 
 
+@drawn
 def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page: Page, tmp_path: Path
 ) -> None:
@@ -165,6 +172,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     told(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
+@pytest.mark.sampled("data", "said")
 @pytest.mark.parametrize(
     ("data", "said"),
     [
@@ -194,6 +202,7 @@ def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
     assert running(page) == ""
 
 
+@drawn
 def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     drop = """([name, data]) => {

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 pytestmark = pytest.mark.usefixtures("unhurried")
+drawn = pytest.mark.sampled(of="details of the senses", keep=2)
 
 SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
 MEASURED = 40  # values
@@ -120,6 +121,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     assert axe(page, within="#link") == []
 
 
+@drawn
 def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
     watch(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
@@ -138,6 +140,7 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
     assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
 
 
+@pytest.mark.sampled("way", "runs_before", keep=2)
 @pytest.mark.parametrize("runs_before", [False, True])
 @pytest.mark.parametrize("way", ["waits for it", "is sent only"])
 def test_a_program_that_waits_for_the_robots_button_gets_it(
@@ -160,6 +163,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     does(page, "own")
 
 
+@drawn
 def test_the_robots_button_ends_them_and_then_starts_its_program(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -186,6 +190,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
     senses(page, robot, 9, 8, 7)
 
 
+@drawn
 def test_they_come_by_themselves_where_somebody_has_wanted_them(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -212,6 +217,7 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
     assert not page.locator("#senses").is_visible()
 
 
+@drawn
 def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
     """And in the language that is chosen, whatever it does."""
     does(page, "still")
@@ -249,6 +255,7 @@ def test_a_port_where_nothing_answers_says_so_within_three_seconds(
     page.close()
 
 
+@drawn
 @pytest.mark.parametrize("name", ["tinibot", "liner"])
 def test_the_readings_take_a_third_of_the_line_at_most(
     opened: tuple[Pages, Page], name: str

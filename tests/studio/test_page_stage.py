@@ -11,6 +11,8 @@ from tests.support.studio import Pages, axe, hears, in_phase, speak, turn, write
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+
 FOREVER = "SI|LOOP(FOREVER);\n  F(1, 60);\n  R(0.5, 60);\nEND_LOOP;\n"
 AREA = (
     "(() => { const { width, height } = arena.getBoundingClientRect(); return width * height; })()"
@@ -68,6 +70,7 @@ def choose(page: Page, camera: str) -> None:
     raise AssertionError(camera)
 
 
+@pytest.mark.sampled("world")
 @pytest.mark.parametrize("world", ["obstacles", "light", "delivery", "free"])
 def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -> None:
     page.select_option("#world", world)
@@ -95,6 +98,7 @@ def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
     assert page.locator("html[data-big]").count() == 0
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
     page: Page, language: str
@@ -187,6 +191,7 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
         assert (lawn in found or street in found) == (world == "delivery")
 
 
+@pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)
 def test_cameras_and_the_whole_page_are_there_on_small_screens(
     page: Page, size: tuple[int, int]

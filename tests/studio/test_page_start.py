@@ -26,6 +26,8 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, Route
 
+drawn = pytest.mark.sampled(of="details of the start", keep=2)
+
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music", "drive")
 START = "html[data-screen=start]"
 
@@ -76,6 +78,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
     assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
+@drawn
 def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     """The robot moves before the blocks are fetched, and goes on when the lessons come."""
     page = pages.blank()
@@ -129,6 +132,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     pages.wrong.clear()
 
 
+@drawn
 def test_the_address_says_which_screen_is_seen(start: Page) -> None:
     start.click("#start_write")
     assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
@@ -151,6 +155,7 @@ def test_the_address_says_which_screen_is_seen(start: Page) -> None:
     assert start.locator("#link").is_visible()
 
 
+@drawn
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
     start.goto(f"{pages.address}#program={GOOD}")
     noted(start, "This program came from a link.")
@@ -196,6 +201,7 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
         assert seen.setdefault((language, width, height), found) == found, (language, width)
 
 
+@drawn
 def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     start.click("[data-begin=dance]")
     start.click("#view_text")
@@ -216,6 +222,7 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
 
 
+@drawn
 def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: Page) -> None:
     start.dblclick("#start_write")
     assert start.get_attribute("#side_real", "aria-pressed") == "false"

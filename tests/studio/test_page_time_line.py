@@ -13,6 +13,9 @@ from tests.support.studio import in_phase, write
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="looks back at a run", keep=2)
+
 # How many points of the line have the color of a WHEN.
 MARKED = """() => {
   const paper = () => document.createElement('canvas').getContext('2d', {willReadFrequently: true});
@@ -54,6 +57,7 @@ def seconds(page: Page) -> float:
     return float(value(page, "Time").split()[0])
 
 
+@drawn
 def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     begun(page, COUNT)
     in_phase(page, "ended")
@@ -77,6 +81,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     assert seconds(page) == 0
 
 
+@pytest.mark.sampled("button")
 @pytest.mark.parametrize("button", ["pause", "step", "stop"])
 def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     page: Page, button: str
@@ -96,6 +101,7 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     in_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
+@drawn
 def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
     begun(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
     in_phase(page, "ended")
@@ -108,6 +114,7 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
     assert parts == ["F(0.3, 60)", "W(0.3)", "B(0.3, 60)"]
 
 
+@drawn
 def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     begun(page, COUNT)
     in_phase(page, "ended")
@@ -121,6 +128,7 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     assert last - first < 1000 and now == last
 
 
+@drawn
 def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
     begun(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
     in_phase(page, "ended")
@@ -131,6 +139,7 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 
 
+@drawn
 def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
     """And whose motors they were. Nobody has to ask at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
@@ -155,6 +164,7 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     assert "Line 3" not in doing(page) and "motors" not in doing(page)
 
 
+@drawn
 def test_a_when_that_begins_is_a_mark(page: Page) -> None:
     for begins_s, is_marked in ((0.5, True), (90, False)):
         body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Dialog, Page
 
 pytestmark = pytest.mark.usefixtures("unhurried")
+drawn = pytest.mark.sampled(of="details of groups", keep=2)
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
 
@@ -104,6 +105,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
         until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
 
 
+@drawn
 def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -120,6 +122,7 @@ def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page
     has(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
 
 
+@drawn
 def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -134,6 +137,7 @@ def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> 
         has(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
 
 
+@drawn
 def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -163,6 +167,7 @@ def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) 
     has(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
 
 
+@drawn
 def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -174,6 +179,7 @@ def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
     luz.locator("#class_mates", has_text="Ana").wait_for()
 
 
+@drawn
 def test_who_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -373,6 +379,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
         has(page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);")
 
 
+@drawn
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     begins(two)
@@ -387,6 +394,7 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
 
 
+@drawn
 def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     two: tuple[Page, Page], taught: Class, browser: Browser
 ) -> None:

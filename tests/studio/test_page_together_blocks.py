@@ -25,6 +25,9 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="blocks of groups", keep=2)
+
 PROGRAM = """F(1.50, (80));  // first
 LOOP(3);
   B(1, 40);
@@ -123,6 +126,7 @@ def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -
     ends(two, *changed(("B(1, 40);", "B(7, 40);")))
 
 
+@drawn
 def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
@@ -138,6 +142,7 @@ def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> No
     block(ana, "wait").wait_for()
 
 
+@drawn
 def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, Page]) -> None:
     ana, luz = two
     held, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
@@ -153,6 +158,7 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
     ends(two, first, "S;", loop, back, "BEEP(1, 440);", *rest)
 
 
+@drawn
 def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
@@ -163,6 +169,7 @@ def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) ->
     ends(two, *changed(("B(1, 40);", "B(6, 40);")))
 
 
+@drawn
 def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) -> None:
     ana, luz = two
     drag(ana, "Move", "left", None)
@@ -185,6 +192,7 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) 
     until(lambda: text_of(ana) == text_of(luz), "both have the same")
 
 
+@drawn
 def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
@@ -206,6 +214,7 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     ends(two, *changed(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
+@drawn
 def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
     ana, luz = two
     goes_to(luz, "B(1, 40)")

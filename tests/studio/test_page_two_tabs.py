@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.studio.test_page_worlds import drag, put, said, saved
 from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
 from tests.support.studio import Pages, checked, hears, image, in_phase, noted, write
@@ -35,6 +37,7 @@ PASTE = """(count) => {
 }"""
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     """They come after this tab's own worlds before, and push none of them out."""
 

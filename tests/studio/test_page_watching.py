@@ -14,6 +14,9 @@ from tests.support.waiting import until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
+
 # A browser's sound, which only notes what it is told.
 NOTING = """() => {
   window.heard = []; window.shaken = window.started = window.stopped = 0;
@@ -95,6 +98,7 @@ def run(page: Page, program: str) -> None:
     in_phase(page, "ended")
 
 
+@drawn
 def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
     page = listening
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
@@ -126,6 +130,7 @@ def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
     assert "SHOW 9" in (page.locator("#trace").text_content() or ""), "values alone"
 
 
+@drawn
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. To close it, a page waits."""
     page = pages.blank(is_alone=True)
@@ -145,6 +150,7 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
         assert page.evaluate("window.closings") == closings + 1
 
 
+@drawn
 def test_stop_and_pause_silence_it(listening: Page) -> None:
     page = listening
     write(page, "BEEP(30, 440)")
@@ -159,6 +165,7 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
         assert page.evaluate("window.stopped") == before + 1
 
 
+@drawn
 def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
     page = listening
     noted = "[window.heard.length, window.started, window.shaken]"
@@ -176,6 +183,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
     assert page.evaluate(noted) == [1, 1, 1]
 
 
+@drawn
 def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     page = listening
     page.emulate_media(reduced_motion="reduce")
@@ -185,6 +193,7 @@ def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     assert count(page, "ffd84d") > 20
 
 
+@drawn
 def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     page = listening
     page.select_option("#world", "obstacles")
@@ -218,6 +227,7 @@ y_cm = 50
 """
 
 
+@drawn
 def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     page = listening
     page.set_input_files(
@@ -257,6 +267,7 @@ power_percent = 0
 RIVAL, DARK = "9a4fc0", "3b434c"
 
 
+@drawn
 def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     page = listening
     page.set_input_files(

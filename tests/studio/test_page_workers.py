@@ -128,7 +128,7 @@ def is_own(page: Page, server: serving.Server) -> None:
     assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER}"]
 
 
-@pytest.mark.sampled("options")
+@pytest.mark.sampled("name", "options")
 @pytest.mark.parametrize("name", ["evil.js", serving.WORKER])
 @pytest.mark.parametrize("options", [{}, {"updateViaCache": "all"}], ids=["", "kept by browsers"])
 def test_no_worker_of_a_stranger_hears_the_code(
@@ -148,6 +148,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
     assert loot.taken == []
 
 
+@pytest.mark.sampled(of="pages of their own", keep=2)
 def test_the_own_worker_stays(context: BrowserContext) -> None:
     """A page with a code is loaded once where the server's own worker is, or none."""
     with hosted() as server:

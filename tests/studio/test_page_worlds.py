@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
+drawn = pytest.mark.sampled(of="details of worlds", keep=2)
+
 Place = tuple[float, float]
 
 
@@ -111,6 +114,7 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
 
 
+@drawn
 def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
     shipped = worlds.load("obstacles")
     floor.click("#world_add_boxes")
@@ -139,6 +143,7 @@ def picture(page: Page) -> str:
     return found
 
 
+@drawn
 def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
     start = saved(floor).start
     floor.keyboard.down("Control")
@@ -164,6 +169,7 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
         assert saved(floor).walls == ()
 
 
+@drawn
 def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     floor.click("#world_add_walls")
     drag(floor, [(60, 30), (100, 60)])
@@ -228,6 +234,7 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     assert (world.width_cm, world.start.x_cm, world.has_border) == (100, 100, False)
 
 
+@drawn
 def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (200, 80)])
@@ -253,6 +260,7 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     assert saved(floor).seconds == 30
 
 
+@drawn
 def test_nothing_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert saved(floor).start[:2] == (0, 200)
@@ -267,6 +275,7 @@ def draw(page: Page, way: Sequence[Place]) -> None:
     finger(page, [on_screen(page, place) for place in way])
 
 
+@drawn
 def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, has_touch=True, locale="es-ES")
     turn(page, "robot")
@@ -301,6 +310,7 @@ def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:
     assert page.get_attribute("#seen_arena", "aria-pressed") == "true"
 
 
+@drawn
 def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     """In a shipped world, without drawing, and again after a run has driven it away."""
     page.select_option("#world", "light")
@@ -357,6 +367,7 @@ es = "aula"
 """
 
 
+@drawn
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     put(floor, OWN)
     said(floor, "Opened: own.toml")

@@ -13,6 +13,8 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
+drawn = pytest.mark.sampled(of="kept worlds", keep=2)
+
 OBSTACLES_START = (56, 82.5)
 NO_BORDER = b"""[floor]
 width_cm = 120.06
@@ -79,6 +81,7 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
     assert "mi mundo (de antes 2)" in listed(page)
 
 
+@drawn
 def test_changes_of_one_world_make_no_other(page: Page) -> None:
     draw_wall(page)
     count = len(listed(page))
@@ -100,6 +103,7 @@ def test_five_worlds_before_are_kept(page: Page) -> None:
     assert listed(page) == found
 
 
+@drawn
 def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
     draw_wall(page)
     page.click("#world_draw")
@@ -117,6 +121,7 @@ def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
     assert walls_of(page, "my world") == 1
 
 
+@drawn
 def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
     draw_wall(page)
     page.select_option("#world", "obstacles")
@@ -140,6 +145,7 @@ def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
     assert walls_of(page, "my world") == 1
 
 
+@drawn
 def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
     page.mouse.move(*on_screen(page, OBSTACLES_START))
     page.mouse.down()
@@ -151,6 +157,7 @@ def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
     assert read_start(page) == (light.x_cm, light.y_cm)
 
 
+@drawn
 def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     write(page, "F(30, 80)")
     page.select_option("#speed", "20")
@@ -170,6 +177,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     said(page, "Collect the flags in order (1)")
 
 
+@drawn
 def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     page.click("#world_draw")
     put(page, NO_BORDER)

@@ -67,7 +67,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.sampled("part", keep=6)
+@pytest.mark.sampled("part", keep=3)
 @pytest.mark.parametrize("part", ENDS)
 def test_it_is_as_on_a_page_that_was_just_loaded(made: Path, part: str) -> None:
     lines = in_node(SCRIPT, str(made), part, str(SEEDS))

@@ -3,8 +3,10 @@
 A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
 draws: every other value is in each run, each chip as often as the others, and every row in some.
 `sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
-are marked so, with their rows. Tests with the same `draw` keep the same rows: of what is built for
-them less is built. `some_of` draws of what one test goes through by itself.
+are marked so, with their rows. `pytestmark = pytest.mark.sampled(files="sides", keep=3)` keeps
+three whole files of all that have it: a browser opens no page for the others. Tests with the same
+`draw` keep the same rows: of what is built for them less is built. `some_of` draws of what one test
+goes through by itself.
 
 A test marked `long` takes long, and another one notices most of what it does: it is in the second
 tier, which runs at the end of an issue and before a release. `--tenth` runs a tenth of that tier,
@@ -42,12 +44,12 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
         return
     tests: dict[str, dict[str, list[pytest.Item]]] = defaultdict(lambda: defaultdict(list))
     for item in items:
-        mark = item.get_closest_marker(MARK)
+        mark = _mark_of_rows(item)
         if mark is not None and "of" in mark.kwargs:
             tests[mark.kwargs["of"]][""].append(item)
         elif mark is not None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
-    left_out = _long_left_out(config, items)
+    left_out = _long_left_out(config, items) | _files_left_out(config, items)
     for name, groups in tests.items():
         together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
         draw = random.Random(f"{seed(config)} {together or name}")
@@ -63,7 +65,7 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
     """Return the long tests that this run leaves out, of files that nobody names."""
-    named = {Path(each).resolve() for each in config.args if each.endswith(".py")}
+    named = _named(config)
     long_tests = [
         item for item in items if item.get_closest_marker(LONG) and item.path not in named
     ]
@@ -73,8 +75,32 @@ def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytes
     return set(draw.sample(long_tests, len(long_tests) * 9 // 10))
 
 
+def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
+    """Return the tests of whole files that are not drawn, of files that nobody names."""
+    files: dict[tuple[str, int], dict[Path, list[pytest.Item]]] = defaultdict(dict)
+    for item in items:
+        for mark in item.iter_markers(MARK):
+            if "files" in mark.kwargs:
+                same = files[mark.kwargs["files"], mark.kwargs["keep"]]
+                same.setdefault(item.path, []).append(item)
+    left_out: set[pytest.Item] = set()
+    for (name, keep), same in files.items():
+        draw = random.Random(f"{seed(config)} {name}")
+        for path in draw.sample(sorted(same), len(same))[keep:]:
+            left_out |= set(same[path] if path not in _named(config) else ())
+    return left_out
+
+
+def _named(config: pytest.Config) -> set[Path]:
+    return {Path(each).resolve() for each in config.args if each.endswith(".py")}
+
+
+def _mark_of_rows(item: pytest.Item) -> pytest.Mark | None:
+    return next((mark for mark in item.iter_markers(MARK) if "files" not in mark.kwargs), None)
+
+
 def _mark(rows: list[pytest.Item]) -> pytest.Mark:
-    mark = rows[0].get_closest_marker(MARK)
+    mark = _mark_of_rows(rows[0])
     assert mark is not None
     return mark
 

@@ -316,6 +316,7 @@ def test_work_grows_with_the_text_and_no_faster(unit: str) -> None:
     assert calls(40_000) < 5 * calls(10_000)
 
 
+@pytest.mark.sampled("inner", keep=2)
 @pytest.mark.parametrize("inner", ["(", "-", "NOT ", "ABS(", "1+(", "//a\n"])
 def test_depth_exhausts_nothing(inner: str) -> None:
     """An instruction may hold as much as it likes."""

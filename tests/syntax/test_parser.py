@@ -275,6 +275,7 @@ def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
 DEEP = 20_000
 
 
+@pytest.mark.sampled("text", keep=4)
 @pytest.mark.parametrize(
     "text",
     [

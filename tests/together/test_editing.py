@@ -105,6 +105,7 @@ class Editor:
         self.is_hot = self.is_hot and self.line == line
 
 
+@pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     chance, ids = Random(seed), count(1)

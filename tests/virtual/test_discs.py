@@ -185,7 +185,7 @@ INTERRUPTIONS = [(*way, STANDING[0]) for way in WAYS]
 INTERRUPTIONS += [("F(100 CM, 60)", 3, body) for body in STANDING[1:]]
 
 
-@pytest.mark.sampled("profile")
+@pytest.mark.sampled("profile", "way", "times", "body", keep=6)
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize(("way", "times", "body"), INTERRUPTIONS)
 def test_a_way_that_is_interrupted_is_as_long_and_as_straight(

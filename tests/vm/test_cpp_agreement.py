@@ -185,6 +185,7 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     check_round(host().run_late)
 
 
+@pytest.mark.sampled(of="weeks between two turns")
 def test_weeks_may_pass_between_two_ticks() -> None:
     """Programs go on where a tick comes up to 2^30 ms after the one before: what it finds over may
     have ended as long before that one."""
@@ -238,11 +239,13 @@ def check_late_turns(late_of: Callable[[random.Random], int]) -> None:
         assert theirs == run_late(image, KIT, senses, late_ms, machine_of), theirs
 
 
+@pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [1, 20, 21, 100])
 def test_turns_may_come_late(late_ms: int) -> None:
     check_late_turns(lambda rng: rng.randint(0, late_ms))
 
 
+@pytest.mark.sampled(of="weeks between two turns")
 def test_weeks_may_pass_between_two_turns() -> None:
     """A task that is due at once, as its move ended weeks ago, may wait for weeks once more."""
     check_late_turns(lambda rng: rng.choice((0, 7, 30, rng.randrange(2**30 - 10**6))))
@@ -318,6 +321,7 @@ def test_long_images() -> None:
             assert said == [REFUSALS[name][0] if name else 0 for name in names], length
 
 
+@pytest.mark.sampled("name", keep=7)
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_arithmetic(name: str) -> None:
     """Two million operations in all."""

@@ -100,7 +100,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     return want.trace.splitlines()[-1]
 
 
-@one_chip
+@pytest.mark.sampled("case", "chip", keep=90)
 @each_chip
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, chip: str) -> None:
@@ -226,6 +226,7 @@ def test_programs_with_tasks(chip: str) -> None:
     cpp_checks.check_task_programs(emulated(chip), 2000, 100)
 
 
+@pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_programs_with_tasks_on_an_avr(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
@@ -272,6 +273,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
         assert (ran.trace, ran.steps) == want
 
 
+@pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_late_tasks_after_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
@@ -288,6 +290,7 @@ def test_programs_with_ways(chip: str) -> None:
     cpp_checks.check_way_programs(emulated(chip), 2000, 100)
 
 
+@pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_programs_with_ways_on_an_avr(chip: str) -> None:
     for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
