@@ -2,8 +2,9 @@
 
 `python -m tools.mutation 150 --seed 1` draws 150 mutants, the same number of every module that
 still has some, and runs the tests of each one's module until one fails, two mutants at a time.
-`--file PATTERN` draws from less, `--list` only shows them. What was tried is kept in the cache
-folder, so an interrupted run goes on. Exit code 1: mutants survived.
+`--file PATTERN` draws from less, `--list` only shows them, and `--first-tier` runs no long test.
+What was tried is kept in the cache folder, so an interrupted run goes on. Exit code 1: mutants
+survived.
 
 A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries; or a
 row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
@@ -298,8 +299,9 @@ def tests_of(file: str) -> list[str]:
 class Copy:
     """A copy of the repository, in which the tests run."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, is_first_tier: bool = False) -> None:
         self.folder = folder
+        self.tier = ["-m", "not long"] if is_first_tier else []
         # With what Python has compiled of these files, and the built page.
         shutil.copytree(
             ROOT, folder, ignore=shutil.ignore_patterns(*OWN), symlinks=True, dirs_exist_ok=True
@@ -333,7 +335,7 @@ class Copy:
             return f"the build: {why}"
         # A size, and what is generated or built, notice any change.
         left_out = "not keeps_to_its_size and not generated and not same_page"
-        chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
+        chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *self.tier, *tests]
         return self._last_words(["-m", "pytest", *chosen])
 
     def _last_words(self, words: list[str]) -> str:
@@ -367,13 +369,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("count", nargs="?", type=int, default=30, help="how many (30)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--file", default="*", help="only files like this one")
+    parser.add_argument("--first-tier", action="store_true", help="run no long test")
     parser.add_argument("--list", action="store_true", help="only list them")
     options = parser.parse_args(arguments)
     chosen_mutants = draw(MODULES, options.count, options.seed, options.file)
     if options.list:
         print("\n".join(mutant.name for mutant in chosen_mutants))
         return 0
-    results_path = cache_folder() / f"mutation-{_code()}.json"
+    tier = "-first-tier" if options.first_tier else ""
+    results_path = cache_folder() / f"mutation-{_code()}{tier}.json"
     results: dict[str, str] = (
         json.loads(results_path.read_text("utf-8")) if results_path.is_file() else {}
     )
@@ -381,7 +385,7 @@ def main(arguments: list[str] | None = None) -> int:
 
     def work(mutants_left: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            copy = Copy(Path(folder))
+            copy = Copy(Path(folder), is_first_tier=options.first_tier)
             for mutant in mutants_left:
                 if mutant.name not in results:
                     results[mutant.name] = copy.try_mutant(mutant)

@@ -380,7 +380,8 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 ) -> None:
     chance = Random(sampling.seed(request.config))
     with scene(browser, chance) as seen:
-        found = seen.tried(chance.choice(ACTIONS), chance.choice([*BETWEEN[:5], *LINES[:6]]))
+        faults: list[Fault | Between] = [*BETWEEN[:5], *LINES[:6]]
+        found = seen.tried(chance.choice(ACTIONS), chance.choice(faults))
         assert not judged(found, 3.0), found
 
 
