@@ -38,7 +38,7 @@ from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
 
-drawn = pytest.mark.sampled(of="commands for a class", keep=2)
+drawn = pytest.mark.sampled(of="commands for a class", keep=1)
 
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
@@ -131,7 +131,6 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     )
 
 
-@drawn
 def test_who_has_no_key_sees_and_stops(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -42,7 +42,7 @@ def results(done: Done) -> dict[str, dict[str, object]]:
     return {row["port"]: row for row in rows if row["event"] == "RESULT"}
 
 
-@pytest.mark.sampled(of="many robots")
+@pytest.mark.sampled(of="slow commands")
 def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
     kits = [LINER if number == OTHER_KIT else TINIBOT for number in range(ROBOTS)]
     with RobotFleet(kits) as room:
@@ -174,7 +174,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     assert "3" in inside("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
 
 
-@pytest.mark.sampled(of="many robots")
+@pytest.mark.sampled(of="slow commands")
 def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> None:
     """Its causes are in the row of the robot, and each is asked as often as was said."""
     weak = class_.pupils[1]

@@ -191,7 +191,6 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "ANA"
 
 
-@pytest.mark.sampled(of="weak batteries")
 def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     done = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
@@ -282,7 +281,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
     assert command.ended().code in (0, 3)
 
 
-@pytest.mark.sampled(of="weak batteries")
+@pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
     first, second = with_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))

@@ -25,7 +25,6 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 drawn = pytest.mark.sampled(of="blocks of groups", keep=2)
 
 PROGRAM = """F(1.50, (80));  // first
