@@ -224,7 +224,6 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
 
 
-@pytest.mark.sampled("motors")
 @pytest.mark.parametrize(
     "motors", [SERVOS, TWO_WIRE, ONE_DIRECTION], ids=["servos", "two_wire", "pwm_dir"]
 )
