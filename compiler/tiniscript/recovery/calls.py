@@ -212,10 +212,10 @@ def _motor_time_diagnostic(call: _Call, text: str) -> Diagnostic | None:
     values = [_PERCENT_AT_END.sub("", value) for value in call.values]
     splits = [(values[-1], values[:-1]), (values[0], values[1:])]
     candidates = [(_seconds_text(time), powers) for time, powers in splits if _are_powers(powers)]
-    seconds, powers = next((candidate for candidate in candidates if candidate[0]), ("", []))
-    if not seconds:
+    seconds_text, powers = next((candidate for candidate in candidates if candidate[0]), ("", []))
+    if not seconds_text:
         return None
-    fix = f"{call.with_values(powers)};W({seconds})"
+    fix = f"{call.with_values(powers)};W({seconds_text})"
     fix += "" if text[call.span.end :].strip(" ;\t\r\n") else ";S"
     gap_values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
     return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **gap_values)

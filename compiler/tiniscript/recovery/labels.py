@@ -61,23 +61,23 @@ def _spans_in_lines(text: str) -> Iterator[Span]:
                 ")", counted_to, match.start()
             )
             counted_to = match.start()
-            label = _LABEL.match(body, match.end())
-            if label and not is_value_open and depth <= 0 and _is_label(label, text):
-                yield Span(line_start + label.start(), line_start + label.end())
+            label_match = _LABEL.match(body, match.end())
+            if label_match and not is_value_open and depth <= 0 and _is_label(label_match, text):
+                yield Span(line_start + label_match.start(), line_start + label_match.end())
         is_value_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
         line_start += len(line) + 1
 
 
-def _is_label(label: re.Match[str], text: str) -> bool:
-    word, sign = plain(label["word"] or ""), (label["sign"] or "").strip()
-    is_order = _is_order(plain(label["next"]), label["after"] or "", text)
+def _is_label(label_match: re.Match[str], text: str) -> bool:
+    word, sign = plain(label_match["word"] or ""), (label_match["sign"] or "").strip()
+    is_order = _is_order(plain(label_match["next"]), label_match["after"] or "", text)
     if word:
         return is_order and (_is_step(word) if not sign else _is_step(word) or _is_free(word, text))
-    if label["count"].isalpha():
-        is_apart = bool(label["space"]) or sign == ")"
-        is_name = sign != ")" and _is_name(label["count"], text)
+    if label_match["count"].isalpha():
+        is_apart = bool(label_match["space"]) or sign == ")"
+        is_name = sign != ")" and _is_name(label_match["count"], text)
         return bool(sign) and is_apart and is_order and not is_name
-    return bool(sign) and (bool(label["space"]) or sign[-1] in ".)]º" or is_order)
+    return bool(sign) and (bool(label_match["space"]) or sign[-1] in ".)]º" or is_order)
 
 
 def _is_order(word: str, sign: str, text: str) -> bool:

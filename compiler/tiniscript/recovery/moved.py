@@ -46,8 +46,8 @@ class _Piece(NamedTuple):
 
 def reorder_defs(text: str) -> Iterator[MovedProgram]:
     """Give programs with DEFs and ends where they belong: DEFs at the beginning, or later."""
-    setup = _SETUP.match(text)
-    start = setup.end() if setup else 0
+    setup_match = _SETUP.match(text)
+    start = setup_match.end() if setup_match else 0
     for is_at_start in (True, False):
         if moved := _reorder(text[start:], is_at_start):
             yield moved._replace(text=text[:start] + moved.text)

@@ -191,12 +191,12 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     """Return the code of the rewrite that says most: rather another word than a sign."""
     _, _, steps, old_tokens, new_tokens = change
     old_texts, new_texts = {*texts(old_tokens)}, {*texts(new_tokens)}
-    own_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
-    own_steps.sort(
+    other_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+    other_steps.sort(
         key=lambda step: (step.code is not codes.ASKED_AFTER, step.code is codes.OTHER_SIGN)
     )
-    if own_steps and own_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
-        return own_steps[0].code, own_steps[0]
+    if other_steps and other_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
+        return other_steps[0].code, other_steps[0]
     lost_words = (
         lexeme.text for lexeme in old_tokens if lexeme.kind is WORD and lexeme.text not in new_texts
     )
@@ -204,7 +204,7 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
         (word for word in lost_words if meant_by(word) in new_texts - old_texts), ""
     )
     translating_step = next((step for step in steps if step.code is codes.OTHER_LANGUAGE), None)
-    if translating_step and (foreign_word or not own_steps):
+    if translating_step and (foreign_word or not other_steps):
         is_foreign_call = (
             foreign_word
             or "(" in old_texts
@@ -215,13 +215,13 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     if foreign_word:
         changing_steps = (
             step
-            for step in own_steps
+            for step in other_steps
             if foreign_word in {*texts(step.old_tokens)} - {*texts(step.new_tokens)}
         )
-        return codes.OTHER_LANGUAGE, next(changing_steps, own_steps[0])
-    right_tokens = first_difference(own_steps[0].old_tokens, own_steps[0].new_tokens)[2]
-    is_comma = own_steps[0].code is codes.OTHER_CALL and texts(right_tokens) == (",",)
-    return codes.MISSING_COMMA if is_comma else own_steps[0].code, own_steps[0]
+        return codes.OTHER_LANGUAGE, next(changing_steps, other_steps[0])
+    right_tokens = first_difference(other_steps[0].old_tokens, other_steps[0].new_tokens)[2]
+    is_comma = other_steps[0].code is codes.OTHER_CALL and texts(right_tokens) == (",",)
+    return codes.MISSING_COMMA if is_comma else other_steps[0].code, other_steps[0]
 
 
 def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> Code:

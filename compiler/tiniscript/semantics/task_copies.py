@@ -146,7 +146,7 @@ def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
             )
             for arm in statement.arms
         )
-        new_fields["otherwise"] = _body(statement.else_body, numbers)
+        new_fields["else_body"] = _body(statement.else_body, numbers)
     elif isinstance(statement, (ir.Loop, ir.While)):
         new_fields["body"] = _body(statement.body, numbers)
     elif isinstance(statement, ir.Move) and statement.until is not None:
