@@ -67,7 +67,7 @@ KNOWN: tuple[Known, ...] = (
           "< kTight + letters_", "< kTight",
           "tests/firmware/test_text_small.py::test_a_wrong_line_that_needed_the_room_tells_what_is_lost"),
     Known("what stands after a loop", "compiler/tiniscript/lessons/text_judging.py",
-          "inside = open_loops.pop()", "pass",
+          "body = open_loops.pop()", "pass",
           "tests/lessons/test_judging.py::test_what_stands_after_a_loop_is_not_in_it"),
     Known("a drawn wheel", "compiler/tiniscript/robots/wiring/finished.py",
           "min(WHEEL_CM[1], body", "min(WHEEL_CM[0], body",
