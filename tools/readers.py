@@ -45,7 +45,9 @@ def trace(text: str) -> Iterator[str]:
             break
         yield f"{_line(text_left)}: {reader.__name__.strip('_')}"
         is_whole = reader.__name__ in OF_WHOLE_LINES and wrong_text.recovery is not None
-        candidate = wrong_text.recovery.whole if is_whole and wrong_text.recovery else None
+        candidate = (
+            wrong_text.recovery.chosen_candidate if is_whole and wrong_text.recovery else None
+        )
         for change in candidate.changes if candidate else ():
             for step in change.steps:
                 yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
@@ -55,18 +57,20 @@ def trace(text: str) -> Iterator[str]:
 
 def row_of(step: Step, kit: Kit) -> str:
     """Return the example of the row that makes a rewrite, or which module makes it without one."""
-    setup_length = len(setup_of(step.before))
-    line = rewrites.Encoded(step.before[setup_length:], Names([step.before], kit))
-    for row in rewrites.of_tokens():
+    setup_length = len(setup_of(step.old_tokens))
+    line = rewrites.Encoded(step.old_tokens[setup_length:], Names([step.old_tokens], kit))
+    for row in rewrites.token_rows():
         for match in line.matches(row.pattern) if row.code is step.code else ():
-            result = line.rewritten(row, match)
-            if result is not None and texts(result) == texts(step.after)[setup_length:]:
+            result = line.apply_row(row, match)
+            if result is not None and texts(result) == texts(step.new_tokens)[setup_length:]:
                 return f"the row of {_line(' => '.join(row.example))}"
-    text = "".join((item.space or "") + (item.source or item.text) for item in step.before)
-    for sign in rewrites.of_signs():
-        if texts(lexemes(sign.pattern.sub(sign.replacement, text, count=1))) == texts(step.after):
+    text = "".join((item.space or "") + (item.source or item.text) for item in step.old_tokens)
+    for sign in rewrites.sign_rows():
+        if texts(lexemes(sign.pattern.sub(sign.replacement, text, count=1))) == texts(
+            step.new_tokens
+        ):
             return f"the row of {_line(' => '.join(sign.example))}"
-    is_word = len(step.before) == len(step.after)
+    is_word = len(step.old_tokens) == len(step.new_tokens)
     return "a word's meaning (meanings.py)" if is_word else "no row (slots.py, or a sign: lines.py)"
 
 
@@ -75,7 +79,8 @@ def _line(text: str) -> str:
 
 
 def _step_text(step: Step) -> str:
-    return f"{step.code.number}  {' '.join(texts(step.before))}  ->  {' '.join(texts(step.after))}"
+    old_text, new_text = " ".join(texts(step.old_tokens)), " ".join(texts(step.new_tokens))
+    return f"{step.code.number}  {old_text}  ->  {new_text}"
 
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:

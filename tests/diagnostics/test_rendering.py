@@ -64,7 +64,7 @@ def gaps(code: str) -> set[str]:
 
     Of several texts only the last one has to be filled: it is taken where no other is.
     """
-    both = "".join(list(rendering._texts(f"{code}/{part}", lang))[-1]
+    both = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
                    for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip
     return set(re.findall(r"\{@?(\w+)\}", both))
 

@@ -275,6 +275,6 @@ def messages_of(language: str) -> dict[str, list[str]]:
     for number in CODES:
         for part in ("message", "try", "more"):
             key = f"{number}/{part}"
-            found[key] = [*rendering._texts(key, language)]
+            found[key] = [*rendering._templates(key, language)]
     assert sum(map(len, found.values())) > 400
     return found

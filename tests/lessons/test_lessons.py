@@ -58,7 +58,7 @@ def test_they_are_numbered_without_a_gap() -> None:
 def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
     """In the worlds of the task, and in others."""
     lesson = catalogue.load(folder)
-    assert findings_of(answer.program, lesson, range(1, lesson.worlds + 1)) == []
+    assert findings_of(answer.program, lesson, range(1, lesson.world_count + 1)) == []
     assert findings_of(answer.program, lesson, OTHER_SEEDS) == []
 
 
@@ -66,10 +66,10 @@ def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
 @pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
 def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
     lesson = catalogue.load(folder)
-    findings = findings_of(answer.program, lesson, range(1, lesson.worlds + 1))
+    findings = findings_of(answer.program, lesson, range(1, lesson.world_count + 1))
     assert findings, "it passes"
     for language in languages():
-        assert sentence(findings[0], language) == answer.said[language]
+        assert sentence(findings[0], language) == answer.sentences[language]
 
 
 @each
@@ -77,14 +77,16 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     right, wrong = catalogue.answers(folder)
     assert len(right) >= 2
     assert len(wrong) >= 3
-    if catalogue.load(folder).worlds > 1 and folder.name[:2] != "08":  # there "always to the left"
+    if (
+        catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
+    ):  # there "always to the left"
         assert any(BY_HEART in answer.labels["en"] for answer in wrong)
 
 
 @each
 def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
     lesson = catalogue.load(folder)
-    assert (lesson.worlds > 1) == bool(lesson.variations or lesson.is_mirrored)
+    assert (lesson.world_count > 1) == bool(lesson.variations or lesson.is_mirrored)
 
 
 @each
@@ -99,7 +101,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     assert sum(block.kind in ("title", "heading") for block in found) == HEADINGS
     steps = [block for block in found if block.kind == "steps"]
     assert [
-        block.first + k for block in steps for k in range(len(block.rows))
+        block.first_number + k for block in steps for k in range(len(block.rows))
     ] == list(range(1, sum(len(block.rows) for block in steps) + 1))  # fmt: skip
     for block in found:
         if block.kind == "table":  # an empty cell is a place to write: the sheet draws it
@@ -174,7 +176,7 @@ def test_no_page_tells_the_answer(folder: Path) -> None:
         for block in blocks(catalogue.page(folder, catalogue.PUPIL, language)):
             if block.kind == "program":
                 text = "\n".join(row for (row,) in block.rows)
-                assert findings_of(text, lesson, range(1, lesson.worlds + 1)), text
+                assert findings_of(text, lesson, range(1, lesson.world_count + 1)), text
 
 
 def test_every_criterion_is_judged() -> None:

@@ -341,7 +341,7 @@ def test_every_lesson_has_some() -> None:
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
     """In all worlds of the task: nothing is said of a right one, and the cause of another one."""
     lesson = lesson_of(number)
-    findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.worlds + 1))
+    findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.world_count + 1))
     assert bool(findings) is bool(what)
     if what:
         assert what in sentence(findings[0], "en")

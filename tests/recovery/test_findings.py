@@ -12,19 +12,19 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import repair_program
-from tiniscript.recovery.setup import setup
-from tiniscript.recovery.told import moved_back
+from tiniscript.recovery.setup import setup_diagnostic
+from tiniscript.recovery.told import to_original
 
 
 def test_si_in_place_of_brackets_is_taken_with_its_end() -> None:
-    diagnostic = setup("SI(F(2, 80)); S")
+    diagnostic = setup_diagnostic("SI(F(2, 80)); S")
     edits = (Edit(Span(0, 3), "SI|"), Edit(Span(11, 12), ""))
     assert diagnostic is not None and diagnostic.repair == Repair(edits, True)
 
 
 @pytest.mark.parametrize("text", ["SI| F(2, 80)", "SI DISTANCE < 10", "si hay una pared para", ""])
 def test_how_no_program_begins(text: str) -> None:
-    assert setup(text) is None
+    assert setup_diagnostic(text) is None
 
 
 def test_what_comes_after_is_told_where_it_stands() -> None:
@@ -47,7 +47,7 @@ def test_a_line_with_a_checksum_is_left_alone() -> None:
 def test_a_place_after_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
     diagnostic = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
-    moved = moved_back(diagnostic, edits, Source("SI|F(2, 80)"))
+    moved = to_original(diagnostic, edits, Source("SI|F(2, 80)"))
     assert (moved.span, moved.values) == (before, diagnostic.values)
 
 

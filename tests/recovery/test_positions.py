@@ -47,7 +47,7 @@ def mistakes(kit: Kit, text: str) -> tuple[Code, ...]:
 
 def meant(text: str) -> Candidate | None:
     """Return what is meant, on the first robot for which it is a right program."""
-    candidates = [Recovery(text, kit, partial(mistakes, kit)).best() for kit in KITS]
+    candidates = [Recovery(text, kit, partial(mistakes, kit)).best_candidate() for kit in KITS]
     return next(
         (candidate for candidate in candidates if candidate and candidate.is_whole), candidates[-1]
     )

@@ -24,7 +24,7 @@ from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyze, check_text
 from tiniscript.recovery import lines, rewrites, rows, slips
-from tiniscript.recovery.explanation import explained
+from tiniscript.recovery.explanation import explain_candidate
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.syntax.outline import Failure
@@ -32,7 +32,7 @@ from tiniscript.syntax.outline import Failure
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 KIT = robots.load(robots.DEFAULT).kit
 _F, _MOVE = "F(time, power)", "F(2, 80)"
-ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.of_tokens()]
+ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.sign_rows(), *rewrites.token_rows()]
 
 
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
@@ -40,7 +40,7 @@ def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.Si
     wrong, right = row.example
     made = []
     for kit in KITS:
-        found = Recovery(wrong, kit, partial(mistakes, kit)).best()
+        found = Recovery(wrong, kit, partial(mistakes, kit)).best_candidate()
         made.append(found and found.text)
         if made[-1] == right:
             return
@@ -48,7 +48,7 @@ def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.Si
 
 
 def meant(text: str) -> Candidate | None:
-    return Recovery(text, KIT, partial(mistakes, KIT)).best()
+    return Recovery(text, KIT, partial(mistakes, KIT)).best_candidate()
 
 
 def mistakes(kit: Kit, text: str) -> list[Code]:
@@ -69,7 +69,7 @@ def test_a_right_program_is_read_without_a_rewrite() -> None:
         names = Names(tokens, KIT)
         if all(map(is_whole, tokens)) and program.isascii():
             for line in tokens:
-                assert not isinstance(lines.right(line, names), Failure), program
+                assert not isinstance(lines.parse_line(line, names), Failure), program
 
 
 def is_whole(line: list[Lexeme]) -> bool:
@@ -97,7 +97,7 @@ def test_an_explanation_has_a_slip_and_its_edits(
 ) -> None:
     found = meant(wrong)
     assert found is not None
-    (said,) = explained(wrong, found)
+    (said,) = explain_candidate(wrong, found)
     assert (said.code, said.edits) == (CODES[code], [edit])
     assert said.values_as(said.code) == {**values, "whole": "", "ends": ""}
 
@@ -135,10 +135,10 @@ def test_a_line_is_searched_once_for_the_same_names() -> None:
 
 def test_the_parser_says_where_it_cannot_go_on() -> None:
     names = Names([], KIT)
-    assert lines.right(lexemes("S; F(2 80)"), names) == Failure(2, 5)
-    assert lines.right(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
-    assert lines.right(lexemes("F(2)"), names) == Failure(0, 4)
-    assert lines.right(lexemes("FAST"), names) == Failure(0, 0)
+    assert lines.parse_line(lexemes("S; F(2 80)"), names) == Failure(2, 5)
+    assert lines.parse_line(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
+    assert lines.parse_line(lexemes("F(2)"), names) == Failure(0, 4)
+    assert lines.parse_line(lexemes("FAST"), names) == Failure(0, 0)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
     wrong: str, kit: str, right: str | None
 ) -> None:
     own = robots.load(kit).kit
-    found = Recovery(wrong, own, partial(mistakes, own)).best()
+    found = Recovery(wrong, own, partial(mistakes, own)).best_candidate()
     assert (found.text if found and found.is_applied else None) == right
 
 
@@ -218,10 +218,10 @@ def test_a_row_that_is_made_without_asking_loses_no_number(
     monkeypatch: pytest.MonkeyPatch, how: str, is_made: bool
 ) -> None:
     monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
-    (row,) = rewrites.of_tokens.__wrapped__()
+    (row,) = rewrites.token_rows.__wrapped__()
     line = rewrites.Encoded(lexemes("S 5"), Names([], KIT))
     (match,) = line.matches(row.pattern)
-    assert (line.rewritten(row, match) is not None) is is_made
+    assert (line.apply_row(row, match) is not None) is is_made
 
 
 @pytest.mark.parametrize("kit", [PAPER_KIT, written.WIDE_KIT], ids=["paper", "wide"])

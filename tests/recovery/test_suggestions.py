@@ -15,7 +15,7 @@ from tiniscript.recovery import rows as recovery_rows
 from tiniscript.recovery import usage
 from tiniscript.recovery.rows import SIGNS, TOKENS
 from tiniscript.recovery.suggestion_rows import SUGGESTIONS
-from tiniscript.recovery.suggestions import Gaps, Row, rows, suggested
+from tiniscript.recovery.suggestions import Gaps, Row, find_suggestions, rows
 
 KIT = robots.load(robots.DEFAULT).kit
 
@@ -24,7 +24,7 @@ KIT = robots.load(robots.DEFAULT).kit
 def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     wrong, told = row.example
     name, _, value = told.partition("=")
-    beside = [each.diagnostic for each in suggested(wrong, KIT)]
+    beside = [each.diagnostic for each in find_suggestions(wrong, KIT)]
     assert len(beside) < 2
     found = [
         each
@@ -39,7 +39,7 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
     """Each row of what was found is the one that tells its example, and none is in vain."""
     telling: list[Row] = []
-    told = usage.Usage.told
+    told = usage.Usage.diagnostic_of
 
     def noted(place: usage.Usage, row: Row, gaps: Gaps) -> Diagnostic:
         telling.append(row)
@@ -51,7 +51,7 @@ def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
             check.cache_clear()
             telling.clear()
             check(row.example[0])
-            assert row in telling or suggested(row.example[0], KIT), row.example
+            assert row in telling or find_suggestions(row.example[0], KIT), row.example
 
 
 @pytest.mark.parametrize("table", [SIGNS, TOKENS, SUGGESTIONS])
@@ -79,7 +79,7 @@ def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
     ],
 )
 def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
-    found = {each.diagnostic.code.number for each in suggested(wrong, KIT)}
+    found = {each.diagnostic.code.number for each in find_suggestions(wrong, KIT)}
     assert not found & {"TS071", "TS085"}
 
 

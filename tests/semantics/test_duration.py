@@ -6,7 +6,7 @@ import pytest
 
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
-from tiniscript.semantics.duration import Duration, duration
+from tiniscript.semantics.duration import Duration, duration_of_program
 from tiniscript.semantics.optimizer import optimize_program
 
 KIT = robots.load("tinibot").kit
@@ -15,7 +15,9 @@ KIT = robots.load("tinibot").kit
 def lasting(text: str, is_optimized: bool = True) -> Duration:
     found = check_text(text, KIT)
     assert found.is_right and found.program is not None, found.diagnostics
-    return duration(optimize_program(found.program) if is_optimized else found.program, KIT)
+    return duration_of_program(
+        optimize_program(found.program) if is_optimized else found.program, KIT
+    )
 
 
 @each_row(

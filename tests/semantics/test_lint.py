@@ -238,10 +238,10 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
         def find(*given: Any) -> None:
             found = given[-1].diagnostics
             before = len(found)
-            row.find(*given)
+            row.report(*given)
             reported[row] |= {each.code for each in found[before:]}
 
-        return row._replace(find=find)
+        return row._replace(report=find)
 
     rows = {at: [*map(watched, its)] for at, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)

@@ -56,7 +56,7 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
         _, wrong = catalogue.answers(folder)
         choose(page, number)
         said = check(page, wrong[0].program)
-        assert said == ("failed", [wrong[0].said["en"], *rest(page)]), number
+        assert said == ("failed", [wrong[0].sentences["en"], *rest(page)]), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
 
@@ -67,10 +67,10 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     choose(page, number)
     assert check(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
-    worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
+    worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
     wanted = f"Done! You solved lesson {number}{worlds}."
     assert page.inner_text("#lesson_said").startswith(f"{wanted} You have ")
-    assert page.inner_text("#lesson_stars") == "★" * lesson.worlds
+    assert page.inner_text("#lesson_stars") == "★" * lesson.world_count
 
 
 def rest(page: Page) -> list[str]:

@@ -112,7 +112,7 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     page.select_option("#speed", "20")
     page.click("#side_lessons")
     right, _ = catalogue.answers(FOLDERS[1])
-    worlds = catalogue.load(FOLDERS[1]).worlds
+    worlds = catalogue.load(FOLDERS[1]).world_count
     for _ in range(2):
         choose(page, 2)
         assert check(page, right[0].program)[0] == "passed"

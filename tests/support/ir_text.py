@@ -58,6 +58,6 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
                 yield f"{indent}  arm {arm.reads} {expression_text(arm.condition)}"
                 yield from _body_lines(arm.body, indent + "    ")
             yield f"{indent}  else"
-            yield from _body_lines(statement.otherwise, indent + "    ")
+            yield from _body_lines(statement.else_body, indent + "    ")
         elif isinstance(statement, (Loop, While)):
             yield from _body_lines(statement.body, indent + "  ")

@@ -52,9 +52,9 @@ def rows(body: tuple[ast.Instruction, ...], text: str, depth: int = 0) -> Iterat
             for arm in node.arms:
                 yield "  " + row(f"arm {value(arm.condition)}", arm.span)
                 yield from rows(arm.body, text, depth + 2)
-            if node.otherwise:
+            if node.else_body:
                 yield f"{'  ' * depth}  else"
-                yield from rows(node.otherwise, text, depth + 2)
+                yield from rows(node.else_body, text, depth + 2)
         elif isinstance(node, ast.Loop):
             yield row(f"loop {value(node.times) if node.times else 'forever'}", node.span)
             yield from rows(node.body, text, depth + 1)
@@ -309,7 +309,7 @@ def spans(body: tuple[ast.Instruction, ...]) -> Iterator[tuple[Span, tuple[ast.I
         span, inside = node.span, getattr(node, "body", ())
         if isinstance(node, ast.If):  # its span begins with its last arm
             span = Span(node.arms[0].span.start, span.end)
-            inside = (*(each for arm in node.arms for each in arm.body), *node.otherwise)
+            inside = (*(each for arm in node.arms for each in arm.body), *node.else_body)
         yield span, inside
         yield from spans(inside)
 

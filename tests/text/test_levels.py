@@ -130,7 +130,7 @@ def most(text: str, level: Level = UNO) -> int:
     """Return the bytes that a reader needs for a text."""
     reader = Reader(scan(text).tokens, TINIBOT, level.sensor_bytes)
     reader.program()
-    return reader.most
+    return reader.most_bytes
 
 
 @pytest.mark.parametrize(
@@ -182,11 +182,11 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         reader = Reader(tokens, kit, 2)
         reader.program()
         assert found.program is not None
-        assert reader.length == plain_code(found.program).length, found.source.text
+        assert reader.code_bytes == plain_code(found.program).short_length, found.source.text
         own = (name for procedure in found.program.procedures for name in procedure.values)
         names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
         names += (found.program.variables[k] for k in own)
-        assert reader.used == sum(1 + len(name) for name in names), found.source.text
+        assert reader.used_bytes == sum(1 + len(name) for name in names), found.source.text
 
 
 @pytest.mark.parametrize("end", ["ENDIF", "ELSE;DISTANCE;ENDIF"])
@@ -195,7 +195,7 @@ def test_what_each_arm_has_read_is_not_read_again(end: str) -> None:
     assert found.program is not None
     reader = Reader(scan(found.source.text).tokens, TINIBOT, 2)
     reader.program()
-    assert reader.length == plain_code(found.program).length
+    assert reader.code_bytes == plain_code(found.program).short_length
 
 
 def test_names_take_room_too() -> None:

@@ -156,13 +156,13 @@ def test_the_length_is_that_with_short_jumps() -> None:
     text = "IF(TRUE); " + "S; " * 300 + "ENDIF"
     code = plain_of(text)
     assert BY_NAME["IF_FAR"].code == code.code[1] and len(code.code) == 304
-    assert code.length == 303
-    assert [place.offset for place in code.places[:3]] == [0, 3, 4]
+    assert code.short_length == 303
+    assert [place.offset for place in code.locations[:3]] == [0, 3, 4]
 
 
 def test_code_that_fits_a_level_has_no_far_jump() -> None:
     code = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
-    assert len(code.code) == code.length == CODE_BYTES
+    assert len(code.code) == code.short_length == CODE_BYTES
     assert "FAR" not in disassemble(code.code)
 
 
@@ -186,7 +186,7 @@ def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
     code = plain_code(found.program)
     verify(code.code, len(kit.readings), len(kit.actuators))
     short = "_FAR" not in disassemble(code.code)
-    assert (code.length == len(code.code)) == short
+    assert (code.short_length == len(code.code)) == short
     if short:
         used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
         assert not [name for name in used if FUSED.match(name)], used

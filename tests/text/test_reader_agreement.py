@@ -110,11 +110,15 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
     plain = plain_code(compiled.program)
     model = Model(scan(compiled.source.text).tokens, kit, SENSOR_BYTES)
     model.program()
-    fits = plain.length <= CODE_BYTES and model.most <= room and model.one_too_many is None
+    fits = (
+        plain.short_length <= CODE_BYTES
+        and model.most_bytes <= room
+        and model.extra_bracket_span is None
+    )
     if fits and all(len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compiled.source.text)):
-        assert answer.code == plain.code, f"{answer} {model.most}\n{data!r}"
+        assert answer.code == plain.code, f"{answer} {model.most_bytes}\n{data!r}"
     else:
-        assert answer.problem == "FULL", f"{answer} {model.most}\n{data!r}"
+        assert answer.problem == "FULL", f"{answer} {model.most_bytes}\n{data!r}"
 
 
 def takes_more(data: bytes, kit: Kit) -> bool:

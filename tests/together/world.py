@@ -271,7 +271,7 @@ def _walk(body: Sequence[Instruction]) -> Iterator[tuple[Instruction, str]]:
             yield each, BLOCK
             for arm in each.arms:
                 yield from _walk(arm.body)
-            yield from _walk(each.otherwise)
+            yield from _walk(each.else_body)
         elif isinstance(each, Loop | While | Def | Task):
             yield each, BLOCK
             yield from _walk(each.body)

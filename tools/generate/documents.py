@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, text
 from tiniscript.base.words import WORDS
-from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, Kind
+from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, CriterionKind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.generate.poster import as_block
@@ -213,7 +213,7 @@ def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     return ("criterion", "met if", "takes"), rows
 
 
-def _key_list(kind: Kind) -> list[str]:
+def _key_list(kind: CriterionKind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
     result = ["`at`"] if kind.places else []
     if kind.words:

@@ -34,18 +34,18 @@ class Row(NamedTuple):
 
 def rows(code: bytes) -> list[Row]:
     """Return the instructions of `code`, verified or not; what is none stands alone."""
-    rows = []
-    at = 0
-    while at < len(code):
-        op = op_at(code, at)
-        if op is None or at + op.size > len(code):
-            data = code[at : at + 1] if op is None else code[at:]
-            rows.append(Row(at, data, None, ()))
+    rows_found = []
+    offset = 0
+    while offset < len(code):
+        op = op_at(code, offset)
+        if op is None or offset + op.size > len(code):
+            data = code[offset : offset + 1] if op is None else code[offset:]
+            rows_found.append(Row(offset, data, None, ()))
         else:
-            data = code[at : at + op.size]
-            rows.append(Row(at, data, op, read_operands(op, code, at)))
-        at += len(data)
-    return rows
+            data = code[offset : offset + op.size]
+            rows_found.append(Row(offset, data, op, read_operands(op, code, offset)))
+        offset += len(data)
+    return rows_found
 
 
 def disassemble(

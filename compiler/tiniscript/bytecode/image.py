@@ -65,12 +65,13 @@ REFUSALS = {
 
 _VERSION_BYTES = 4  # by which an image of any version is known
 _LAYOUT = "<" + "".join(field.layout for field in FIELDS)
-_CHECKSUM_AT = sum(field.size for field in FIELDS[:-2])
-_AFTER_CHECKSUM = _CHECKSUM_AT + 4
+_CHECKSUM_OFFSET = sum(field.size for field in FIELDS[:-2])
+_CHECKSUM_END = _CHECKSUM_OFFSET + 4
 
 
 class Image(NamedTuple):
-    """`devices` is the hash of those that the code uses; `later` are fields of later versions.
+    """`devices` is the hash of those that the code uses; `later_fields` are fields of later
+    versions.
 
     `checksum` names the program wherever it goes.
     """
@@ -80,7 +81,7 @@ class Image(NamedTuple):
     code: bytes
     checksum: int
     isa: tuple[int, int]
-    later: bytes = b""
+    later_fields: bytes = b""
     needs: int = 0
 
 
@@ -94,16 +95,16 @@ class ImageRefused(Exception):
         self.values = values
 
 
-def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
+def pack(start: str, devices: int, code: bytes, later_fields: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is what
+    `later_fields` (0 to 240 bytes) are fields that this version does not know; `needs` is what
     its verdict says.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later),
+    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later_fields),
               devices, len(code), 0, needs)  # fmt: skip
-    return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
+    return with_checksum(struct_pack(_LAYOUT, *values) + later_fields + code)
 
 
 def isa_for_needs(needs: int) -> tuple[int, int]:
@@ -113,13 +114,13 @@ def isa_for_needs(needs: int) -> tuple[int, int]:
 
 def with_checksum(image: bytes) -> bytes:
     """Return an image with the checksum that fits the rest of it."""
-    head, rest = image[:_CHECKSUM_AT], image[_AFTER_CHECKSUM:]
-    return head + struct_pack("<I", zlib.crc32(head + rest)) + rest
+    bytes_before, bytes_after = image[:_CHECKSUM_OFFSET], image[_CHECKSUM_END:]
+    return bytes_before + struct_pack("<I", zlib.crc32(bytes_before + bytes_after)) + bytes_after
 
 
 def checksum(image: bytes) -> int:
     """Return the checksum in the header of a whole image."""
-    return int.from_bytes(image[_CHECKSUM_AT:_AFTER_CHECKSUM], "little")
+    return int.from_bytes(image[_CHECKSUM_OFFSET:_CHECKSUM_END], "little")
 
 
 def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
@@ -153,5 +154,5 @@ def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
         raise ImageRefused("UNKNOWN_START", found=str(start))
     if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
-    later, code = data[HEADER_BYTES:header_length], data[header_length:]
-    return Image(STARTS[start], devices, code, stored_checksum, isa, later, needs)
+    later_fields, code = data[HEADER_BYTES:header_length], data[header_length:]
+    return Image(STARTS[start], devices, code, stored_checksum, isa, later_fields, needs)

@@ -141,8 +141,8 @@ CONTROL_ROLES = {
 def _op(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> Op:
     parts = []
     for text in operands.split():
-        label, _, kind = text.partition(":")
-        parts.append(Operand(label, OPERAND_KINDS[kind]))
+        operand_name, _, kind = text.partition(":")
+        parts.append(Operand(operand_name, OPERAND_KINDS[kind]))
     operands_taken, _, results_left = effect.partition("--")
     size = 1 + (code > 0xFF) + sum(operand.kind.size for operand in parts)
     return Op(code, name, tuple(parts), effect, role, meaning,
@@ -159,8 +159,8 @@ def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: st
 def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> list[Op]:
     """Return the six instructions that differ in the comparator, the last three bits of the code."""
     assert code % 8 == 0
-    return [_op(code + i, f"{name}_{each}", operands, effect, role, meaning.format(sign))
-            for i, (each, sign) in enumerate(COMPARATORS)]
+    return [_op(code + i, f"{name}_{comparator}", operands, effect, role, meaning.format(sign))
+            for i, (comparator, sign) in enumerate(COMPARATORS)]
 
 
 _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
@@ -215,14 +215,14 @@ OPS = (
     _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to whoever is listening."),
     _op(0x3A, "SHOW_YES_NO",     "",                    "yes --",          "plain", "Send TRUE or FALSE."),
     _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a` to the value, rounded and limited to its range."),
-    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {way} for `time`, then turn the motors off.")
-      for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {way} for `time`, then turn the motors off.")
-      for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {way} for `time`, or until a check is TRUE.")
-      for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {way} until a check is TRUE.")
-      for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {direction_word} for `time`, then turn the motors off.")
+      for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {direction_word} for `time`, then turn the motors off.")
+      for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {direction_word} for `time`, or until a check is TRUE.")
+      for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {direction_word} until a check is TRUE.")
+      for i, (d, direction_word) in enumerate(_MOVES)),
     _op(0x50, "WAIT",            "",                    "time --",         "plain", "Wait."),
     _op(0x51, "WAIT8",           "time:time8",          "--",              "plain", "Wait."),
     _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time`, or until a check is TRUE."),
@@ -268,10 +268,10 @@ OPS = (
         _op(0x7E, "WHEN",        "to:fwd16",            "--",              "when",  "A WHEN begins here; go to `to`, its end."),
     )),
     # centimetres and degrees
-    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {way} by `way`, then turn the motors off.")
-      ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {way} by `way`, or until a check is TRUE.")
-      ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {direction_word} by `way`, then turn the motors off.")
+      ._replace(needs=NEEDS_GO) for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {direction_word} by `way`, or until a check is TRUE.")
+      ._replace(needs=NEEDS_GO) for i, (d, direction_word) in enumerate(_MOVES)),
     # in one byte
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
@@ -329,11 +329,11 @@ assert len(BY_NAME) == len(OPS), "a name is used twice"
 assert BY_CODE[ESCAPE] is None
 
 
-def op_at(code: bytes, at: int) -> Op | None:
+def op_at(code: bytes, offset: int) -> Op | None:
     """Return the instruction that begins at an offset, or None if none does."""
-    if code[at] != ESCAPE:
-        return BY_CODE[code[at]]
-    return ESCAPED_OPS.get(code[at + 1]) if at + 1 < len(code) else None
+    if code[offset] != ESCAPE:
+        return BY_CODE[code[offset]]
+    return ESCAPED_OPS.get(code[offset + 1]) if offset + 1 < len(code) else None
 
 
 def time8_ms(time: int) -> int:

@@ -11,18 +11,18 @@ from tiniscript.bytecode.disassembly import rows
 def statement_starts(code: bytes) -> list[int]:
     """Return the offsets where a statement begins: the stack is empty there, and no AND_THEN or
     OR_ELSE is open. The check of an UNTIL or a WHEN begins one, too."""
-    result: list[int] = []
+    starts: list[int] = []
     depth = join_offset = 0
     for row in rows(code):
         if row.op is None:
             break
-        after = row.offset + len(row.data)
+        next_offset = row.offset + len(row.data)
         if depth == 0 and row.offset >= join_offset:
-            result.append(row.offset)
+            starts.append(row.offset)
         depth += row.op.pushes - row.op.pops
         if row.op.control_role == "join":
-            join_offset = max(join_offset, after + row.operands[-1])
-    return result
+            join_offset = max(join_offset, next_offset + row.operands[-1])
+    return starts
 
 
 def statement_of(starts: Sequence[int], offset: int) -> int:

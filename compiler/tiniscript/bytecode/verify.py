@@ -432,7 +432,7 @@ def load_image(data: bytes, kit: Kit, capabilities: int = ALL_NEEDS) -> Image:
 def check(image: Image, kit: Kit) -> Verdict:
     """Return what the code of an image needs. Raises Refused, or ImageRefused."""
     verdict = verify(image.code, len(kit.readings), len(kit.actuators), image.needs)
-    ours = kit.hash_of_used(verdict.uses)
-    if image.devices != ours:
-        raise ImageRefused("OTHER_KIT", theirs=f"{image.devices:04x}", ours=f"{ours:04x}")
+    own_hash = kit.hash_of_used(verdict.uses)
+    if image.devices != own_hash:
+        raise ImageRefused("OTHER_KIT", theirs=f"{image.devices:04x}", ours=f"{own_hash:04x}")
     return verdict

@@ -69,7 +69,7 @@ class Mark(NamedTuple):
 
 
 def check(options: Namespace, lesson: Lesson, language: str) -> int:
-    seeds: Sequence[int] = range(1, lesson.worlds + 1)
+    seeds: Sequence[int] = range(1, lesson.world_count + 1)
     if options.seed is not None:
         seeds = [whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)]
     if options.program is None and not options.texts:

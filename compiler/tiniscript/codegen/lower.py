@@ -36,26 +36,26 @@ class SourceLocation(NamedTuple):
     span: Span
 
 
-class Lowered(NamedTuple):
+class LoweredCode(NamedTuple):
     """`code` may be longer than CODE_BYTES, the most that a machine takes."""
 
     code: bytes
-    places: tuple[SourceLocation, ...]
+    locations: tuple[SourceLocation, ...]
 
 
-def lower(program: ir.Program, plain: bool = False) -> Lowered:
+def lower(program: ir.Program, plain: bool = False) -> LoweredCode:
     """Return the code bytes of a program, and where in the text they come from.
 
     `plain` code is made from a program as it is written, not from an optimised one.
     """
     lowering = _Lowering(plain, len(program.procedures))
-    called = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
+    called_numbers = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
     pending_routines: list[tuple[ir.Procedure | ir.Task, int | None]] = [
-        *((program.procedures[k], k) for k in called),
+        *((program.procedures[k], k) for k in called_numbers),
         *((task, None) for task in program.tasks),
     ]
     if plain:
-        pending_routines.sort(key=lambda each: each[0].span)
+        pending_routines.sort(key=lambda routine: routine[0].span)
     pending_routines.reverse()
     for statement in program.body:
         while pending_routines and (not plain or pending_routines[-1][0].span < statement.span):
@@ -63,7 +63,7 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
         lowering.statement(statement)
     while pending_routines:
         lowering.routine(*pending_routines.pop())
-    return _assemble(lowering.out)
+    return _assemble(lowering.emitter)
 
 
 class _LoopEnd(NamedTuple):
@@ -74,61 +74,61 @@ class _LoopEnd(NamedTuple):
 class _Lowering:
     def __init__(self, plain: bool, procedure_count: int) -> None:
         self.plain = plain
-        self.out = Emitter(plain)
+        self.emitter = Emitter(plain)
         # the label of each DEF's first instruction
-        self.entries = [self.out.new_label() for _ in range(procedure_count)]
-        self.loops: list[_LoopEnd] = []
+        self.def_labels = [self.emitter.new_label() for _ in range(procedure_count)]
+        self.open_loops: list[_LoopEnd] = []
 
     def routine(self, routine: ir.Procedure | ir.Task, number: int | None) -> None:
         """Add a task, or the DEF of this number."""
-        emitter = self.out
+        emitter = self.emitter
         emitter.span = routine.span
         end = emitter.new_label()
         if isinstance(routine, ir.Procedure):
             assert number is not None
             emitter.add("DEF", label=end)
-            emitter.mark(self.entries[number])
-            last = "RETURN"
+            emitter.mark(self.def_labels[number])
+            end_op = "RETURN"
         elif routine.until is None:
             emitter.add("TASK", label=end)
-            last = "END_TASK"
+            end_op = "END_TASK"
         else:
             emitter.add("WHEN", label=end)
             self.add_readings(routine.until.reads)
             add_value(emitter, routine.until.condition)
             emitter.add("LOOK")
-            last = "END_WHEN"
+            end_op = "END_WHEN"
         self.body(routine.body)
-        emitter.add(last)
+        emitter.add(end_op)
         emitter.mark(end)
 
     def add_readings(self, sensors: tuple[int, ...]) -> None:
         for sensor in sensors:
-            self.out.add("READ", sensor)
+            self.emitter.add("READ", sensor)
 
     def body(self, body: ir.Body) -> None:
         for statement in body:
             self.statement(statement)
 
     def statement(self, statement: ir.Statement) -> None:
-        self.out.span = statement.span
+        self.emitter.span = statement.span
         _STATEMENTS[type(statement)](self, statement)
 
     def read(self, read: ir.Read) -> None:
-        self.out.add("READ", read.sensor)
+        self.emitter.add("READ", read.sensor)
 
     def show(self, show: ir.Show) -> None:
-        add_value(self.out, show.value)
-        self.out.add("SHOW_YES_NO" if show.is_yes_no else "SHOW")
+        add_value(self.emitter, show.value)
+        self.emitter.add("SHOW_YES_NO" if show.is_yes_no else "SHOW")
 
     def set(self, statement: ir.Set) -> None:
-        add_value(self.out, statement.value)
-        self.out.add("SET", statement.actuator)
+        add_value(self.emitter, statement.value)
+        self.emitter.add("SET", statement.actuator)
 
     # -- moves --------------------------------------------------------------------------------
 
     def move(self, move: ir.Move) -> None:
-        emitter = self.out
+        emitter = self.emitter
         time = None if move.time is None else self.clamp_time(move.time)
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
@@ -137,11 +137,13 @@ class _Lowering:
             until = ir.Until((), (ir.Term("YES_NO", 0),))
         if until is None and time is not None and not move.unit:
             time_ms = self.constant_of(time)
-            byte = None if time_ms is None else time8(time_ms)
-            value = None if power is None else self.constant_of(power)
-            if byte is not None and (power is None or value is not None):
-                short = "WAIT8" if value is None else f"MOVE8_{name}"
-                emitter.add(short, byte, *(() if value is None else (value // 1000,)))
+            time_byte = None if time_ms is None else time8(time_ms)
+            power_value = None if power is None else self.constant_of(power)
+            if time_byte is not None and (power is None or power_value is not None):
+                short_name = "WAIT8" if power_value is None else f"MOVE8_{name}"
+                emitter.add(
+                    short_name, time_byte, *(() if power_value is None else (power_value // 1000,))
+                )
                 return
         if time is not None:
             add_value(emitter, time)
@@ -157,32 +159,32 @@ class _Lowering:
 
     def beep(self, beep: ir.Beep) -> None:
         time_ms, hertz = self.constant_of(self.clamp_time(beep.time)), self.constant_of(beep.hertz)
-        byte = None if time_ms is None else time8(time_ms)
-        if byte is not None and hertz is not None:
-            self.out.add("BEEP8", byte, clamp(whole(hertz), 31, 20_000))
+        time_byte = None if time_ms is None else time8(time_ms)
+        if time_byte is not None and hertz is not None:
+            self.emitter.add("BEEP8", time_byte, clamp(whole(hertz), 31, 20_000))
             return
-        add_value(self.out, beep.time)
-        add_value(self.out, beep.hertz)
-        self.out.add("BEEP")
+        add_value(self.emitter, beep.time)
+        add_value(self.emitter, beep.hertz)
+        self.emitter.add("BEEP")
 
     def motors(self, motors: ir.Motors) -> None:
         left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
         left_value, right_value = self.constant_of(left), self.constant_of(right)
         if left_value is not None and right_value is not None:
-            self.out.add("MOTORS8", left_value // 1000, right_value // 1000)
+            self.emitter.add("MOTORS8", left_value // 1000, right_value // 1000)
         else:
-            add_value(self.out, left)
-            add_value(self.out, right)
-            self.out.add("MOTORS")
+            add_value(self.emitter, left)
+            add_value(self.emitter, right)
+            self.emitter.add("MOTORS")
 
     def stop(self, _: ir.Stop) -> None:
-        self.out.add("STOP")
+        self.emitter.add("STOP")
 
     # -- variables ----------------------------------------------------------------------------
 
     def assign(self, assign: ir.Assign) -> None:
         """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
-        emitter, variable, value = self.out, assign.variable, assign.value
+        emitter, variable, value = self.emitter, assign.variable, assign.value
         if not self.plain and self.add_short_assignment(variable, value):
             return
         add_value(emitter, value)
@@ -190,7 +192,7 @@ class _Lowering:
 
     def add_short_assignment(self, variable: int, value: ir.Expression) -> bool:
         """Add the one instruction that does it; return whether there is one."""
-        emitter = self.out
+        emitter = self.emitter
         if len(value) == 1 and value[0].op == "NUMBER":
             number = number_of(value[0], -128, 127)
             if number is not None and not pushes_in_one_byte(value[0], variable):
@@ -218,25 +220,25 @@ class _Lowering:
     # -- blocks -------------------------------------------------------------------------------
 
     def if_(self, statement: ir.If) -> None:
-        emitter = self.out
+        emitter = self.emitter
         end = emitter.new_label()
         for k, arm in enumerate(statement.arms):
-            has_else = statement.has_else if self.plain else bool(statement.otherwise)
+            has_else = statement.has_else if self.plain else bool(statement.else_body)
             is_last = k == len(statement.arms) - 1 and not has_else
-            following = end if is_last else emitter.new_label()
+            next_label = end if is_last else emitter.new_label()
             emitter.span = arm.span
             self.add_readings(arm.reads)
-            emit_unless(emitter, arm.condition, following)
+            emit_unless(emitter, arm.condition, next_label)
             self.body(arm.body)
             if not is_last:
                 if self.plain or ir.falls_through(arm.body):
                     emitter.add("ELSE", label=end)
-                emitter.mark(following)
-        self.body(statement.otherwise)
+                emitter.mark(next_label)
+        self.body(statement.else_body)
         emitter.mark(end)
 
     def loop(self, loop: ir.Loop) -> None:
-        emitter = self.out
+        emitter = self.emitter
         end = emitter.new_label()
         if loop.times is None:
             emitter.add("FOREVER")
@@ -251,7 +253,7 @@ class _Lowering:
         self.add_loop(loop.body, end, loop.times is not None, loop.span)
 
     def while_(self, loop: ir.While) -> None:
-        emitter = self.out
+        emitter = self.emitter
         end = emitter.new_label()
         emitter.add("WHILE", label=end)
         start = emitter.mark_here()
@@ -263,22 +265,22 @@ class _Lowering:
         self, body: ir.Body, end: int, is_counted: bool, span: Span, start: int | None = None
     ) -> None:
         """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
-        emitter = self.out
+        emitter = self.emitter
         if start is None:
             start = emitter.mark_here()
-        self.loops.append(_LoopEnd(end, is_counted))
+        self.open_loops.append(_LoopEnd(end, is_counted))
         self.body(body)
-        self.loops.pop()
+        self.open_loops.pop()
         emitter.span = span
         emitter.add("NEXT" if is_counted else "AGAIN", label=start)
         emitter.mark(end)
 
     def break_(self, _: ir.Break) -> None:
-        loop = self.loops[-1]
-        self.out.add("BREAK_LOOP" if loop.is_counted else "BREAK", label=loop.label)
+        loop = self.open_loops[-1]
+        self.emitter.add("BREAK_LOOP" if loop.is_counted else "BREAK", label=loop.label)
 
     def call(self, call: ir.Call) -> None:
-        self.out.add("CALL", label=self.entries[call.procedure])
+        self.emitter.add("CALL", label=self.def_labels[call.procedure])
 
     # -- numbers that the text says -----------------------------------------------------------
 
@@ -318,7 +320,7 @@ _STATEMENTS: dict[type, Callable[..., None]] = {
 # -- layout -----------------------------------------------------------------------------------
 
 
-def _assemble(emitter: Emitter) -> Lowered:
+def _assemble(emitter: Emitter) -> LoweredCode:
     """Choose for each jump the form that reaches its target, and write the bytes.
 
     A jump only ever gets longer, so this ends. Comparing branches have no far form: one that
@@ -331,21 +333,21 @@ def _assemble(emitter: Emitter) -> Lowered:
             offset += item.op.size
         starts.append(offset)
         targets = [starts[index] for index in emitter.labels]
-        short = {
+        too_short = {
             k
             for k, item in enumerate(emitter.items)
             if item.label is not None and not _is_in_reach(item, starts[k], targets[item.label])
         }
-        if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
+        if not too_short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
             break
-        emitter.widen(short)
+        emitter.widen(too_short)
     code = bytearray()
-    places: list[SourceLocation] = []
+    locations: list[SourceLocation] = []
     for item, start in zip(emitter.items, starts, strict=False):
-        if not places or places[-1].span != item.span:
-            places.append(SourceLocation(start, item.span))
+        if not locations or locations[-1].span != item.span:
+            locations.append(SourceLocation(start, item.span))
         _write(code, item, None if item.label is None else targets[item.label])
-    return Lowered(bytes(code), tuple(places))
+    return LoweredCode(bytes(code), tuple(locations))
 
 
 def _is_in_reach(item: Item, start: int, target: int) -> bool:

@@ -60,22 +60,22 @@ class Emitter:
         """Take back `READ sensor` if it is the last instruction and no jump ends after it."""
         if self.plain or not self.items or self._last_mark == len(self.items):
             return False
-        last = self.items[-1]
-        if (last.op, last.operands) != _shortest_op("READ", sensor):
+        last_item = self.items[-1]
+        if (last_item.op, last_item.operands) != _shortest_op("READ", sensor):
             return False
-        self.span = last.span
+        self.span = last_item.span
         del self.items[-1]
         return True
 
-    def widen(self, positions: set[int]) -> None:
-        """Give the jumps at the indexes `positions` their far forms."""
+    def widen(self, indexes: set[int]) -> None:
+        """Give the jumps at the indexes `indexes` their far forms."""
         items: list[Item] = []
-        new_positions = []
+        new_indexes = []
         for k, item in enumerate(self.items):
-            new_positions.append(len(items))
-            items += _far_form(item) if k in positions else (item,)
-        new_positions.append(len(items))
-        self.labels = [new_positions[index] for index in self.labels]
+            new_indexes.append(len(items))
+            items += _far_form(item) if k in indexes else (item,)
+        new_indexes.append(len(items))
+        self.labels = [new_indexes[index] for index in self.labels]
         self.items = items
 
 
@@ -87,17 +87,17 @@ def _shortest_op(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
 
 
 def _far_form(item: Item) -> tuple[Item, ...]:
-    far = BY_NAME.get(item.op.name + "_FAR")
-    if far is not None:
-        return (item._replace(op=far),)
+    far_op = BY_NAME.get(item.op.name + "_FAR")
+    if far_op is not None:
+        return (item._replace(op=far_op),)
     *variable, number = item.operands
-    parts = [
-        *(_shortest_op("PUSH_VAR", each) for each in variable),
+    ops = [
+        *(_shortest_op("PUSH_VAR", number) for number in variable),
         _push(number * 1000),
         (BY_NAME[item.op.name.rpartition("_")[2]], ()),
     ]
     return (
-        *(Item(*each, None, item.span) for each in parts),
+        *(Item(*op, None, item.span) for op in ops),
         Item(BY_NAME["IF_FAR"], (), item.label, item.span),
     )
 
@@ -211,17 +211,17 @@ def _emit_branch(emitter: Emitter, expression: Expression, wanted_answer: bool, 
         add_value(emitter, expression)
         emitter.add("IF_NOT" if wanted_answer else "IF", label=label)
         return
-    value, bits, comparator, number = comparison
+    value, bit_count, comparator, number = comparison
     if wanted_answer:
         comparator = NEGATED[comparator]
     if len(value) == 1 and value[0].op == "VARIABLE":
-        emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, label=label)
+        emitter.add(f"IF_VAR{bit_count}_{comparator}", value[0].value, number, label=label)
     else:
         add_value(emitter, value)
-        emitter.add(f"IF{bits}_{comparator}", number, label=label)
+        emitter.add(f"IF{bit_count}_{comparator}", number, label=label)
 
 
-class _Compared(NamedTuple):
+class _Comparison(NamedTuple):
     """`value` is compared to a whole number of so many bits."""
 
     value: Expression
@@ -230,7 +230,7 @@ class _Compared(NamedTuple):
     number: int
 
 
-def _comparison_to_constant(expression: Expression) -> _Compared | None:
+def _comparison_to_constant(expression: Expression) -> _Comparison | None:
     """Return the comparison to a whole number that an expression is, if it is one."""
     comparator = expression[-1].op
     if comparator not in NEGATED:
@@ -241,17 +241,17 @@ def _comparison_to_constant(expression: Expression) -> _Compared | None:
     number = number_of(right, -32768, 32767)
     if number is None:
         return None
-    return _Compared(value, 8 if 0 <= number <= 255 else 16, comparator, number)
+    return _Comparison(value, 8 if 0 <= number <= 255 else 16, comparator, number)
 
 
 def _matching_index(
-    expression: Expression, places: range, begins: Sequence[str], ends: Sequence[str]
+    expression: Expression, indexes: range, openers: Sequence[str], closers: Sequence[str]
 ) -> int:
-    """Return the first of `places` with one of `ends` that no one of `begins` there belongs to."""
+    """Return the first of `indexes` with one of `closers` that none of `openers` there opens."""
     depth = 0
-    for k in places:
+    for k in indexes:
         op = expression[k].op
-        if op in ends and not depth:
+        if op in closers and not depth:
             return k
-        depth += (op in begins) - (op in ends)
+        depth += (op in openers) - (op in closers)
     raise AssertionError("an AND or its left side alone")

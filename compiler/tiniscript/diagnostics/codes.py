@@ -240,8 +240,8 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
     What begins where another mistake begins is most often its consequence.
     """
-    result = []
-    mistaken = set()
+    diagnostics_kept = []
+    mistake_starts = set()
     keys_seen = set()
     named_starts = {
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code is UNKNOWN_WORD or (
@@ -252,10 +252,12 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         start = diagnostic.span.start
         if diagnostic.code is BAD_NAME and start in named_starts:
             continue  # `Bebé(1, 440)`: the word goes, with its accent
-        if key in keys_seen or (diagnostic.is_mistake and start in mistaken):
+        if key in keys_seen or (diagnostic.is_mistake and start in mistake_starts):
             continue
         keys_seen.add(key)
-        result.append(diagnostic)
+        diagnostics_kept.append(diagnostic)
         if diagnostic.is_mistake:
-            mistaken.add(start)
-    return sorted(result, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))
+            mistake_starts.add(start)
+    return sorted(
+        diagnostics_kept, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number)
+    )

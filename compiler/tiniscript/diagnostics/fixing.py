@@ -30,7 +30,7 @@ _GAPS_BY_CODE: dict[Code, tuple[str, ...]] = {
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
-_CODES_ELSEWHERE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
+_CODES_WITH_PLACE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
 
 
 def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
@@ -38,10 +38,12 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     if diagnostic.repair is not None:
         return [*diagnostic.repair.edits] or None
     values, place = diagnostic.values, diagnostic.place
-    new = next((values[gap] for gap in _GAPS_BY_CODE.get(diagnostic.code, ()) if gap in values), "")
-    if not new or (place is None and diagnostic.code in _CODES_ELSEWHERE):
+    new_text = next(
+        (values[gap] for gap in _GAPS_BY_CODE.get(diagnostic.code, ()) if gap in values), ""
+    )
+    if not new_text or (place is None and diagnostic.code in _CODES_WITH_PLACE):
         return None
-    return [Edit(place or diagnostic.span, new)]
+    return [Edit(place or diagnostic.span, new_text)]
 
 
 MOST_CHECKS = 400  # of one program, fewer of a long one
@@ -49,7 +51,7 @@ CHECKED_CHARACTERS = 600_000
 MOST_OFFERS = 20  # repairs of one text that are tried
 
 
-class Fixed(NamedTuple):
+class RepairedProgram(NamedTuple):
     """`text` is the program with its sure repairs, `diagnostics_left` what it still has."""
 
     text: str
@@ -60,7 +62,7 @@ class Fixed(NamedTuple):
 Check = Callable[[str], list[Diagnostic]]
 
 
-def repair_program(text: str, check: Check) -> Fixed:
+def repair_program(text: str, check: Check) -> RepairedProgram:
     """Return a program with its sure repairs. `check` finds the diagnostics of a text.
 
     A long program takes long, and has many mistakes: it is not checked so often.
@@ -68,9 +70,9 @@ def repair_program(text: str, check: Check) -> Fixed:
     checks_left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)
     count = 0
-    steps = _steps(diagnostics)
+    steps = _repair_steps(diagnostics)
     while checks_left > 0 and (repairs := next(steps, None)):
-        edits = [_tidied(edit, text) for repair in repairs for edit in repair]
+        edits = [_tidy(edit, text) for repair in repairs for edit in repair]
         changed_text = apply_edits(text, edits)
         diagnostics_after = check(changed_text)
         checks_left -= 1
@@ -79,12 +81,12 @@ def repair_program(text: str, check: Check) -> Fixed:
                 changed_text,
                 diagnostics_after,
                 count + len(repairs),
-                _steps(diagnostics_after),
+                _repair_steps(diagnostics_after),
             )
-    return Fixed(text, count, diagnostics)
+    return RepairedProgram(text, count, diagnostics)
 
 
-def _tidied(edit: Edit, text: str) -> Edit:
+def _tidy(edit: Edit, text: str) -> Edit:
     """Return an edit that leaves no blank line, and no blanks before an instruction or at an end.
 
     What is taken out takes with it the blanks that stood around it, or its line.
@@ -92,24 +94,26 @@ def _tidied(edit: Edit, text: str) -> Edit:
     start, end = edit.span
     if edit.text or start == end:
         return edit
-    begin = text.rfind("\n", 0, start) + 1
-    stop = text.find("\n", end)
-    stop = len(text) if stop < 0 else stop
-    before, after = text[begin:start], text[end:stop]
-    if not (before + after).strip():
-        ends_text = stop == len(text) and not begin
-        return Edit(Span(begin, stop if ends_text else min(stop + 1, len(text))), "")
-    if not before.strip() or before[-1] in "|; ":
-        end += len(after) - len(after.lstrip(" \t"))
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end
+    text_before, text_after = text[line_start:start], text[end:line_end]
+    if not (text_before + text_after).strip():
+        is_whole_text = line_end == len(text) and not line_start
+        return Edit(
+            Span(line_start, line_end if is_whole_text else min(line_end + 1, len(text))), ""
+        )
+    if not text_before.strip() or text_before[-1] in "|; ":
+        end += len(text_after) - len(text_after.lstrip(" \t"))
     return Edit(Span(start, end), "")
 
 
-def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
+def _repair_steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
     sure_repairs = [
-        item.repair.edits
-        for item in diagnostics[: codes.MOST_DIAGNOSTICS]
-        if item.repair and item.repair.is_sure
+        diagnostic.repair.edits
+        for diagnostic in diagnostics[: codes.MOST_DIAGNOSTICS]
+        if diagnostic.repair and diagnostic.repair.is_sure
     ]
     separate_repairs: list[tuple[Edit, ...]] = []
     for edits in sure_repairs:
@@ -121,32 +125,33 @@ def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
 
 
 def edits_offered(
-    text: str, diagnostics: Sequence[Diagnostic], position: int, check: Check
+    text: str, diagnostics: Sequence[Diagnostic], index: int, check: Check
 ) -> list[Edit]:
     """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
     gone. They may be a guess, and change what the program does: somebody looks at them.
     """
-    source, diagnostic = Source(text), diagnostics[position]
+    source, diagnostic = Source(text), diagnostics[index]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
     if not edits or any("~" in line for line in lines):  # else it is copied again
         return []
-    after = check(apply_edits(text, edits))
+    diagnostics_after = check(apply_edits(text, edits))
     if diagnostic.is_mistake:
-        return edits if is_better(after, diagnostics, edits) else []
-    return edits if _removes_warning(after, diagnostic.code, diagnostics) else []
+        return edits if is_better(diagnostics_after, diagnostics, edits) else []
+    return edits if _removes_warning(diagnostics_after, diagnostic.code, diagnostics) else []
 
 
 def _removes_warning(
-    after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
+    diagnostics_after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
 ) -> bool:
     """Whether there is one warning fewer of this kind, and no mistake more."""
-    before, checks_left = (
-        sum(diagnostic.code is code for diagnostic in every) for every in (diagnostics, after)
+    count_before, count_after = (
+        sum(diagnostic.code is code for diagnostic in each_list)
+        for each_list in (diagnostics, diagnostics_after)
     )
-    return checks_left < before and _mistakes(after) <= _mistakes(diagnostics)
+    return count_after < count_before and _mistakes(diagnostics_after) <= _mistakes(diagnostics)
 
 
 def drop_wrong_offers(
@@ -158,36 +163,40 @@ def drop_wrong_offers(
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
     checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
-    result = list(diagnostics)
+    diagnostics_kept = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [
-            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in result
+            edits_of(diagnostic) or [] if diagnostic.is_mistake else []
+            for diagnostic in diagnostics_kept
         ]
         joined_edits: list[Edit] = []
         for edits in offers:
             joined_edits += edits if not overlap(edits, joined_edits) else []
-        in_all = _InPlace(text, joined_edits, check)
+        joined_text = _EditedText(text, joined_edits, check)
         joined_set = set(joined_edits)
         suspects = [
             k for k, edits in enumerate(offers)
-            if result[k].is_mistake and (edits or result[k].values.get("fix"))
-            and not (edits and set(edits) <= joined_set and in_all.is_right(result[k], edits))
+            if diagnostics_kept[k].is_mistake and (edits or diagnostics_kept[k].values.get("fix"))
+            and not (edits and set(edits) <= joined_set
+                     and joined_text.is_right(diagnostics_kept[k], edits))
         ]  # fmt: skip
-        lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
+        # of those that name no changes: each once
+        is_right_of_offer: dict[tuple[Code, str], bool] = {}
         for k in suspects[:checks_left]:
-            codes_and_words = _covered_by_offer(result, offers, k, text)
-            line = result[k].code, result[k].values.get("fix", "")
-            if offers[k] or line not in lines:
-                lines[line] = any(
-                    _InPlace(text, edits, check).is_right(result[k], edits, codes_and_words)
-                    for edits in ([offers[k]] if offers[k] else _shown_edits(result[k], text))
+            diagnostic = diagnostics_kept[k]
+            codes_and_words = _covered_by_offer(diagnostics_kept, offers, k, text)
+            offer_key = diagnostic.code, diagnostic.values.get("fix", "")
+            if offers[k] or offer_key not in is_right_of_offer:
+                is_right_of_offer[offer_key] = any(
+                    _EditedText(text, edits, check).is_right(diagnostic, edits, codes_and_words)
+                    for edits in ([offers[k]] if offers[k] else _shown_edits(diagnostic, text))
                 )
-            if not lines[line]:
-                result[k] = _without_offer(result[k])
+            if not is_right_of_offer[offer_key]:
+                diagnostics_kept[k] = _without_offer(diagnostic)
         checks_left -= len(suspects)
         if not suspects:
             break
-    return result
+    return diagnostics_kept
 
 
 def _covered_by_offer(
@@ -199,13 +208,21 @@ def _covered_by_offer(
     )  # a header is shown without its end
     if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
         codes_and_words.add(codes.USED_BEFORE_SET.number)
-    for item, edits in zip(diagnostics, offers, strict=True):
-        if item is not diagnostics[k]:
-            codes_and_words |= {text[slice(*item.span)].upper()} - {""}
+    for diagnostic, edits in zip(diagnostics, offers, strict=True):
+        if diagnostic is not diagnostics[k]:
+            codes_and_words |= {text[slice(*diagnostic.span)].upper()} - {""}
             if overlap(edits, offers[k]):
                 # their ends are in one place
-                codes_and_words |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
-            elif item.is_mistake and not edits and item.span.start < diagnostics[k].span.start:
+                codes_and_words |= {
+                    diagnostic.code.number,
+                    codes.WRONG_END.number,
+                    codes.NOT_OPEN.number,
+                }
+            elif (
+                diagnostic.is_mistake
+                and not edits
+                and diagnostic.span.start < diagnostics[k].span.start
+            ):
                 codes_and_words.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
     return codes_and_words
 
@@ -217,13 +234,13 @@ def _shown_edits(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
     """
     fix, span = diagnostic.values["fix"], diagnostic.place or diagnostic.span
     yield [Edit(span, fix)]
-    begin = text.rfind("\n", 0, span.start) + 1
-    end = text.find("\n", span.end)
-    yield [Edit(Span(begin, end if end >= 0 else len(text)), fix)]
+    line_start = text.rfind("\n", 0, span.start) + 1
+    line_end = text.find("\n", span.end)
+    yield [Edit(Span(line_start, line_end if line_end >= 0 else len(text)), fix)]
     yield [Edit(Span(0, len(text)), fix)]
 
 
-class _InPlace:
+class _EditedText:
     """A text with changes, and the mistakes that it has then."""
 
     def __init__(self, text: str, edits: Sequence[Edit], check: Check) -> None:
@@ -243,10 +260,10 @@ class _InPlace:
             start = edit.span.start + shift
             spans += [Span(start, start + len(edit.text))] if edit in own_edits else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
-        text = next(filter(None, map(diagnostic.values.get, _SHOWN_GAPS)), "")
-        begin = self.text.find(text, max(0, spans[0].start - len(text)))
-        if begin in range(spans[-1].end):
-            spans.append(Span(begin, begin + len(text)))
+        shown_text = next(filter(None, map(diagnostic.values.get, _SHOWN_GAPS)), "")
+        shown_start = self.text.find(shown_text, max(0, spans[0].start - len(shown_text)))
+        if shown_start in range(spans[-1].end):
+            spans.append(Span(shown_start, shown_start + len(shown_text)))
         return all(
             mistake.code.number in codes_and_words
             or self._is_in_words(codes_and_words, mistake.span.start)
@@ -254,42 +271,45 @@ class _InPlace:
             if any(start <= mistake.span.start < end for start, end in spans)
         )
 
-    def _is_in_words(self, words: Set[str], place: int) -> bool:
+    def _is_in_words(self, words: Set[str], offset: int) -> bool:
         """Whether a place of the changed text is in one of these words of the text before."""
         text = self.text.upper()
-        return any(0 <= text.find(word, max(0, place - len(word) + 1)) <= place for word in words)
+        return any(0 <= text.find(word, max(0, offset - len(word) + 1)) <= offset for word in words)
 
 
 def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS_BY_CODE.get(diagnostic.code, ("fix",))
-    text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    emptied_gaps = [text, "whole", "lines", "times"]
+    shown_gap = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
+    emptied_gaps = [shown_gap, "whole", "lines", "times"]
     emptied_gaps += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
     emptied_gaps += ["right"] if diagnostic.code is codes.BRACES else []
     values = {gap: "" if gap in emptied_gaps else value for gap, value in diagnostic.values.items()}
-    if text == "near":
+    if shown_gap == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)
 
 
 def is_better(
-    after: Sequence[Diagnostic], diagnostics: Sequence[Diagnostic], edits: Sequence[Edit]
+    diagnostics_after: Sequence[Diagnostic],
+    diagnostics: Sequence[Diagnostic],
+    edits: Sequence[Edit],
 ) -> bool:
     """Whether a repair leaves fewer mistakes.
 
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
     header is right, and of several signs that are missing on a line the first one is reported.
     """
-    if _mistakes(after) != _mistakes(diagnostics):
-        return _mistakes(after) < _mistakes(diagnostics)
+    if _mistakes(diagnostics_after) != _mistakes(diagnostics):
+        return _mistakes(diagnostics_after) < _mistakes(diagnostics)
     shift = 0
-    for span, new in sorted(edits):
+    for span, new_text in sorted(edits):
         start = span.start + shift
-        end = start + len(new)
-        shift += len(new) - (span.end - span.start)
+        end = start + len(new_text)
+        shift += len(new_text) - (span.end - span.start)
         if any(
-            diagnostic.is_mistake and start <= diagnostic.span.start < end for diagnostic in after
+            diagnostic.is_mistake and start <= diagnostic.span.start < end
+            for diagnostic in diagnostics_after
         ):
             return False
     return True

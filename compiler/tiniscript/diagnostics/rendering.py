@@ -57,8 +57,8 @@ class Message(NamedTuple):
 # it is used, what may be meant as well, and that it may be a note. What is said of it belongs to
 # the message: what it leaves out, and what of it nobody wrote.
 _SECONDARY_GAPS = ("carried", "rival", "note", "last_note")
-_COPIED = frozenset(("fix", "right", "whole", "made", "note", "after", "begun"))
-_SAID_OF_IT = ("lost", "sample", "samples")
+_COPIED_GAPS = frozenset(("fix", "right", "whole", "made", "note", "after", "begun"))
+_SUPPLEMENT_GAPS = ("lost", "sample", "samples")
 
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
@@ -75,12 +75,12 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         if diagnostic.values.get(gap):
             values = {**diagnostic.values, "made": diagnostic.values.get("fix", ""), "fix": fix}
             fix = _format_text(f"label/{gap}", values, lang)
-    message = _format_text(f"{number}/message", diagnostic.values, lang)
-    for gap in _SAID_OF_IT:
+    message_text = _format_text(f"{number}/message", diagnostic.values, lang)
+    for gap in _SUPPLEMENT_GAPS:
         if diagnostic.values.get(gap):
-            sentence = message if message[-1:] in (".", "?", "!") else message + "."
+            sentence = message_text if message_text[-1:] in (".", "?", "!") else message_text + "."
             values = {**diagnostic.values, "said": sentence}
-            message = _format_text(f"label/{gap}", values, lang)
+            message_text = _format_text(f"label/{gap}", values, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -88,7 +88,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         column,
         end_line,
         end_column,
-        message,
+        message_text,
         fix,
     )
 
@@ -107,9 +107,9 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
         label = f"{_label('line', lang)} {message.line}:  "
         line = source.line_text(message.line)
         end = message.end_column - 1 if message.end_line == message.line else len(line)
-        line_shown, blanks, carets = _line_window(line, message.column - 1, end)
+        line_shown, blank_count, caret_count = _line_window(line, message.column - 1, end)
         rows.append((label + line_shown).rstrip())
-        rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
+        rows.append(" " * (len(label) + blank_count) + mark + "^" * caret_count + plain)
     text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
     code = f"   {dim}[{message.code}]{plain}"
     if not message.fix:
@@ -159,7 +159,7 @@ def _term(word: str, lang: str) -> str | None:
     return languages.find_text(CATALOGUE, f"term/{word}", lang)
 
 
-def _texts(key: str, lang: str) -> Iterator[str]:
+def _templates(key: str, lang: str) -> Iterator[str]:
     """Yield the texts of which one is taken."""
     yield _text(key, lang)
     for number in count(2):
@@ -172,41 +172,41 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    filled_text = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
-    return ("", "found") in _GAP.findall(filled_text)
+    template = _first_usable_template(key, diagnostic.values, languages.SOURCE_LANGUAGE)
+    return ("", "found") in _GAP.findall(template)
 
 
-def _first_filled_text(key: str, values: Mapping[str, str], lang: str) -> str:
+def _first_usable_template(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
-    filled_text = ""
-    for filled_text in _texts(key, lang):
-        if all(values.get(name) for _, name in _GAP.findall(filled_text)):
+    template = ""
+    for template in _templates(key, lang):
+        if all(values.get(name) for _, name in _GAP.findall(template)):
             break
-    return filled_text
+    return template
 
 
 def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
-    filled_text = _first_filled_text(key, values, lang)
+    template = _first_usable_template(key, values, lang)
 
-    def gap(match: re.Match[str]) -> str:
-        longest = FIX_CHARACTERS if match[2] in _COPIED else VALUE_CHARACTERS
+    def fill_gap(match: re.Match[str]) -> str:
+        longest = FIX_CHARACTERS if match[2] in _COPIED_GAPS else VALUE_CHARACTERS
         if match[2] == "said":
             return values["said"]  # a message, which is short as it is
         return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
 
-    return _GAP.sub(gap, filled_text)
+    return _GAP.sub(fill_gap, template)
 
 
-def _value_text(value: str, should_translate: bool, lang: str, longest: int) -> str:
+def _value_text(value: str, should_translate: bool, lang: str, most_characters: int) -> str:
     """Return a value as a message can hold it: translated, short, in one row, printable."""
     term = _term(value.removeprefix("@"), lang) if should_translate or value[:1] == "@" else None
     if term is not None:
         return term
     if should_translate:
         value = _TERM_WORD.sub(lambda match: _term(match[0], lang) or match[0], value)
-    value = " ".join(value[: longest * 4].split())
-    if len(value) > longest:
-        value = value[:longest] + "…"
+    value = " ".join(value[: most_characters * 4].split())
+    if len(value) > most_characters:
+        value = value[:most_characters] + "…"
     return "".join(_cell(character)[0] for character in value)
 
 
@@ -236,23 +236,25 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     """
     offset = max(0, start - LINE_COLUMNS)
     cells = [_cell(character) for character in line[offset : start + LINE_COLUMNS]]
-    at = start - offset
+    start_cell = start - offset
     left, right = 0, len(cells)
     if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
-        left, columns_used = at, 0
+        left, columns_used = start_cell, 0
         while left and columns_used + cells[left - 1][1] <= COLUMNS_BEFORE:
             left -= 1
             columns_used += cells[left][1]
-        right = at
+        right = start_cell
         while right < len(cells) and columns_used + cells[right][1] <= LINE_COLUMNS:
             columns_used += cells[right][1]
             right += 1
-    before = "…" if offset + left > 0 else ""
-    after = "…" if offset + right < len(line) else ""
-    line_shown = before + "".join(line_shown for line_shown, _ in cells[left:right]) + after
-    blanks = len(before) + sum(width for _, width in cells[left:at])
-    caret_count = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
-    return line_shown, blanks, max(1, caret_count)
+    ellipsis_before = "…" if offset + left > 0 else ""
+    ellipsis_after = "…" if offset + right < len(line) else ""
+    line_shown = ellipsis_before + "".join(text for text, _ in cells[left:right]) + ellipsis_after
+    blank_count = len(ellipsis_before) + sum(width for _, width in cells[left:start_cell])
+    caret_count = sum(
+        width for _, width in cells[start_cell : min(max(end - offset, start_cell), right)]
+    )
+    return line_shown, blank_count, max(1, caret_count)
 
 
 def _cell(character: str) -> tuple[str, int]:

@@ -39,7 +39,7 @@ def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
 
 def _numbers(lesson: Lesson) -> Iterator[tuple[str, float]]:
     yield "seconds", lesson.seconds
-    yield "worlds", lesson.worlds
+    yield "worlds", lesson.world_count
     yield "noise_percent", round(lesson.noise * 100, 3)
     for criterion in lesson.criteria:
         for key, value in _numbers_of(criterion, lesson):

@@ -37,10 +37,10 @@ class Task(NamedTuple):
     """What a criterion is compared with: a run, and whether its world is mirrored."""
 
     run: Run
-    mirrored: bool
+    is_flipped: bool
 
     def point(self, criterion: Criterion, number: int = 0) -> Point:
-        return point_of(criterion.places[number], self.run.world, self.mirrored)
+        return point_of(criterion.places[number], self.run.world, self.is_flipped)
 
 
 class TrackPoint(NamedTuple):
@@ -49,38 +49,38 @@ class TrackPoint(NamedTuple):
     ms: float
     x_cm: float
     y_cm: float
-    way_cm: float
+    driven_cm: float
     heading: float
 
 
 def points_between(track: tuple[Sample, ...]) -> list[TrackPoint]:
     """Return points of the way, at most a centimetre from each other."""
-    ons = [TrackPoint(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
+    points = [TrackPoint(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
     for sample in track[1:]:
-        ms, x, y, way_cm, _ = ons[-1]
+        ms, x, y, driven_cm, _ = points[-1]
         step_cm = math.dist((x, y), sample.pose[:2])
         steps = max(1, math.ceil(step_cm))
         for k in range(1, steps + 1):
-            part = k / steps
-            ons.append(
+            fraction = k / steps
+            points.append(
                 TrackPoint(
-                    ms + (sample.ms - ms) * part,
-                    x + (sample.pose.x_cm - x) * part,
-                    y + (sample.pose.y_cm - y) * part,
-                    way_cm + step_cm * part,
+                    ms + (sample.ms - ms) * fraction,
+                    x + (sample.pose.x_cm - x) * fraction,
+                    y + (sample.pose.y_cm - y) * fraction,
+                    driven_cm + step_cm * fraction,
                     sample.pose.heading,
                 )
             )
-    return ons
+    return points
 
 
 def in_seconds(ms: float) -> str:
     return f"{ms / 1000:.1f}"
 
 
-def in_cm(length: float, limit: float = math.inf) -> str:
+def in_cm(length_cm: float, limit_cm: float = math.inf) -> str:
     """Return a length in words. One that misses a limit does not look like the limit."""
-    is_less = length < limit
-    if round(length) != limit and (round(length) < limit) == is_less:
-        return f"{length:.0f}"
-    return f"{(math.floor if is_less else math.ceil)(length * 10) / 10:g}"
+    is_less = length_cm < limit_cm
+    if round(length_cm) != limit_cm and (round(length_cm) < limit_cm) == is_less:
+        return f"{length_cm:.0f}"
+    return f"{(math.floor if is_less else math.ceil)(length_cm * 10) / 10:g}"

@@ -97,10 +97,10 @@ def _drop_consequences(findings: list[Finding]) -> list[Finding]:
 
 
 def _is_still(run: Run) -> bool:
-    first = run.track[0].pose
+    first_pose = run.track[0].pose
     return all(
-        math.dist(first[:2], pose[:2]) < STILL_CM
-        and abs(pose.heading - first.heading) < STILL_DEGREES
+        math.dist(first_pose[:2], pose[:2]) < STILL_CM
+        and abs(pose.heading - first_pose.heading) < STILL_DEGREES
         for _, pose in run.track
     )
 
@@ -119,20 +119,24 @@ def _ends_at_rest(run: Run) -> bool:
 # -- ways -----------------------------------------------------------------------------------------
 
 
-def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
-    touches = task.run.touches
+def _judge_collisions(criterion: Criterion, task: Task) -> Finding | None:
+    collisions = task.run.collisions
     if criterion.places:
         place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
         arrivals_ms = (
-            at.ms for at in points_between(task.run.track) if math.dist(place, at[1:3]) <= within_cm
+            point.ms
+            for point in points_between(task.run.track)
+            if math.dist(place, point[1:3]) <= within_cm
         )
         arrival_ms = next(arrivals_ms, math.inf)
-        touches = tuple(touch for touch in touches if touch.ms < arrival_ms)
-    if not touches:
+        collisions = tuple(collision for collision in collisions if collision.ms < arrival_ms)
+    if not collisions:
         return None
-    first = touches[0]
-    seconds = {"seconds": in_seconds(first.ms)}
-    return Finding("never_touches", f"touches/{first.what}", seconds, ms=first.ms)
+    first_collision = collisions[0]
+    seconds = {"seconds": in_seconds(first_collision.ms)}
+    return Finding(
+        "never_touches", f"touches/{first_collision.obstacle}", seconds, ms=first_collision.ms
+    )
 
 
 def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
@@ -150,9 +154,9 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     point_count = len(points_left)
     off_ms: int | None = None
     for ms, pose in run.track:
-        along = math.radians(pose.heading)
-        x = pose.x_cm + ahead_cm * math.cos(along)
-        y = pose.y_cm + ahead_cm * math.sin(along)
+        heading_radians = math.radians(pose.heading)
+        x = pose.x_cm + ahead_cm * math.cos(heading_radians)
+        y = pose.y_cm + ahead_cm * math.sin(heading_radians)
         if min((distance_to(segment, x, y) for segment in segments), default=math.inf) > within_cm:
             off_ms = ms
             break
@@ -172,13 +176,13 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
-    low, high = criterion.numbers["at_least_cm"], criterion.numbers["at_most_cm"]
+    low_cm, high_cm = criterion.numbers["at_least_cm"], criterion.numbers["at_most_cm"]
     driven_cm = task.run.driven_cm
-    if low <= driven_cm <= high:
+    if low_cm <= driven_cm <= high_cm:
         return None
-    key, limit = ("short", low) if driven_cm < low else ("long", high)
+    key, limit_cm = ("short", low_cm) if driven_cm < low_cm else ("long", high_cm)
     return Finding(
-        "drives", f"drives/{key}", {"cm": in_cm(driven_cm, limit), "limit": f"{limit:g}"}
+        "drives", f"drives/{key}", {"cm": in_cm(driven_cm, limit_cm), "limit": f"{limit_cm:g}"}
     )
 
 
@@ -187,38 +191,42 @@ def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
 
 def _standstills(run: Run) -> list[tuple[int, int]]:
     """Return when the robot stood between two moves: from and to."""
-    result: list[tuple[int, int]] = []
+    standstills: list[tuple[int, int]] = []
     stopped_ms: int | None = None
     for ms, left, right in run.motors:
         if left or right:
             if stopped_ms is not None and ms > stopped_ms:
-                result.append((stopped_ms, ms))
+                standstills.append((stopped_ms, ms))
             stopped_ms = None
         elif stopped_ms is None:
             stopped_ms = ms
-    return result
+    return standstills
 
 
-def _pauses(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
-    stands = _standstills(task.run)
-    long_pauses = [item for item in stands if item[1] - item[0] >= least_s * 1000 - 1]
+    standstills = _standstills(task.run)
+    long_pauses = [
+        standstill
+        for standstill in standstills
+        if standstill[1] - standstill[0] >= least_s * 1000 - 1
+    ]
     if len(long_pauses) >= times:
         return _paused_at(criterion, task, long_pauses)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long_pauses))}
     if long_pauses:
         return Finding("pauses", "pauses/several", values)
     values["seconds"] = in_seconds(
-        max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0)
+        max((end_ms - begin_ms for begin_ms, end_ms in standstills), default=0)
     )
-    return Finding("pauses", "pauses/short" if stands else "pauses/none", values)
+    return Finding("pauses", "pauses/short" if standstills else "pauses/none", values)
 
 
-def _paused_at(criterion: Criterion, task: Task, long: list[tuple[int, int]]) -> Finding | None:
+def _paused_at(criterion: Criterion, task: Task, pauses: list[tuple[int, int]]) -> Finding | None:
     """Compare where the robot stood in these times with where it should."""
     track = task.run.track
-    poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in long]
-    seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in long]
+    poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in pauses]
+    seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in pauses]
     return _first_missed_place(
         criterion, task, poses, {"least": f"{criterion.numbers['at_least_seconds']:g}"}, seconds
     )
@@ -240,27 +248,27 @@ def _first_missed_place(
         gaps_cm = [math.dist(place, pose[:2]) for pose in poses]
         nearest_cm = min(gaps_cm)
         if nearest_cm > within_cm:
-            told = {"number": str(number + 1), "within": f"{within_cm:g}"}
-            told["cm"] = in_cm(nearest_cm, within_cm)
-            told["seconds"] = seconds[gaps_cm.index(nearest_cm)]
-            return Finding(kind, key, {**values, **told}, criterion.labels)
+            place_values = {"number": str(number + 1), "within": f"{within_cm:g}"}
+            place_values["cm"] = in_cm(nearest_cm, within_cm)
+            place_values["seconds"] = seconds[gaps_cm.index(nearest_cm)]
+            return Finding(kind, key, {**values, **place_values}, criterion.labels)
     return None
 
 
-def _order(criterion: Criterion, task: Task) -> Finding | None:
-    happened = iter(task.run.happened)
-    before = ""
+def _judge_order(criterion: Criterion, task: Task) -> Finding | None:
+    event_words = iter(task.run.event_words)
+    previous_word = ""
     for k, word in enumerate(criterion.words):
-        if word not in happened:  # which goes on after the one that it has found
-            times = criterion.words[:k].count(before) if word in criterion.words[:k] else 1
-            return Finding("order", f"order/{before}/{word}", {"times": str(times)})
-        before = word
+        if word not in event_words:  # which goes on after the one that it has found
+            times = criterion.words[:k].count(previous_word) if word in criterion.words[:k] else 1
+            return Finding("order", f"order/{previous_word}/{word}", {"times": str(times)})
+        previous_word = word
     return None
 
 
 def _judge_end(criterion: Criterion, task: Task) -> Finding | None:
-    over = {"seconds": in_seconds(task.run.end_ms)}
-    return None if task.run.ending == DONE else Finding("ends", "ends", over)
+    values = {"seconds": in_seconds(task.run.end_ms)}
+    return None if task.run.ending == DONE else Finding("ends", "ends", values)
 
 
 def _judge_keys(criterion: Criterion, task: Task) -> Finding | None:
@@ -306,14 +314,14 @@ def _stood_still(run: Run, from_ms: float, to_ms: float) -> bool:
 def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
     """Return how far a robot went ahead in a time, and how far it turned to the left."""
     ahead_cm = degrees = 0.0
-    for before, after in pairwise(run.track):
-        if from_ms <= before.ms and after.ms <= to_ms:
-            along = math.radians(before.pose.heading)
-            dx = after.pose.x_cm - before.pose.x_cm
-            dy = after.pose.y_cm - before.pose.y_cm
-            ahead_cm += dx * math.cos(along) + dy * math.sin(along)
-            turned = after.pose.heading - before.pose.heading
-            degrees += (turned + 180) % 360 - 180
+    for sample, next_sample in pairwise(run.track):
+        if from_ms <= sample.ms and next_sample.ms <= to_ms:
+            heading_radians = math.radians(sample.pose.heading)
+            dx = next_sample.pose.x_cm - sample.pose.x_cm
+            dy = next_sample.pose.y_cm - sample.pose.y_cm
+            ahead_cm += dx * math.cos(heading_radians) + dy * math.sin(heading_radians)
+            turn_degrees = next_sample.pose.heading - sample.pose.heading
+            degrees += (turn_degrees + 180) % 360 - 180
     return ahead_cm, degrees
 
 
@@ -324,20 +332,20 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     run, times = task.run, int(criterion.numbers["times"])
     sensor_name = criterion.words[0] if criterion.words else ""
     expected_number, tolerance = criterion.numbers["value"], criterion.numbers["tolerance"] * ONE
-    values = {"times": str(times), "found": str(len(run.shown)), "what": sensor_name}
-    if not run.shown:
+    values = {"times": str(times), "found": str(len(run.shown_values)), "what": sensor_name}
+    if not run.shown_values:
         return Finding("shows", "shows/nothing", values)
     right_count = 0
-    for item in run.shown:
-        expected = _expected_value(item, sensor_name, expected_number, run)
-        right_count += expected is None or abs(item.value - expected) <= tolerance
+    for shown_value in run.shown_values:
+        expected = _expected_value(shown_value, sensor_name, expected_number, run)
+        right_count += expected is None or abs(shown_value.value - expected) <= tolerance
     if right_count >= times:
         return None
-    last = run.shown[-1]
-    expected = _expected_value(last, sensor_name, expected_number, run)
-    if expected is None or right_count == len(run.shown):
+    last_value = run.shown_values[-1]
+    expected = _expected_value(last_value, sensor_name, expected_number, run)
+    if expected is None or right_count == len(run.shown_values):
         return Finding("shows", "shows/few", values)
-    values |= {"value": as_text(last.value), "wanted": as_text(round(expected / 100) * 100)}
+    values |= {"value": as_text(last_value.value), "wanted": as_text(round(expected / 100) * 100)}
     key = "time" if sensor_name == TIME else "sensor" if sensor_name else "value"
     return Finding("shows", f"shows/{key}", values)
 
@@ -364,7 +372,7 @@ def _stopped_ms(shown_value: ShownValue, run: Run) -> int:
     return since_ms
 
 
-def _beeps(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_beeps(criterion: Criterion, task: Task) -> Finding | None:
     beeps = task.run.beeps
     times, pitches = int(criterion.numbers["times"]), int(criterion.numbers["pitches"])
     pitch_count = len({beep.hertz for beep in beeps})
@@ -380,10 +388,10 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     return _first_missed_place(criterion, task, [beep.pose for beep in beeps], values, seconds)
 
 
-def _blinks(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_blinks(criterion: Criterion, task: Task) -> Finding | None:
     run, (actuator_name,), times = task.run, criterion.words, int(criterion.numbers["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
-    switches = [item for item in run.switched if names[item.actuator] == actuator_name]
+    switches = [switch for switch in run.switched_on if names[switch.actuator] == actuator_name]
     moving_count = sum(switch.is_moving for switch in switches)
     values = {"what": actuator_name, "times": str(times), "found": str(moving_count)}
     if moving_count >= times:
@@ -393,14 +401,14 @@ def _blinks(criterion: Criterion, task: Task) -> Finding | None:
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     **place_judging.JUDGES,
-    "never_touches": _never_touches,
+    "never_touches": _judge_collisions,
     "follows": _judge_line,
     "drives": _judge_distance,
-    "pauses": _pauses,
+    "pauses": _judge_pauses,
     "shows": _judge_shown,
-    "beeps": _beeps,
-    "blinks": _blinks,
+    "beeps": _judge_beeps,
+    "blinks": _judge_blinks,
     "obeys": _judge_keys,
-    "order": _order,
+    "order": _judge_order,
     "ends": _judge_end,
 }

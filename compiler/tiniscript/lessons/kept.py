@@ -21,7 +21,7 @@ STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL after them is not
 class Question(NamedTuple):
     """A question at a place of the text that kept the robot.
 
-    It gave `truth` from the start; with `is_ever` the robot waited for `truth`. `inside` are its
+    It gave `truth` from the start; with `is_ever` the robot waited for `truth`. `words` are its
     words.
     """
 
@@ -29,28 +29,28 @@ class Question(NamedTuple):
     word: str
     truth: str
     is_ever: bool
-    inside: list[str]
+    words: list[str]
 
 
 class _Block:
     """An open block: whether it stands in one that repeats, and what it asks."""
 
-    def __init__(self, start: int, word: str, inside: list[str], is_repeated: bool) -> None:
-        self.start, self.word, self.inside = start, word, inside
+    def __init__(self, start: int, word: str, words: list[str], is_repeated: bool) -> None:
+        self.start, self.word, self.words = start, word, words
         self.is_repeated = is_repeated
         self.is_else = False
-        self.needed = ""  # what its question must give for a move in it, once there is one
+        self.needed_truth = ""  # what its question must give for a move in it, once there is one
 
     def question(self) -> Question | None:
         """Return its question, if a robot that does not move may be kept by it."""
-        if self.word == "WHILE" and not self.needed:  # it waits
-            return Question(self.start, self.word, "FALSE", True, self.inside)
-        if self.word in ("LOOP", "DEF", "TASK") or not self.needed:
+        if self.word == "WHILE" and not self.needed_truth:  # it waits
+            return Question(self.start, self.word, "FALSE", True, self.words)
+        if self.word in ("LOOP", "DEF", "TASK") or not self.needed_truth:
             return None
         is_ever = self.word == "WHEN" or (self.is_repeated and self.word == "IF")
-        other = "FALSE" if self.needed == "TRUE" else "TRUE"
+        opposite = "FALSE" if self.needed_truth == "TRUE" else "TRUE"
         return Question(
-            self.start, self.word, self.needed if is_ever else other, is_ever, self.inside
+            self.start, self.word, self.needed_truth if is_ever else opposite, is_ever, self.words
         )
 
 
@@ -63,18 +63,18 @@ def find_moves(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[
     ]
 
 
-def _has_power(tokens: Sequence[Token], at: int) -> bool:
-    values = _values(tokens, at)
+def _has_power(tokens: Sequence[Token], index: int) -> bool:
+    values = _values(tokens, index)
     zeros = [len(value) == 1 and value[0].kind == NUMBER and not float(value[0].text)
              for value in values]  # fmt: skip
-    return not all(zeros) if tokens[at].text == "M" else not any(zeros)
+    return not all(zeros) if tokens[index].text == "M" else not any(zeros)
 
 
-def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
+def _values(tokens: Sequence[Token], index: int) -> list[list[Token]]:
     """Return the values between the brackets after a word."""
     values: list[list[Token]] = [[]]
     depth = 0
-    for token in tokens[at + 1 :]:
+    for token in tokens[index + 1 :]:
         depth += (token.text == "(") - (token.text == ")")
         if depth < 1:
             break
@@ -85,12 +85,12 @@ def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
     return values
 
 
-def end_of_values(tokens: Sequence[Token], at: int) -> int:
+def end_of_values(tokens: Sequence[Token], index: int) -> int:
     """Return where in the text the bracket after a word closes, or where the word ends."""
-    values = [token for value in _values(tokens, at) for token in value]
-    closing_brackets = [token for token in tokens[at + 1 :] if token.text == ")"]
-    last = values[-1].end if values else tokens[at].end
-    return next((token.end for token in closing_brackets if token.start >= last), last)
+    values = [token for value in _values(tokens, index) for token in value]
+    closing_brackets = [token for token in tokens[index + 1 :] if token.text == ")"]
+    values_end = values[-1].end if values else tokens[index].end
+    return next((token.end for token in closing_brackets if token.start >= values_end), values_end)
 
 
 def count_ahead(tokens: Sequence[Token]) -> int:
@@ -101,10 +101,10 @@ def count_ahead(tokens: Sequence[Token]) -> int:
     )
 
 
-def _is_turn(tokens: Sequence[Token], at: int) -> bool:
+def _is_turn(tokens: Sequence[Token], index: int) -> bool:
     """Whether a move is M(-x, x) or M(x, -x)."""
-    values = [[token.text for token in value] for value in _values(tokens, at)]
-    if tokens[at].text != "M" or len(values) != 2:
+    values = [[token.text for token in value] for value in _values(tokens, index)]
+    if tokens[index].text != "M" or len(values) != 2:
         return False
     left, right = values
     return left == ["-", *right] or right == ["-", *left]
@@ -127,38 +127,54 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
     questions: list[Question] = []
     blocks: list[_Block] = []
     movers = set[str]()  # words of DEF with a move
-    before = head = -1  # the words of the statements that an UNTIL may belong to, or to a wait
+    previous_index = (
+        last_index
+    ) = -1  # the words of the statements that an UNTIL may belong to, or to a wait
     for k, token in enumerate(tokens):
         word = ALIASES.get(token.text, token.text)
         if k in moves or word in movers:
             for block in blocks:
-                block.needed = block.needed or ("FALSE" if block.is_else else "TRUE")
+                block.needed_truth = block.needed_truth or ("FALSE" if block.is_else else "TRUE")
                 if block.word == "DEF":
-                    movers |= set(block.inside)
+                    movers |= set(block.words)
         if word in BLOCK_ENDS:
             is_repeated = any(block.word in ("LOOP", "WHILE", "DEF") for block in blocks)
-            inside = [tokens[k + 1].text] if word == "DEF" else _words(tokens, k)
-            blocks.append(_Block(token.start, word, inside, is_repeated))
+            words = [tokens[k + 1].text] if word == "DEF" else _words(tokens, k)
+            blocks.append(_Block(token.start, word, words, is_repeated))
         elif word == "ELSE" and blocks:
             blocks[-1].is_else = True
         elif word in BLOCK_ENDS.values() and blocks:
-            asked = blocks.pop().question()
-            questions += [asked] if asked else []
-        elif word == "UNTIL" and head >= 0:
-            is_m = tokens[head].text == "W" and before in moves and tokens[before].text == "M"
-            is_wait = tokens[head].text == "W" and "FOREVER" in _words(tokens, head) and not is_m
-            if head in moves or is_wait or is_m:
+            question_of_block = blocks.pop().question()
+            questions += [question_of_block] if question_of_block else []
+        elif word == "UNTIL" and last_index >= 0:
+            is_m = (
+                tokens[last_index].text == "W"
+                and previous_index in moves
+                and tokens[previous_index].text == "M"
+            )
+            is_wait = (
+                tokens[last_index].text == "W"
+                and "FOREVER" in _words(tokens, last_index)
+                and not is_m
+            )
+            if last_index in moves or is_wait or is_m:
                 questions.append(Question(token.start, word, "TRUE", is_wait, _words(tokens, k)))
         elif word in MOVES or word in STATEMENTS:
-            before, head = head, k
+            previous_index, last_index = last_index, k
     if not moves:
         return None
     if ending == DONE:
-        questions = [each for each in questions if not each.is_ever or each.word == "IF"]
-        questions = [_question_at_start(each) for each in questions]
+        questions = [
+            candidate for candidate in questions if not candidate.is_ever or candidate.word == "IF"
+        ]
+        questions = [_question_at_start(candidate) for candidate in questions]
     # A WHILE with moves that the robot was in when its time was over has let it in.
-    questions.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
-                                 each.start))  # fmt: skip
+    questions.sort(
+        key=lambda candidate: (
+            ending != DONE and not candidate.is_ever and candidate.word == "WHILE",
+            candidate.start,
+        )
+    )
     return questions[0] if questions else None
 
 
@@ -169,5 +185,5 @@ def _question_at_start(question: Question) -> Question:
     return question._replace(is_ever=False, truth="FALSE" if question.truth == "TRUE" else "TRUE")
 
 
-def _words(tokens: Sequence[Token], at: int) -> list[str]:
-    return [token.text for value in _values(tokens, at) for token in value if token.kind == WORD]
+def _words(tokens: Sequence[Token], index: int) -> list[str]:
+    return [token.text for value in _values(tokens, index) for token in value if token.kind == WORD]

@@ -73,7 +73,7 @@ class Lesson(NamedTuple):
     """A lesson. `name` is that of its folder.
 
     A program has `seconds` of the robot's time in each world, and passes where it meets all
-    criteria in the worlds of the seeds 1 to `worlds`. Sensors and motors are off by about
+    criteria in the worlds of the seeds 1 to `world_count`. Sensors and motors are off by about
     `noise`, a fraction. `is_mirrored`: in half of the worlds left and right are exchanged.
     `presses` are played in each world, one after the other.
     """
@@ -82,7 +82,7 @@ class Lesson(NamedTuple):
     robot: str
     titles: Mapping[str, str]
     seconds: float
-    worlds: int
+    world_count: int
     noise: float
     is_mirrored: bool
     world: World
@@ -103,7 +103,7 @@ class Answer(NamedTuple):
 
     program: str
     labels: Mapping[str, str]
-    said: Mapping[str, str]
+    sentences: Mapping[str, str]
 
 
 LARGEST_NUMBER = 10_000.0  # of any number
@@ -118,7 +118,7 @@ class Number(NamedTuple):
     default: float | None = None
 
 
-class Kind(NamedTuple):
+class CriterionKind(NamedTuple):
     """What a criterion takes besides `kind`, and what it means.
 
     `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
@@ -137,7 +137,7 @@ class Kind(NamedTuple):
     has_area: bool = False
 
 
-DEVICE_KINDS = ("value", "sensor", "switch")  # of `Kind.words`, whose key is `what`
+DEVICE_KINDS = ("value", "sensor", "switch")  # of `CriterionKind.words`, whose key is `what`
 REMOVABLE_BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # what a program may be tried without
 EVENTS = ("moves", "stops", "beeps", "shows")
 TIMES = Number("times", 1, 100, 1)
@@ -145,27 +145,27 @@ WITHIN = Number("within_cm", 1, 500, 10)
 AREA_KEYS = ("x_cm", "y_cm")  # from and to, around a place
 
 # fmt: off
-KINDS: dict[str, Kind] = {
-    "ends_in": Kind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
-    "reaches": Kind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
+KINDS: dict[str, CriterionKind] = {
+    "ends_in": CriterionKind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
+    "reaches": CriterionKind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
                     (WITHIN, Number("by_seconds", 0.1, LARGEST_NUMBER, LARGEST_NUMBER), Number("by_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER)), places=1, words="sensor", flags=("either_way",)),
-    "stays_in": Kind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
-    "stands_before": Kind("at the end it stands `low_cm` to `high_cm` from whatever is ahead of it; with `at`, in front of that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
-    "faces": Kind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
-    "never_touches": Kind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
-    "follows": Kind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, LARGEST_NUMBER))),
-    "drives": Kind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, LARGEST_NUMBER, 0), Number("at_most_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER))),
-    "pauses": Kind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
-    "shows": Kind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
+    "stays_in": CriterionKind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
+    "stands_before": CriterionKind("at the end it stands `low_cm` to `high_cm` from whatever is ahead of it; with `at`, in front of that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
+    "faces": CriterionKind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
+    "never_touches": CriterionKind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
+    "follows": CriterionKind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, LARGEST_NUMBER))),
+    "drives": CriterionKind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, LARGEST_NUMBER, 0), Number("at_most_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER))),
+    "pauses": CriterionKind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
+    "shows": CriterionKind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -LARGEST_NUMBER, LARGEST_NUMBER, LARGEST_NUMBER + 1), Number("tolerance", 0, LARGEST_NUMBER, 0)), words="value"),
-    "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
-    "blinks": Kind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
-    "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
-    "obeys": Kind("it obeys the keys: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands still while nothing is held"),
-    "ends": Kind("the program ends by itself"),
-    "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than a wait, an UNTIL if it checks something", (TIMES,), words="word"),
-    "needs": Kind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, if the words defined by DEF are left out, or if the other tasks are", words="block"),
-    "moves": Kind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
+    "beeps": CriterionKind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
+    "blinks": CriterionKind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
+    "order": CriterionKind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
+    "obeys": CriterionKind("it obeys the keys: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands still while nothing is held"),
+    "ends": CriterionKind("the program ends by itself"),
+    "uses": CriterionKind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than a wait, an UNTIL if it checks something", (TIMES,), words="word"),
+    "needs": CriterionKind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, if the words defined by DEF are left out, or if the other tasks are", words="block"),
+    "moves": CriterionKind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
 }
 # fmt: on
 

@@ -27,19 +27,23 @@ def plan(lesson: Lesson, title: str) -> str:
     """Return the drawing, one unit of which is a centimetre. `title` is for who cannot see it."""
     world = lesson.world
     width, height = world.width_cm, world.height_cm
-    moved = {(variation.place.part, variation.place.number) for variation in lesson.variations}
+    varied_parts = {
+        (variation.place.part, variation.place.number) for variation in lesson.variations
+    }
     parts = [_grid(width, height)]
 
     def dash(part: str, number: int) -> str:
-        return DASHES if (part, number) in moved else ""
+        return DASHES if (part, number) in varied_parts else ""
 
-    def draw(kind: str, points: Iterable[Point], look: str, part: str, number: int) -> None:
-        row = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in points)
-        parts.append(f'<{kind} points="{row}" {look}{dash(part, number)}/>')
+    def draw(kind: str, points: Iterable[Point], attributes: str, part: str, number: int) -> None:
+        coordinates = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in points)
+        parts.append(f'<{kind} points="{coordinates}" {attributes}{dash(part, number)}/>')
 
     for number, line in enumerate(world.lines, 1):
-        look = f'fill="none" stroke="#000" stroke-width="{line.width_cm:g}" stroke-linejoin="round"'
-        draw("polyline", line.points, look, "lines", number)
+        attributes = (
+            f'fill="none" stroke="#000" stroke-width="{line.width_cm:g}" stroke-linejoin="round"'
+        )
+        draw("polyline", line.points, attributes, "lines", number)
     for number, box in enumerate(world.boxes, 1):
         draw("polygon", box, 'fill="#bbb" stroke="#333"', "boxes", number)
     for number, wall in enumerate(world.walls, 1):
@@ -51,7 +55,7 @@ def plan(lesson: Lesson, title: str) -> str:
             f"{dash('lamps', number)}/>"
         )
     parts += _goals(lesson)
-    parts.append(_robot(lesson, DASHES if any(part == "start" for part, _ in moved) else ""))
+    parts.append(_robot(lesson, DASHES if any(part == "start" for part, _ in varied_parts) else ""))
     if world.has_border:
         parts.append(
             f'<rect width="{width:g}" height="{height:g}" fill="none" stroke="#333"'
@@ -117,14 +121,14 @@ def _robot(lesson: Lesson, dash: str) -> str:
     start = lesson.world.start
     height = lesson.world.height_cm
     outline = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in hull.outline(start))
-    along = math.radians(start.heading)
+    heading_radians = math.radians(start.heading)
     x, y = start.x_cm, height - start.y_cm
-    tip_x, tip_y = x + 26 * math.cos(along), y - 26 * math.sin(along)
-    barbs = [(tip_x - 6 * math.cos(along + turn), tip_y + 6 * math.sin(along + turn))
-             for turn in (0.5, -0.5)]  # fmt: skip
-    head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [barbs[0], (tip_x, tip_y), barbs[1]])
+    tip_x, tip_y = x + 26 * math.cos(heading_radians), y - 26 * math.sin(heading_radians)
+    barb_angles = [heading_radians + turn for turn in (0.5, -0.5)]
+    barbs = [(tip_x - 6 * math.cos(angle), tip_y + 6 * math.sin(angle)) for angle in barb_angles]
+    arrow_head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [barbs[0], (tip_x, tip_y), barbs[1]])
     return (
         f'<polygon points="{outline}" fill="#eee" stroke="#333" stroke-width="1.5"{dash}/>'
         f'<path d="M{x:.1f} {y:.1f}L{tip_x:.1f} {tip_y:.1f}M{barbs[0][0]:.1f} {barbs[0][1]:.1f}'
-        f'{head}" fill="none" stroke="#333" stroke-width="1.5"/>'
+        f'{arrow_head}" fill="none" stroke="#333" stroke-width="1.5"/>'
     )

@@ -26,12 +26,12 @@ class Block(NamedTuple):
     """`kind` is title, heading, paragraph, list, checks, steps, table or program.
 
     `rows` has a row of cells for each line of a table, one cell for each item or line otherwise.
-    `first` is the number of the first step.
+    `first_number` is the number of the first step.
     """
 
     kind: str
     rows: tuple[tuple[str, ...], ...]
-    first: int = 1
+    first_number: int = 1
 
 
 def blocks(text: str) -> list[Block]:
@@ -63,23 +63,23 @@ def blocks(text: str) -> list[Block]:
 def _paragraph(lines: list[str]) -> list[Block]:
     """Return the blocks of lines without an empty one among them."""
     if lines[0].startswith("|"):
-        inside = (line.strip().removeprefix("|").removesuffix("|") for line in lines)
-        rows = [tuple(cell.strip() for cell in row.split("|")) for row in inside]
-        kept = tuple(row for row in rows if set("".join(row)) - set("-: "))
-        return [Block("table", kept)] if kept else []
-    matches: list[tuple[str, list[str]]] = []
+        row_texts = (line.strip().removeprefix("|").removesuffix("|") for line in lines)
+        rows = [tuple(cell.strip() for cell in row.split("|")) for row in row_texts]
+        rows_kept = tuple(row for row in rows if set("".join(row)) - set("-: "))
+        return [Block("table", rows_kept)] if rows_kept else []
+    groups: list[tuple[str, list[str]]] = []
     for line in lines:
-        item = ITEM.match(line)
-        kind = KINDS.get(item[1], "steps") if item else "paragraph"
-        if item is None and matches:
-            matches[-1][1][-1] += " " + line.strip()
-        elif matches and matches[-1][0] == kind:
-            matches[-1][1].append(item[2] if item else line)
+        match = ITEM.match(line)
+        kind = KINDS.get(match[1], "steps") if match else "paragraph"
+        if match is None and groups:
+            groups[-1][1][-1] += " " + line.strip()
+        elif groups and groups[-1][0] == kind:
+            groups[-1][1].append(match[2] if match else line)
         else:
-            matches.append((kind, [item[2] if item else line]))
+            groups.append((kind, [match[2] if match else line]))
     number = re.match(r"[0-9]+", lines[0])
-    first = int(number[0]) if number and matches[0][0] == "steps" else 1
-    return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in matches]
+    first_number = int(number[0]) if number and groups[0][0] == "steps" else 1
+    return [Block(kind, tuple((row,) for row in rows), first_number) for kind, rows in groups]
 
 
 def printed_part(page: str) -> str:
@@ -92,15 +92,15 @@ def studio_part(page: str) -> str:
     return _section(page, {"page": "", "hint": HINT})
 
 
-def _section(page: str, kept: dict[str, str]) -> str:
-    kept_lines = []
+def _section(page: str, prefix_of_mark: dict[str, str]) -> str:
+    lines_kept = []
     for line in page.split("\n"):
         mark = MARK.match(line)
         if mark is None:
-            kept_lines.append(line)
-        elif mark[2] in kept:
-            kept_lines.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
-    return "\n".join(kept_lines)
+            lines_kept.append(line)
+        elif mark[2] in prefix_of_mark:
+            lines_kept.append((mark[1] or "") + prefix_of_mark[mark[2]] + line[mark.end() :])
+    return "\n".join(lines_kept)
 
 
 def as_text(page: str) -> str:
@@ -114,16 +114,16 @@ def _as_text(block: Block) -> str:
         return "\n".join(f"    {row}" for (row,) in block.rows)
     rows = [tuple(re.sub(r"\*\*|`", "", cell) for cell in row) for row in block.rows]
     if block.kind == "table":
-        wide = [max(len(row[k]) for row in rows if k < len(row)) for k in range(len(rows[0]))]
+        widths = [max(len(row[k]) for row in rows if k < len(row)) for k in range(len(rows[0]))]
         return "\n".join(
-            "  ".join(f"{cell:{width}}" for cell, width in zip(row, wide, strict=False)).rstrip()
+            "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=False)).rstrip()
             for row in rows
         )
     if block.kind in ("title", "heading"):
         (title,) = rows[0]
         return f"{title}\n{('=' if block.kind == 'title' else '-') * len(title)}"
     lines = []
-    for number, (row,) in enumerate(rows, block.first):
+    for number, (row,) in enumerate(rows, block.first_number):
         mark = {"list": "- ", "checks": "[ ] ", "steps": f"{number}. "}.get(block.kind, "")
         lines.append(fill(row, WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark)))
     return "\n".join(lines)

@@ -13,7 +13,7 @@ from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import judge_run
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
-from tiniscript.lessons.text_judging import explain, idle_finding, judge_text, without_word
+from tiniscript.lessons.text_judging import explain, idle_finding, judge_text, replace_word
 from tiniscript.robots.profile import Robot
 
 PASSED, FAILED = "passed", "failed"
@@ -41,16 +41,16 @@ class Marking:
     def __init__(
         self,
         text: str,
-        made: Callable[[str], Image | None],
+        compile_image: Callable[[str], Image | None],
         robot: Robot,
         lesson: Lesson,
         seeds: Sequence[int],
     ) -> None:
-        """`made` returns the image of a text, or None where that has mistakes."""
-        image = made(text)
+        """`compile_image` returns the image of a text, or None where that has mistakes."""
+        image = compile_image(text)
         assert image is not None, "a program with mistakes"
         self._image = image
-        self._made = made
+        self._compile_image = compile_image
         self._robot = robot
         self._lesson = lesson
         self._all_seeds = list(seeds)
@@ -58,13 +58,13 @@ class Marking:
         self._text = text
         self._text_findings = judge_text(text, lesson)
         self._trial: Trial | None = None  # none before a world
-        self._needs = [
+        self._words_to_try = [
             (word, lesson._replace(criteria=lesson.criteria[:k]))
             for k, criterion in enumerate(lesson.criteria)
             if criterion.kind == "needs"
             for word in criterion.words
         ]
-        self._done: Run | None = None  # the last run of the task, once it is done
+        self._passed_run: Run | None = None  # the last run of the task, once it is done
         self._word_left_out = ""  # the word that the program is tried without now
 
     @property
@@ -89,32 +89,34 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        result = judge_run(run, self._lesson)
-        if result and self._word_left_out:
-            return self._next(run)
-        findings = explain(result, self._text, self._lesson, run.ending)
+        run_findings = judge_run(run, self._lesson)
+        if run_findings and self._word_left_out:
+            return self._try_next_word(run)
+        findings = explain(run_findings, self._text, self._lesson, run.ending)
         if findings:
-            texts = {finding.key for finding in findings}
-            text_findings = [finding for finding in self._text_findings if finding.key not in texts]
+            keys = {finding.key for finding in findings}
+            text_findings = [finding for finding in self._text_findings if finding.key not in keys]
             return Outcome(FAILED, self.seed, (*findings, *text_findings), run)
         if len(self._seeds) > 1:
             del self._seeds[0]
             self._trial = None
             return None
         if self._word_left_out:
-            assert self._done is not None
-            return Outcome(FAILED, 0, (idle_finding(self._word_left_out, self._text),), self._done)
-        self._done = run
+            assert self._passed_run is not None
+            return Outcome(
+                FAILED, 0, (idle_finding(self._word_left_out, self._text),), self._passed_run
+            )
+        self._passed_run = run
         if self._text_findings:
             return Outcome(FAILED, 0, tuple(self._text_findings), run)
-        return self._next(run)
+        return self._try_next_word(run)
 
-    def _next(self, run: Run) -> Outcome | None:
+    def _try_next_word(self, run: Run) -> Outcome | None:
         """Try the program without the next word that the lesson needs; it passes without more."""
-        while self._needs:
-            self._word_left_out, self._lesson = self._needs.pop(0)
-            image = self._made(without_word(self._word_left_out, self._text))
+        while self._words_to_try:
+            self._word_left_out, self._lesson = self._words_to_try.pop(0)
+            image = self._compile_image(replace_word(self._word_left_out, self._text))
             if image is not None:
                 self._image, self._seeds, self._trial = image, list(self._all_seeds), None
                 return None
-        return Outcome(PASSED, 0, (), self._done or run)
+        return Outcome(PASSED, 0, (), self._passed_run or run)

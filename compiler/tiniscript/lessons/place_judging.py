@@ -27,7 +27,7 @@ OTHER_WAY_DEGREES = 150.0
 STRETCH_CM, APPROACH_SHARE = 20.0, 0.9  # the end of a way, and how much of it must lead to a place
 
 
-def _end(run: Run) -> Pose:
+def _end_pose(run: Run) -> Pose:
     return run.track[-1].pose
 
 
@@ -35,7 +35,7 @@ def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bo
     """Whether one of the points is not in the area of a criterion."""
     assert criterion.area is not None
     (left, right), (low, high) = criterion.area
-    if task.mirrored:
+    if task.is_flipped:
         low, high = -high, -low
     x, y = task.point(criterion)
     return not all(left <= point.x - x <= right and low <= point.y - y <= high for point in points)
@@ -44,7 +44,7 @@ def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bo
 def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
     place, run = task.point(criterion), task.run
     within_cm = criterion.numbers["within_cm"]
-    start, end = run.world.start, _end(run)
+    start, end = run.world.start, _end_pose(run)
     away_cm = math.dist(place, end[:2])
     is_missed = away_cm > within_cm
     if criterion.area:
@@ -71,28 +71,36 @@ def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
 
 def _came_back(gaps_cm: list[float], within_cm: float) -> bool:
     """Whether it had left a place, and came by there again."""
-    left = next((k for k, gap in enumerate(gaps_cm) if gap > within_cm), len(gaps_cm))
-    return any(gap <= within_cm for gap in gaps_cm[left:])
+    left_index = next((k for k, gap_cm in enumerate(gaps_cm) if gap_cm > within_cm), len(gaps_cm))
+    return any(gap_cm <= within_cm for gap_cm in gaps_cm[left_index:])
 
 
 def _judge_places(criterion: Criterion, task: Task) -> Finding | None:
     order = range(len(criterion.places))
-    reached, finding = _count_reached(criterion, task, order)
+    count, finding = _count_reached(criterion, task, order)
     if finding is not None and criterion.numbers["either_way"]:
-        backwards, other = _count_reached(criterion, task, order[::-1])
-        finding = other if backwards > reached else finding
+        count_backwards, other_finding = _count_reached(criterion, task, order[::-1])
+        finding = other_finding if count_backwards > count else finding
     return finding
 
 
-def _gap(criterion: Criterion, task: Task, number: int, at: TrackPoint) -> float:
+def _gap_cm(criterion: Criterion, task: Task, number: int, point: TrackPoint) -> float:
     """Return how far a place is from the robot's middle, or a part of the world from a sensor."""
     if not criterion.words:
-        return math.dist(task.point(criterion, number), (at.x_cm, at.y_cm))
+        return math.dist(task.point(criterion, number), (point.x_cm, point.y_cm))
     sensor = task.run.robot.profile.body.places[criterion.words[0]]
-    along = math.radians(at.heading)
-    x = at.x_cm + sensor.x_cm * math.cos(along) - sensor.y_cm * math.sin(along)
-    y = at.y_cm + sensor.x_cm * math.sin(along) + sensor.y_cm * math.cos(along)
-    shape = shape_of(criterion.places[number], task.run.world, task.mirrored)
+    heading_radians = math.radians(point.heading)
+    x = (
+        point.x_cm
+        + sensor.x_cm * math.cos(heading_radians)
+        - sensor.y_cm * math.sin(heading_radians)
+    )
+    y = (
+        point.y_cm
+        + sensor.x_cm * math.sin(heading_radians)
+        + sensor.y_cm * math.cos(heading_radians)
+    )
+    shape = shape_of(criterion.places[number], task.run.world, task.is_flipped)
     return min(distance(segment, x, y) for segment in shape)
 
 
@@ -101,17 +109,17 @@ def _count_reached(
 ) -> tuple[int, Finding | None]:
     """Return how many of its places the robot has reached in this order, and what is missing."""
     within_cm = criterion.numbers["within_cm"]
-    way = points_between(task.run.track)
-    points = iter(way)
-    at = way[0]
+    track_points = points_between(task.run.track)
+    points = iter(track_points)
+    point = track_points[0]
     for count, number in enumerate(order):
         place = task.point(criterion, number)
-        since, nearest = at, None
+        origin, nearest = point, None
         nearest_cm = math.inf
-        for at in points:
-            gap_cm = _gap(criterion, task, number, at)
+        for point in points:
+            gap_cm = _gap_cm(criterion, task, number, point)
             if gap_cm < nearest_cm:
-                nearest, nearest_cm = at, gap_cm
+                nearest, nearest_cm = point, gap_cm
             if gap_cm <= within_cm:
                 break
         else:
@@ -119,33 +127,37 @@ def _count_reached(
             values |= {"within": f"{within_cm:g}", "seconds": in_seconds(task.run.end_ms)}
             if nearest is not None:
                 values["cm"] = in_cm(nearest_cm, within_cm)
-            key = _missed_sentence(criterion, task, way, since, place, nearest)
+            key = _missed_sentence(criterion, task, track_points, origin, place, nearest)
             if count and key in ("several", "time"):
-                past_cm = _overshoot_cm(criterion, task, order[count - 1], since, way)
+                past_cm = _overshoot_cm(criterion, task, order[count - 1], origin, track_points)
                 if past_cm > within_cm:
                     key = "past"
                     values |= {"number": str(order[count - 1] + 1), "cm": in_cm(past_cm)}
             return count, Finding("reaches", f"reaches/{key}", values, criterion.labels)
-    return len(order), _too_long(criterion, at)
+    return len(order), _judge_length(criterion, point)
 
 
 def _overshoot_cm(
-    criterion: Criterion, task: Task, number: int, since: TrackPoint, way: list[TrackPoint]
+    criterion: Criterion,
+    task: Task,
+    number: int,
+    origin: TrackPoint,
+    track_points: list[TrackPoint],
 ) -> float:
     """Return how far from a place that it had reached the robot stood for the first time."""
-    for before, at in pairwise(way[way.index(since) :]):
-        if at.way_cm == before.way_cm:
-            return _gap(criterion, task, number, at)
+    for previous, point in pairwise(track_points[track_points.index(origin) :]):
+        if point.driven_cm == previous.driven_cm:
+            return _gap_cm(criterion, task, number, point)
     return 0.0
 
 
-def _too_long(criterion: Criterion, at: TrackPoint) -> Finding | None:
+def _judge_length(criterion: Criterion, point: TrackPoint) -> Finding | None:
     limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
-    if at.ms > limit_s * 1000:
-        values = {"seconds": in_seconds(at.ms), "limit": f"{limit_s:g}"}
+    if point.ms > limit_s * 1000:
+        values = {"seconds": in_seconds(point.ms), "limit": f"{limit_s:g}"}
         return Finding("reaches", "reaches/late", values, criterion.labels)
-    if at.way_cm > limit_cm:
-        values = {"cm": in_cm(at.way_cm, limit_cm), "limit": f"{limit_cm:g}"}
+    if point.driven_cm > limit_cm:
+        values = {"cm": in_cm(point.driven_cm, limit_cm), "limit": f"{limit_cm:g}"}
         return Finding("reaches", "reaches/around", values, criterion.labels)
     return None
 
@@ -153,42 +165,46 @@ def _too_long(criterion: Criterion, at: TrackPoint) -> Finding | None:
 def _missed_sentence(
     criterion: Criterion,
     task: Task,
-    way: list[TrackPoint],
-    since: TrackPoint,
+    track_points: list[TrackPoint],
+    origin: TrackPoint,
     place: Point,
     nearest: TrackPoint | None,
 ) -> str:
     """Return the sentence for a place that the robot has missed.
 
-    `since` is where it had to go there from; it was `nearest` at that point.
+    `origin` is where it had to go there from; it was `nearest` at that point.
     """
     run, start = task.run, task.run.world.start
     if run.driven_cm < STILL_CM:
         return "turned"
     if len(criterion.places) > 1:
-        gap_cm = math.dist(place, (since.x_cm, since.y_cm))
-        if run.ending == DONE and way[-1].way_cm - since.way_cm < gap_cm / 2:
+        gap_cm = math.dist(place, (origin.x_cm, origin.y_cm))
+        if run.ending == DONE and track_points[-1].driven_cm - origin.driven_cm < gap_cm / 2:
             return "ended"
         was_coming = nearest is None or run.track[-1].ms - nearest.ms <= STEP_MS
         return "time" if run.ending == LIMIT and was_coming else "several"
-    if run.ending == DONE and _is_approaching(way, place):
+    if run.ending == DONE and _is_approaching(track_points, place):
         return "over"
     if nearest is None:
         return "one"
-    if run.ending == LIMIT and nearest.way_cm >= way[-1].way_cm - STILL_CM > 0:
+    if run.ending == LIMIT and nearest.driven_cm >= track_points[-1].driven_cm - STILL_CM > 0:
         return "slow"
     way_cm = math.dist(place, start[:2])
     ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
     dx, dy = nearest.x_cm - start.x_cm, nearest.y_cm - start.y_cm
-    is_straight = abs(dy * ux - dx * uy) <= STILL_CM and nearest.way_cm > STILL_CM
+    is_straight = abs(dy * ux - dx * uy) <= STILL_CM and nearest.driven_cm > STILL_CM
     return "short" if is_straight and 0 < dx * ux + dy * uy < way_cm else "one"
 
 
-def _is_approaching(way: list[TrackPoint], place: Point) -> bool:
+def _is_approaching(track_points: list[TrackPoint], place: Point) -> bool:
     """Whether the last STRETCH_CM led to a place, and never before it was nearer."""
-    gaps_cm = [math.dist(place, (at.x_cm, at.y_cm)) for at in way]
-    began = next(k for k, at in enumerate(way) if at.way_cm >= way[-1].way_cm - STRETCH_CM)
-    gained_cm = gaps_cm[began] - gaps_cm[-1]
+    gaps_cm = [math.dist(place, (point.x_cm, point.y_cm)) for point in track_points]
+    start_index = next(
+        k
+        for k, point in enumerate(track_points)
+        if point.driven_cm >= track_points[-1].driven_cm - STRETCH_CM
+    )
+    gained_cm = gaps_cm[start_index] - gaps_cm[-1]
     return gained_cm > STRETCH_CM * APPROACH_SHARE and gaps_cm[-1] < min(gaps_cm) + STILL_CM
 
 
@@ -216,40 +232,41 @@ def _wheels(run: Run, pose: Pose) -> list[Point]:
 
 def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | None:
     """Compare with the nearest thing that an echo from the middle of its front would tell."""
-    run, pose = task.run, _end(task.run)
+    run, pose = task.run, _end_pose(task.run)
     hull = run.robot.driving.hull
-    along = math.radians(pose.heading)
+    heading_radians = math.radians(pose.heading)
     front = hull.spine(pose).b
     eye = Point(
-        front.x + hull.radius_cm * math.cos(along), front.y + hull.radius_cm * math.sin(along)
+        front.x + hull.radius_cm * math.cos(heading_radians),
+        front.y + hull.radius_cm * math.sin(heading_radians),
     )
-    ahead = run.world.obstacles()
+    obstacles = run.world.obstacles()
     if criterion.places:
-        ahead = shape_of(criterion.places[0], run.world, task.mirrored)
-    gap_cm = nearest_seen(ahead, eye, along, CONE_RADIANS)
-    low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
-    values = {"low": f"{low:g}", "high": f"{high:g}"}
+        obstacles = shape_of(criterion.places[0], run.world, task.is_flipped)
+    gap_cm = nearest_seen(obstacles, eye, heading_radians, CONE_RADIANS)
+    low_cm, high_cm = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
+    values = {"low": f"{low_cm:g}", "high": f"{high_cm:g}"}
     if gap_cm is None:
         key = "other" if criterion.places else "nothing"
         return Finding("stands_before", f"stands_before/{key}", values, criterion.labels)
-    if low <= gap_cm <= high:
+    if low_cm <= gap_cm <= high_cm:
         return None
-    key, limit = ("far", high) if gap_cm > high else ("near", low)
-    values["cm"] = in_cm(gap_cm, limit)
+    key, limit_cm = ("far", high_cm) if gap_cm > high_cm else ("near", low_cm)
+    values["cm"] = in_cm(gap_cm, limit_cm)
     return Finding("stands_before", f"stands_before/{key}", values)
 
 
-def _faces(criterion: Criterion, task: Task) -> Finding | None:
-    expected = criterion.numbers["heading"]
-    if task.mirrored:
-        expected = -expected
-    off = (_end(task.run).heading - expected + 180) % 360 - 180
-    if abs(off) <= criterion.numbers["within_degrees"]:
+def _judge_heading(criterion: Criterion, task: Task) -> Finding | None:
+    expected_degrees = criterion.numbers["heading"]
+    if task.is_flipped:
+        expected_degrees = -expected_degrees
+    off_degrees = (_end_pose(task.run).heading - expected_degrees + 180) % 360 - 180
+    if abs(off_degrees) <= criterion.numbers["within_degrees"]:
         return None
-    key = "left" if off > 0 else "right"  # it looks too far to the left
-    if abs(off) > OTHER_WAY_DEGREES:
+    key = "left" if off_degrees > 0 else "right"  # it looks too far to the left
+    if abs(off_degrees) > OTHER_WAY_DEGREES:
         key = "behind"
-    return Finding("faces", f"faces/{key}", {"degrees": f"{abs(off):.0f}"})
+    return Finding("faces", f"faces/{key}", {"degrees": f"{abs(off_degrees):.0f}"})
 
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
@@ -257,5 +274,5 @@ JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     "reaches": _judge_places,
     "stays_in": _judge_area,
     "stands_before": _judge_distance_to_obstacle,
-    "faces": _faces,
+    "faces": _judge_heading,
 }

@@ -90,9 +90,9 @@ def read(text: str, world: World, name: str) -> Lesson:
 def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
     """Return the right answers of a lesson and the typical wrong ones. Raises LessonRefused."""
     with root_of(text, LessonRefused) as root:
-        right = [_answer(row, False) for row in _rows(root, "right")]
+        right_answers = [_answer(row, False) for row in _rows(root, "right")]
         wrong_answers = [_answer(row, True) for row in _rows(root, "wrong")]
-    return right, wrong_answers
+    return right_answers, wrong_answers
 
 
 def _rows(root: Table, key: str) -> list[Table]:
@@ -107,36 +107,37 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
     if len(program) > PROGRAM_CHARACTERS:
         table.complain("label_bad", "program", most=str(PROGRAM_CHARACTERS))
     labels = _labels(table)
-    text = _sentences(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
+    sentences = _sentences(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
     table.finish()
-    return Answer(program, labels, text)
+    return Answer(program, labels, sentences)
 
 
-def _sentences(says: Table) -> dict[str, str]:
+def _sentences(table: Table) -> dict[str, str]:
     """Return in each language the sentence of a finding: its key, its values, and its place.
 
     That one is `place`, or a text in each language.
     """
-    key = says.text("key", 'key = "still"') or "still"
+    key = table.text("key", 'key = "still"') or "still"
     texts = (
-        text_of("lessons", f"said/{item}", SOURCE_LANGUAGE) for item in (key, key.partition("/")[0])
+        text_of("lessons", f"said/{key_part}", SOURCE_LANGUAGE)
+        for key_part in (key, key.partition("/")[0])
     )
     gaps = GAP_NAME.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *SENTENCE_VALUES])
-    values = {name: says.text(name) or "" for name in names if says.has(name)}
+    values = {name: table.text(name) or "" for name in names if table.has(name)}
     places = {language: values[language] for language in languages() if language in values}
     finding = Finding(
         "", key, values, ByLanguage({SOURCE_LANGUAGE: values.get("place", ""), **places})
     )
-    says.finish()
+    table.finish()
     try:
         return {language: sentence(finding, language) for language in languages()}
     except KeyError as lacking:
         name = str(lacking.args[0])
         if name.startswith("said/"):
-            says.complain("unknown_word", "key", found=printable_value(key), near="")
+            table.complain("unknown_word", "key", found=printable_value(key), near="")
         else:
-            says.complain("missing", name, example=f'{name} = "…"')
+            table.complain("missing", name, example=f'{name} = "…"')
         return {}
 
 
@@ -154,7 +155,8 @@ def _variation(table: Table, world: World) -> Variation:
     text = table.text("part", 'part = "walls[1]"')
     place = Place("start", 0) if text is None else _part(table, "part", text, world)
     spans = [
-        _span(table, *item) for item in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
+        _span(table, *key_and_limit)
+        for key_and_limit in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
     ]
     if place.part == "lamps" and table.has("heading"):
         table.complain("lamp_has_no_heading", "heading")
@@ -167,11 +169,11 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
     keys = [device.name for device in REMOTE if device.is_yes_no]
     presses: list[Press] = []
     for table in tables:
-        begins = round(presses[-1].end_seconds * ONE) if presses else 0
-        soon = f"at_seconds = {begins / ONE:g}"
-        at = table.number("at_seconds", begins, MOST_SECONDS * ONE, soon)
-        lasts = table.number("seconds", ONE // 10, MOST_SECONDS * ONE, "seconds = 1")
-        presses.append(Press(at / ONE, lasts / ONE, table.choice("key", keys)))
+        earliest = round(presses[-1].end_seconds * ONE) if presses else 0
+        example = f"at_seconds = {earliest / ONE:g}"
+        start = table.number("at_seconds", earliest, MOST_SECONDS * ONE, example)
+        duration = table.number("seconds", ONE // 10, MOST_SECONDS * ONE, "seconds = 1")
+        presses.append(Press(start / ONE, duration / ONE, table.choice("key", keys)))
         table.finish()
     return tuple(presses)
 
@@ -216,8 +218,8 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
-    asked = [number for number in kind.numbers if has_places or number is not WITHIN]
-    numbers = {number.key: _number(table, number) for number in asked}
+    numbers_asked = [number for number in kind.numbers if has_places or number is not WITHIN]
+    numbers = {number.key: _number(table, number) for number in numbers_asked}
     numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
@@ -249,27 +251,27 @@ def _number(table: Table, number: Number) -> float:
 
 def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the device that a criterion asks for."""
-    result = table.text("what", 'what = "LED"')
-    if result is None or result in names:
-        return () if result is None else (result,)
+    device_name = table.text("what", 'what = "LED"')
+    if device_name is None or device_name in names:
+        return () if device_name is None else (device_name,)
     table.complain(
-        "not_one_of", "what", found=printable_value(result), choices=", ".join(names) or "-"
+        "not_one_of", "what", found=printable_value(device_name), choices=", ".join(names) or "-"
     )
     return ()
 
 
 def _words(table: Table, known_words: tuple[str, ...]) -> tuple[str, ...]:
-    result = table.get("words", f'words = ["{known_words[0]}"]')
-    if result is None:
+    words = table.get("words", f'words = ["{known_words[0]}"]')
+    if words is None:
         return ()
-    if not isinstance(result, list) or not all(type(item) is str for item in result) or not result:
+    if not isinstance(words, list) or not all(type(word) is str for word in words) or not words:
         table.complain("words_form", "words", example=f'["{known_words[0]}"]')
         return ()
-    for item in result:
-        if item not in known_words:
-            suggestion = nearest(item, known_words) or ""
-            table.complain("unknown_word", "words", found=printable_value(item), near=suggestion)
-    return tuple(result)
+    for word in words:
+        if word not in known_words:
+            suggestion = nearest(word, known_words) or ""
+            table.complain("unknown_word", "words", found=printable_value(word), near=suggestion)
+    return tuple(words)
 
 
 def _places(table: Table, world: World, least_count: int) -> tuple[Place, ...]:
@@ -305,8 +307,8 @@ def _part(table: Table, key: str, text: str, world: World) -> Place:
         return Place("start", 0)
     if match[1]:
         return Place("start", 0)
-    number, there = int(match[3]), len(getattr(world, match[2]))
-    if number > there:
-        table.complain("no_such_part", key, found=printable_value(text), there=str(there))
+    number, part_count = int(match[3]), len(getattr(world, match[2]))
+    if number > part_count:
+        table.complain("no_such_part", key, found=printable_value(text), there=str(part_count))
         return Place("start", 0)
     return Place(match[2], number)

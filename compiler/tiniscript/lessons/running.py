@@ -39,10 +39,10 @@ class Sample(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """It came against something: `what` is "wall", "box" or "border"."""
+    """It came against something: `obstacle` is "wall", "box" or "border"."""
 
     ms: int
-    what: str
+    obstacle: str
 
 
 class ShownValue(NamedTuple):
@@ -60,7 +60,7 @@ class Beep(NamedTuple):
     pose: Pose
 
 
-class Switched(NamedTuple):
+class SwitchedOn(NamedTuple):
     """An actuator that went on, by its number."""
 
     ms: int
@@ -71,7 +71,7 @@ class Switched(NamedTuple):
 class Run(NamedTuple):
     """What a program did. `ending` is DONE, FAULT, LIMIT, BUSY (it took no time) or ASKS (PING).
 
-    `motors` are the settings of both motors, each with its time; `happened` are words of
+    `motors` are the settings of both motors, each with its time; `event_words` are words of
     `criteria.EVENTS` in their order.
     """
 
@@ -80,12 +80,12 @@ class Run(NamedTuple):
     fault: str
     end_ms: int
     track: tuple[Sample, ...]
-    touches: tuple[Collision, ...]
-    shown: tuple[ShownValue, ...]
+    collisions: tuple[Collision, ...]
+    shown_values: tuple[ShownValue, ...]
     beeps: tuple[Beep, ...]
-    switched: tuple[Switched, ...]
+    switched_on: tuple[SwitchedOn, ...]
     motors: tuple[tuple[int, int, int], ...]
-    happened: tuple[str, ...]
+    event_words: tuple[str, ...]
     driven_cm: float
     robot: VirtualRobot
     presses: tuple[Press, ...] = ()
@@ -115,8 +115,8 @@ class Trial:
         )
         self._presses = presses_of(lesson, seed)
         self._witness = _Witness(robot, seed, self._presses)
-        self._asks = image.start == "PING"
-        if self._asks:
+        self._is_ping = image.start == "PING"
+        if self._is_ping:
             return
         self._computer = _upload(robot, image)
         self._witness.look()
@@ -130,7 +130,7 @@ class Trial:
     def go(self, most_ms: int | None = None) -> Run | None:
         """Let the robot's time go on, at most by `most_ms`; return what it did, once it is over."""
         robot, witness = self.robot, self._witness
-        if self._asks:
+        if self._is_ping:
             return witness.run(ASKS)
         until_ms = self._limit_ms if most_ms is None else robot.now_ms + most_ms
         while robot.is_running:
@@ -191,13 +191,13 @@ class _Witness:
         self.events = 0
         self._bumps = 0
         self._track: list[Sample] = []
-        self._touches: list[Collision] = []
-        self._shown: list[ShownValue] = []
+        self._collisions: list[Collision] = []
+        self._shown_values: list[ShownValue] = []
         self._beeps: list[Beep] = []
-        self._switched: list[Switched] = []
-        self._on: dict[int, int] = {}
+        self._switched_on: list[SwitchedOn] = []
+        self._value_of_actuator: dict[int, int] = {}
         self._motors: list[tuple[int, int, int]] = []
-        self._happened: list[str] = []
+        self._event_words: list[str] = []
         self._is_moving = False
 
     def look(self) -> None:
@@ -218,53 +218,55 @@ class _Witness:
             self._track.append(Sample(ms, pose))
         if robot.driving.bumps != self._bumps:
             self._bumps = robot.driving.bumps
-            self._touches.append(Collision(ms, self._nearest_obstacle(pose)))
+            self._collisions.append(Collision(ms, self._nearest_obstacle(pose)))
 
     def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
-            before = self._motors[-1][1:] if self._motors else (0, 0)
+            powers_before = self._motors[-1][1:] if self._motors else (0, 0)
             self._motors.append((ms, event.values[0], event.values[1]))
-            if any(event.values) and event.values[:2] != before:
-                self._happened.append("moves")
+            if any(event.values) and event.values[:2] != powers_before:
+                self._event_words.append("moves")
             elif self._is_moving and not any(event.values):
-                self._stops(ms)
+                self._add_stop(ms)
             self._is_moving = any(event.values)
         elif event.what == "BEEP":
             self._beeps.append(Beep(ms, event.values[0], pose))
-            self._happened.append("beeps")
+            self._event_words.append("beeps")
         elif event.what == "SET":
             actuator, value = event.values
-            if value and not self._on.get(actuator):
-                self._switched.append(Switched(ms, actuator, self._is_moving))
-            self._on[actuator] = value
+            if value and not self._value_of_actuator.get(actuator):
+                self._switched_on.append(SwitchedOn(ms, actuator, self._is_moving))
+            self._value_of_actuator[actuator] = value
         elif event.what == "SHOW":
-            self._happened.append("shows")
+            self._event_words.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
-            self._shown.append(ShownValue(ms, event.values[0], is_yes_no, pose))
+            self._shown_values.append(ShownValue(ms, event.values[0], is_yes_no, pose))
 
-    def _stops(self, ms: int) -> None:
+    def _add_stop(self, ms: int) -> None:
         """Note a stop, before what it has shown in the same moment."""
-        at_once = 0
-        for shown, word in zip(reversed(self._shown), reversed(self._happened), strict=False):
-            if word != "shows" or shown.ms != ms:
+        count_at_once = 0
+        for shown_value, word in zip(
+            reversed(self._shown_values), reversed(self._event_words), strict=False
+        ):
+            if word != "shows" or shown_value.ms != ms:
                 break
-            at_once += 1
-        self._happened.insert(len(self._happened) - at_once, "stops")
+            count_at_once += 1
+        self._event_words.insert(len(self._event_words) - count_at_once, "stops")
 
     def _nearest_obstacle(self, pose: Pose) -> str:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
-        kinds = {
+        segments_of_kind = {
             "wall": [segment for wall in world.walls for segment in join_points(list(wall))],
             "box": [segment for box in world.boxes for segment in join_points([*box, box[0]])],
             "border": world._replace(walls=(), boxes=()).obstacles(),
         }
-        gaps = []
-        for kind, obstacles in kinds.items():
-            contact = hull.contact(pose, obstacles)
+        gaps_and_kinds = []
+        for kind, segments in segments_of_kind.items():
+            contact = hull.contact(pose, segments)
             if contact is not None:
-                gaps.append((contact.gap_cm, kind))
-        return min(gaps)[1]
+                gaps_and_kinds.append((contact.gap_cm, kind))
+        return min(gaps_and_kinds)[1]
 
     def run(self, ending: str) -> Run:
         robot = self.robot
@@ -273,11 +275,11 @@ class _Witness:
             ended_ms = robot.now_ms if robot.ended_ms is None else robot.ended_ms
             end_ms = ended_ms - self.started_ms
         if self._is_moving:
-            self._stops(end_ms)
+            self._add_stop(end_ms)
         return Run(
             self.seed, ending, robot.fault, end_ms,
             tuple(self._track) or (Sample(0, robot.world.start),),
-            tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._switched),
-            tuple(self._motors), tuple(self._happened), robot.driving.driven_cm, robot,
-            self._presses,
+            tuple(self._collisions), tuple(self._shown_values), tuple(self._beeps),
+            tuple(self._switched_on), tuple(self._motors), tuple(self._event_words),
+            robot.driving.driven_cm, robot, self._presses,
         )  # fmt: skip

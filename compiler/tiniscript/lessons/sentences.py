@@ -31,24 +31,24 @@ def sentence(finding: Finding, language: str, form: str = TEXT) -> str:
     if key == "order" and finding.values["times"] != "1":
         key = "order_again"
     place = finding.labels[language] if finding.labels else ""
-    what = finding.values.get("what") or "DISTANCE"
+    sensor = finding.values.get("what") or "DISTANCE"
     values = {
         **{name: printable(value) for name, value in finding.values.items()},
         "place": place,
-        "show": f"SHOW({what})",
+        "show": f"SHOW({sensor})",
         "example": _example(
             finding.values.get("word", ""), finding.values.get("question", ""), form
         ),
         "before": _event(finding, 1, language),
         "then": _event(finding, 2, language),
     }
-    result = in_form(text("lessons", f"said/{key}", language), form).format(**values)
+    sentence_text = in_form(text("lessons", f"said/{key}", language), form).format(**values)
     if form == TEXT:
-        result = result.replace("`", "")
+        sentence_text = sentence_text.replace("`", "")
     for pair in text("lessons", "contractions", language).split(", "):
-        two, _, one = pair.partition("=")
-        result = result.replace(f" {two} ", f" {one} ")
-    return result
+        long_form, _, short_form = pair.partition("=")
+        sentence_text = sentence_text.replace(f" {long_form} ", f" {short_form} ")
+    return sentence_text
 
 
 def _event(finding: Finding, number: int, language: str) -> str:
@@ -59,9 +59,9 @@ def _event(finding: Finding, number: int, language: str) -> str:
 
 def _example(word: str, question: str, form: str) -> str:
     if word in EXAMPLES:
-        whole = EXAMPLES[word].format(question=question)
+        example = EXAMPLES[word].format(question=question)
         if form == TEXT:
-            return whole
-        *parts, last = whole.split(" ... ")  # which ends a block
-        return "` … `".join(parts or [last])
+            return example
+        *parts, end_word = example.split(" ... ")  # which ends a block
+        return "` … `".join(parts or [end_word])
     return WORDS[word].example if word in WORDS else word

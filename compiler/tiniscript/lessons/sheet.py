@@ -53,18 +53,18 @@ def _sheet_text(language: str, key: str) -> str:
 
 def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     """Return the page of pupils or of teachers. `page` is its Markdown."""
-    text = partial(_sheet_text, language)
-    result = blocks(page)
+    text_of = partial(_sheet_text, language)
+    page_blocks = blocks(page)
     title = lesson.title(language)
-    parts = [_html(block) for block in result]
-    caption_lines = [text("plan")]
+    parts = [_html(block) for block in page_blocks]
+    caption_lines = [text_of("plan")]
     if lesson.variations:
-        caption_lines.append(text("moves"))
+        caption_lines.append(text_of("moves"))
     if lesson.is_mirrored:
-        caption_lines.append(text("mirrored"))
+        caption_lines.append(text_of("mirrored"))
     drawing = f"{plan(lesson, title)}\n<p>{escape(' '.join(caption_lines))}</p>"
     if not is_teachers:
-        names = "".join(f"<span>{escape(name)}</span>" for name in map(text, BLANKS))
+        names = "".join(f"<span>{escape(name)}</span>" for name in map(text_of, BLANKS))
         parts.insert(1, f'<p class="names">{names}</p>\n{drawing}')
     else:
         parts.insert(1, drawing)
@@ -98,16 +98,16 @@ def _html(block: Block) -> str:
     if block.kind == "program":
         return "<pre>" + "\n".join(escape(row) for (row,) in block.rows) + "</pre>"
     if block.kind == "table":
-        head, *rows = block.rows
+        header, *rows = block.rows
         lines = "\n".join(_row(row, "td") for row in rows)
-        return f"<table>\n<thead>{_row(head, 'th')}</thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
+        return f"<table>\n<thead>{_row(header, 'th')}</thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
     if block.kind in ("list", "checks", "steps"):
         items = "\n".join(f"<li>{_words(item)}</li>" for (item,) in block.rows)
         tag = "ol" if block.kind == "steps" else "ul"
-        mark = ' class="checks"' if block.kind == "checks" else ""
-        if block.first > 1:
-            mark = f' start="{block.first}"'
-        return f"<{tag}{mark}>\n{items}\n</{tag}>"
+        attributes = ' class="checks"' if block.kind == "checks" else ""
+        if block.first_number > 1:
+            attributes = f' start="{block.first_number}"'
+        return f"<{tag}{attributes}>\n{items}\n</{tag}>"
     tag = {"title": "h1", "heading": "h2"}.get(block.kind, "p")
     return f"<{tag}>{_words(block.rows[0][0])}</{tag}>"
 

@@ -68,8 +68,12 @@ def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str)
 def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:
     """Return a word of DEF that nothing calls, and that has what is missing."""
     for name in _uncalled_words(words):
-        inside = [token for own, token in _tokens_with_def(tokens) if own == name]
-        if kept.find_moves(inside) if word == "move" else word in [token.text for token in inside]:
+        tokens_inside = [token for def_name, token in _tokens_with_def(tokens) if def_name == name]
+        if (
+            kept.find_moves(tokens_inside)
+            if word == "move"
+            else word in [token.text for token in tokens_inside]
+        ):
             return name
     return ""
 
@@ -77,22 +81,24 @@ def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) 
 def _call_of(name: str, tokens: Sequence[Token]) -> str:
     """Return how a word of DEF is called, with the names of its values: `SQUARE(SIZE)`."""
     texts = [token.text for token in tokens]
-    at = next(k for k, pair in enumerate(pairwise(texts)) if pair == ("DEF", name)) + 2
-    if texts[at : at + 1] != ["("]:
+    index = next(k for k, pair in enumerate(pairwise(texts)) if pair == ("DEF", name)) + 2
+    if texts[index : index + 1] != ["("]:
         return name
-    return f"{name}{''.join(takewhile(lambda text: text != ')', texts[at:]))})".replace(",", ", ")
+    return f"{name}{''.join(takewhile(lambda text: text != ')', texts[index:]))})".replace(
+        ",", ", "
+    )
 
 
 def _tokens_with_def(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
     """Return each token with the word of the DEF that it belongs to, or ""."""
-    result, name = [], ""
+    pairs, name = [], ""
     for k, token in enumerate(tokens):
         if token.text == "DEF":
             name = tokens[k + 1].text
-        result.append((name, token))
+        pairs.append((name, token))
         if ALIASES.get(token.text, token.text) == BLOCK_ENDS["DEF"]:
             name = ""
-    return result
+    return pairs
 
 
 def _with_condition(
@@ -112,7 +118,7 @@ def _with_condition(
         return finding
     kit = robots.load(lesson.robot).kit
     sensors = [device.name for device in kit.readings]
-    sensors_named = [word for word in [*question.inside, *words] if word in sensors]
+    sensors_named = [word for word in [*question.words, *words] if word in sensors]
     key = f"{'turned' if is_turned else 'still'}/{'ever' if question.is_ever else 'question'}"
     sensor = (*sensors_named, sensors[0])[0]
     return finding._replace(
@@ -138,7 +144,7 @@ def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | Non
             key = "uses/none" if not word_counts[word] else "uses/few"
             values = {"word": word, "times": str(times), "found": str(word_counts[word])}
             return Finding("uses", key, values)
-    def_names = _own_words(words)
+    def_names = _def_names(words)
     uncalled = _uncalled_words(words)
     if "DEF" in criterion.words and len(def_names) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
@@ -153,47 +159,50 @@ def _words(tokens: Sequence[Token]) -> list[str]:
     return [token.text for token in tokens if token.kind in (WORD, NUMBER)]
 
 
-def _own_words(words: Sequence[str]) -> list[str]:
+def _def_names(words: Sequence[str]) -> list[str]:
     """Return the names that the program gives with DEF."""
     return [name for word, name in pairwise(words) if word == "DEF"]
 
 
 def _uncalled_words(words: Sequence[str]) -> list[str]:
     """Return the words of DEF that nothing calls, or only such a word."""
-    bodies: dict[str, set[str]] = {name: set() for name in _own_words(words)}
-    inside, name = set[str](), ""
-    for before, word in pairwise(["", *words]):
-        if before == "DEF":
+    bodies: dict[str, set[str]] = {name: set() for name in _def_names(words)}
+    main_words, name = set[str](), ""
+    for previous, word in pairwise(["", *words]):
+        if previous == "DEF":
             name = word
         elif ALIASES.get(word, word) == BLOCK_ENDS["DEF"]:
             name = ""
         else:
-            (bodies[name] if name else inside).add(word)
-    called: set[str] = set()
-    result = inside & bodies.keys()
-    while result:
-        called |= result
-        result = set().union(*(bodies[item] for item in result)) & bodies.keys() - called
-    return [body for body in bodies if body not in called]
+            (bodies[name] if name else main_words).add(word)
+    names_called: set[str] = set()
+    newly_called = main_words & bodies.keys()
+    while newly_called:
+        names_called |= newly_called
+        newly_called = (
+            set().union(*(bodies[name_called] for name_called in newly_called))
+            & bodies.keys() - names_called
+        )
+    return [body for body in bodies if body not in names_called]
 
 
 def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
     """Return what is inside of each LOOP that repeats: LOOP(1) and LOOP(0) do not."""
-    result: list[list[str]] = []
+    bodies: list[list[str]] = []
     open_loops: list[list[str]] = []
     for word in words:
         if ALIASES.get(word, word) == BLOCK_ENDS["LOOP"] and open_loops:
-            inside = open_loops.pop()
-            if inside[:1] not in (["0"], ["1"]):
-                result.append(inside)
-        for inside in open_loops:
-            inside.append(word)
+            body = open_loops.pop()
+            if body[:1] not in (["0"], ["1"]):
+                bodies.append(body)
+        for body in open_loops:
+            body.append(word)
         if word == "LOOP":
             open_loops.append([])
-    return result
+    return bodies
 
 
-def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
+def _judge_moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     most_moves, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
     move_count = (
         kept.count_ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
@@ -204,39 +213,39 @@ def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     )
 
 
-def without_word(word: str, text: str) -> str:
+def replace_word(word: str, text: str) -> str:
     """Return a program whose loops are done once (LOOP), without its own words (DEF) or tasks."""
     tokens = scan(text).tokens
-    def_names = _own_words(_words(tokens))
+    def_names = _def_names(_words(tokens))
     parts, end = [], 0
     for k, token in enumerate(tokens):
-        replacement = None
+        text_and_end = None
         if word == "LOOP" and token.text == "LOOP":
-            replacement = "LOOP(1)", kept.end_of_values(tokens, k)
+            text_and_end = "LOOP(1)", kept.end_of_values(tokens, k)
         elif word == "DEF" and token.text in def_names and tokens[k - 1].text != "DEF":
-            replacement = "W(0)", token.end
+            text_and_end = "W(0)", token.end
         elif word in TASKS and token.text == word:
-            replacement = "W(0)", _end_of_block(tokens, k)
-        if replacement is not None and token.kind == WORD:
-            parts += [text[end : token.start], replacement[0]]
-            end = replacement[1]
+            text_and_end = "W(0)", _end_of_block(tokens, k)
+        if text_and_end is not None and token.kind == WORD:
+            parts += [text[end : token.start], text_and_end[0]]
+            end = text_and_end[1]
     return "".join([*parts, text[end:]])
 
 
-def _end_of_block(tokens: Sequence[Token], at: int) -> int:
-    ends = (token.end for token in tokens[at:]
-            if ALIASES.get(token.text, token.text) == BLOCK_ENDS[tokens[at].text])  # fmt: skip
+def _end_of_block(tokens: Sequence[Token], index: int) -> int:
+    ends = (token.end for token in tokens[index:]
+            if ALIASES.get(token.text, token.text) == BLOCK_ENDS[tokens[index].text])  # fmt: skip
     return next(ends, tokens[-1].end)
 
 
 def idle_finding(word: str, text: str) -> Finding:
     """Return what is missing where the task is done without a word of BLOCKS, too."""
-    def_names = _own_words(_words(scan(text).tokens))
+    def_names = _def_names(_words(scan(text).tokens))
     return Finding("needs", f"needs/{word}", {"name": def_names[0] if def_names else ""})
 
 
 JUDGES: dict[str, Callable[[Criterion, Sequence[Token]], Finding | None]] = {
     "uses": _judge_words,
     "needs": _judge_words,
-    "moves": _moves,
+    "moves": _judge_moves,
 }

@@ -20,11 +20,11 @@ T = TypeVar("T")
 
 def vary(lesson: Lesson, seed: int) -> World:
     """Return the world of a seed."""
-    chance = Random(seed)
+    random = Random(seed)
     world = lesson.world
     for variation in lesson.variations:
         dx, dy, turn = (
-            chance.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
+            random.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
         )
         world = _move_part(world, variation, dx, dy, turn)
     return _mirror(world) if is_mirrored(lesson, seed) else world
@@ -47,10 +47,10 @@ def is_mirrored(lesson: Lesson, seed: int) -> bool:
     return lesson.is_mirrored and seed % 2 == 0
 
 
-def point_of(place: Place, world: World, mirrored: bool) -> Point:
+def point_of(place: Place, world: World, is_flipped: bool) -> Point:
     """Return where a place is: a point, the start, a lamp, the middle of another part."""
     if not place.part:
-        return Point(place.x_cm, world.height_cm - place.y_cm if mirrored else place.y_cm)
+        return Point(place.x_cm, world.height_cm - place.y_cm if is_flipped else place.y_cm)
     if place.part == "start":
         return Point(*world.start[:2])
     k = place.number - 1
@@ -61,7 +61,7 @@ def point_of(place: Place, world: World, mirrored: bool) -> Point:
     return _center(world.walls[k] if place.part == "walls" else world.boxes[k])
 
 
-def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
+def shape_of(place: Place, world: World, is_flipped: bool) -> list[Segment]:
     """Return the outline of a part of a world; of anything else its point."""
     k = place.number - 1
     if place.part == "walls":
@@ -70,7 +70,7 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
         return join_points([*world.boxes[k], world.boxes[k][0]])
     if place.part == "lines":
         return join_points(list(world.lines[k].points))
-    point = point_of(place, world, mirrored)
+    point = point_of(place, world, is_flipped)
     return [Segment(point, point)]
 
 
@@ -92,20 +92,20 @@ def _move_part(world: World, variation: Variation, dx: float, dy: float, turn: f
         x_cm, y_cm, heading = world.start
         return world._replace(start=Pose(x_cm + dx, y_cm + dy, heading + turn))
     if part == "walls":
-        return world._replace(walls=_replace_row(world.walls, k, shift(world.walls[k])))
+        return world._replace(walls=_replace_part(world.walls, k, shift(world.walls[k])))
     if part == "boxes":
-        return world._replace(boxes=_replace_row(world.boxes, k, shift(world.boxes[k])))
+        return world._replace(boxes=_replace_part(world.boxes, k, shift(world.boxes[k])))
     if part == "lines":
         line = world.lines[k]
         line = line._replace(points=shift(line.points))
-        return world._replace(lines=_replace_row(world.lines, k, line))
+        return world._replace(lines=_replace_part(world.lines, k, line))
     x, y = world.lamps[k].place
     lamp = world.lamps[k]._replace(place=Point(x + dx, y + dy))
-    return world._replace(lamps=_replace_row(world.lamps, k, lamp))
+    return world._replace(lamps=_replace_part(world.lamps, k, lamp))
 
 
-def _replace_row(rows: tuple[T, ...], k: int, row: T) -> tuple[T, ...]:
-    return (*rows[:k], row, *rows[k + 1 :])
+def _replace_part(parts: tuple[T, ...], k: int, part: T) -> tuple[T, ...]:
+    return (*parts[:k], part, *parts[k + 1 :])
 
 
 def _mirror(world: World) -> World:
@@ -128,4 +128,7 @@ def _mirror(world: World) -> World:
 
 
 def _center(points: tuple[Point, ...]) -> Point:
-    return Point(sum(p.x for p in points) / len(points), sum(p.y for p in points) / len(points))
+    return Point(
+        sum(point.x for point in points) / len(points),
+        sum(point.y for point in points) / len(points),
+    )

@@ -63,14 +63,14 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _add_findings(compilation: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
-    from tiniscript.recovery.told import told_of
+    from tiniscript.recovery.told import diagnose
 
     diagnostics_of = cache(
         lambda text: analyze(text, kit).diagnostics
     )  # a repair is asked for again
     own_kit = _kit_in(compilation.source.text, kit)
     return compilation._replace(
-        diagnostics=told_of(compilation.source, compilation.diagnostics, diagnostics_of, own_kit)
+        diagnostics=diagnose(compilation.source, compilation.diagnostics, diagnostics_of, own_kit)
     )
 
 
@@ -128,7 +128,7 @@ def fit_to_robot(compilation: Compiled, robot: Robot) -> Compiled:
 
     needed = (
         (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
-        (codes.NO_WAYS, GO, ir.first_way(program)),
+        (codes.NO_WAYS, GO, ir.first_extent_move(program)),
     )
     missing_features = [
         codes.Diagnostic(code, span, {"robot": robot.name})
@@ -188,7 +188,7 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
-    return compilation._replace(lowered=program, code=lowered.code, places=lowered.places,
+    return compilation._replace(lowered=program, code=lowered.code, places=lowered.locations,
                                 verdict=verdict, image=image, yes_no=yes_no)  # fmt: skip
 
 

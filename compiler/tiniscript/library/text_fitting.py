@@ -35,19 +35,21 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         diagnostics += _value_problems(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
-    if plain.length > limit:
+    if plain.short_length > limit:
         place = _first_span_beyond(plain, limit)
-        diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
+        diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.short_length, limit))
         return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
-    if reader.one_too_many is not None:
+    if reader.extra_bracket_span is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
-        diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
+        diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.extra_bracket_span, values))
     for need_of_bytes in reader.needs:
         if need_of_bytes.byte_count > level.room:
             diagnostics.append(
-                _too_many(codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most, level.room)
+                _too_many(
+                    codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most_bytes, level.room
+                )
             )
             break
     return diagnostics
@@ -70,8 +72,8 @@ def _value_problems(program: Program, kit: Kit, level: Level) -> list[Diagnostic
 
 def _first_span_beyond(code: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
-    ends = [*(place.offset for place in code.places[1:]), code.length]
-    return next(place.span for place, end in zip(code.places, ends, strict=True) if end > limit)
+    ends = [*(place.offset for place in code.locations[1:]), code.short_length]
+    return next(place.span for place, end in zip(code.locations, ends, strict=True) if end > limit)
 
 
 def _too_many(code: codes.Code, place: Span, level: Level, bytes_: int, limit: int) -> Diagnostic:

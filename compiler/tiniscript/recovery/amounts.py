@@ -14,14 +14,14 @@ _CALL_START = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
 _CALL_END = re.compile(r"[^()\r\n;]*\)")
 _COMPARED_WORD = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
 _SAMPLES = {"n": "3", "seconds": "2", "power": "50"}
-_CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a variable
+_SAMPLE_CM, _SAMPLE_NUMBER = "10", "50"  # examples of what a sensor sees, and of a variable
 
 
 def is_amount(*words: str) -> bool:
     return any(lexicon_meaning(plain(word), "amount") for word in words)
 
 
-def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[str, str]:
+def amount_values(text: str, span: Span, own_names: Container[str] = ()) -> dict[str, str]:
     """Return how the call around a value is written with numbers, nothing where there is none.
 
     All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
@@ -31,35 +31,35 @@ def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[s
     amount = text[slice(*span)]
     if match := _COMPARED_WORD.search(before):
         name = meant_by(match[1].upper()) or match[1].upper()
-        sample = _CENTIMETRES if name == "DISTANCE" else _ANY
+        sample = _SAMPLE_CM if name == "DISTANCE" else _SAMPLE_NUMBER
         return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
-    call, after = (
+    call_start, call_end = (
         _CALL_START.search(before),
         _CALL_END.match(text[span.end : span.end + _CALL_REACH]),
     )
-    word = WORDS.get(call[1].upper()) if call else None
-    if call is None or after is None or word is None:
+    word = WORDS.get(call_start[1].upper()) if call_start else None
+    if call_start is None or call_end is None or word is None:
         return {}
-    place = call[2].count(",")
-    values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
-    amount = values[place].strip()
+    value_index = call_start[2].count(",")
+    values = f"{call_start[2]}{amount}{call_end[0][:-1]}".split(",")
+    amount = values[value_index].strip()
     is_comparison = any(sign in amount for sign in "<>=")  # a part of it is no number
     if is_comparison or not any(is_amount(*value.split()) for value in values):
         return {}
     for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):
         words = [word for word in plain(value).split() if word not in own_names]
-        texts = [
+        powers = [
             lexicon_meaning(word, "power")[0] for word in words if lexicon_meaning(word, "power")
         ]
-        if texts or is_amount(*words) or k == place:
+        if powers or is_amount(*words) or k == value_index:
             sample = (
-                texts[0]
-                if texts and argument.unit == "%"
+                powers[0]
+                if powers and argument.unit == "%"
                 else _SAMPLES.get(argument.name, argument.sample)
             )
             sample = _own_number(words, argument.unit) or sample
             values[k] = f"{' ' * (k > 0)}{sample}"
-    head = call[0][: len(call[0]) - len(call[2])]
+    head = call_start[0][: len(call_start[0]) - len(call_start[2])]
     return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
 
 

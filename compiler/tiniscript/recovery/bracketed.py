@@ -13,8 +13,8 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes, texts
-from tiniscript.recovery.rewrites import negated
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.rewrites import negate
+from tiniscript.recovery.writing import split_note
 
 _TEXT_AFTER_ELSE = re.compile(r"(?i)\bELSE(?!_?IF)(?![ \t]+IF)[ \t]*([^\W\d][^;\n]*|\([^;\n]*\))")
 _ELSE_CODES = (codes.NO_BRACKETS_HERE, codes.MISSING_OPEN)
@@ -30,7 +30,7 @@ _QUESTION_FORMS = {
 _ADVICE_GAPS = ("fix", "head", "named", "lost")  # gaps that say what becomes of it
 
 
-def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
+def explain_brackets(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
     """Return a mistake of needless brackets with what becomes of what is in them.
 
     `is_offered`: where it is a question, that is asked; else it is named as lost.
@@ -39,9 +39,9 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     has_other_advice = diagnostic.repair or any(values.get(gap) for gap in _ADVICE_GAPS)
     if diagnostic.code not in (codes.NO_BRACKETS_HERE, codes.NOT_CALLABLE) or has_other_advice:
         return diagnostic
-    at = text.find("(", diagnostic.span.start)
-    brackets = _BRACKETS.match(text, at) if at >= 0 else None
-    if brackets is None or "\n" in text[diagnostic.span.start : at]:
+    bracket_offset = text.find("(", diagnostic.span.start)
+    brackets = _BRACKETS.match(text, bracket_offset) if bracket_offset >= 0 else None
+    if brackets is None or "\n" in text[diagnostic.span.start : bracket_offset]:
         return diagnostic
     content, word = brackets[1].strip(), values.get("word", "").upper()
     names = Names([lexemes(content)], kit)
@@ -54,7 +54,7 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": content})
 
 
-def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def explain_else_question(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a question behind ELSE with ELSE alone first, where that says the same.
 
     That is where it is no when the question before it is yes: `IF(DISTANCE < 20)`, and
@@ -62,15 +62,22 @@ def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """
     start = diagnostic.span.start
     match = next(
-        (it for it in _TEXT_AFTER_ELSE.finditer(text) if it.start() <= start < it.end()), None
+        (
+            match_at
+            for match_at in _TEXT_AFTER_ELSE.finditer(text)
+            if match_at.start() <= start < match_at.end()
+        ),
+        None,
     )
     if match is None or diagnostic.code not in _ELSE_CODES:
         return diagnostic
-    before, question = (
-        _asked_before(text[: match.start()]),
-        without_note(match[1])[0].strip(" ;:\t"),
+    previous_question, question = (
+        _innermost_question(text[: match.start()]),
+        split_note(match[1])[0].strip(" ;:\t"),
     )
-    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(question)):
+    if not previous_question or _rough_form(negate(lexemes(previous_question))) != _rough_form(
+        lexemes(question)
+    ):
         return diagnostic
     end = match.start(1) + match[1].index(question) + len(question)
     repair = Repair((Edit(Span(match.start(), end), "ELSE"),), False)
@@ -79,11 +86,11 @@ def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
     return diagnostic._replace(values={**diagnostic.values, **values}, repair=repair)
 
 
-def _asked_before(text: str) -> str:
+def _innermost_question(text: str) -> str:
     """Return what the innermost IF that is open asks last."""
     questions: list[str] = []
     for line in text.split("\n"):
-        body = without_note(line)[0]
+        body = split_note(line)[0]
         for match in _IF_HEADER.finditer(body):
             word = match[1].upper()
             if word == "IF":
@@ -95,7 +102,7 @@ def _asked_before(text: str) -> str:
     return questions[-1] if questions else ""
 
 
-def _roughly(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+def _rough_form(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return a question in which the number itself may be on either side: `>` for `>=`."""
     signs = {">=": ">", "<=": "<", "=>": ">", "=<": "<"}
     return tuple(signs.get(it, it) for it in texts(tokens) if it not in ("(", ")"))

@@ -35,7 +35,7 @@ from tiniscript.recovery.meanings import (
     heard_as,
     plain,
 )
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _VALUE_PATTERN = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
 _CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE_PATTERN}(?:,{_VALUE_PATTERN})*)\)")
@@ -70,32 +70,32 @@ class _Call(NamedTuple):
 def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
     diagnostics = []
-    start = 0
+    line_start = 0
     def_names = {match[1].upper() for match in _DEF.finditer(source.text)}
     for line in source.text.split("\n"):
-        for call in _calls(without_note(line)[0], start):
+        for call in _calls(split_note(line)[0], line_start):
             if call.word.text in def_names:
                 continue  # its values may be those of the DEF
-            readings = (
-                _points(call),
-                _unit_apart(call),
-                _thousands(call),
-                _seconds_of_motors(call, source.text),
+            call_diagnostics = (
+                _point_diagnostic(call),
+                _unit_diagnostic(call),
+                _thousands_diagnostic(call),
+                _motor_time_diagnostic(call, source.text),
             )
-            diagnostics += [reading for reading in readings if reading][:1]
-        start += len(line) + 1
+            diagnostics += [diagnostic for diagnostic in call_diagnostics if diagnostic][:1]
+        line_start += len(line) + 1
     return diagnostics
 
 
-def run_on(source: Source, names: Names) -> list[Diagnostic]:
+def run_on_calls(source: Source, names: Names) -> list[Diagnostic]:
     """Return what is told of calls with nothing between them, of which one has an unknown word.
 
     Where all are known, a search reads the line.
     """
     diagnostics = []
-    start = 0
+    line_start = 0
     for line in source.text.split("\n"):
-        for piece in _INSTRUCTION.finditer(without_note(line)[0]):
+        for piece in _INSTRUCTION.finditer(split_note(line)[0]):
             calls = _only_calls(piece[0])
             words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
             words_meant = [word if names.is_name(word) else names.meant(word) for word in words]
@@ -105,27 +105,36 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
                 "UNTIL",
             }
             if len(calls) > 1 and are_calls and not all(words_meant):
-                begin = start + piece.start()
-                first, last = calls[0].start("call"), calls[-1].end()
-                ends = [(it.end(), other.start("call")) for it, other in pairwise(calls)]
-                edits = tuple(Edit(Span(begin + a, begin + b), ";") for a, b in ends)
-                values = {"before": calls[0]["call"], "fix": ";".join(it["call"] for it in calls)}
-                place = Span(begin + first, begin + last)
-                at = Span(begin + ends[0][0] - 1, begin + ends[0][0])
+                instruction_start = line_start + piece.start()
+                first_offset, end_offset = calls[0].start("call"), calls[-1].end()
+                ends = [
+                    (call.end(), next_call.start("call")) for call, next_call in pairwise(calls)
+                ]
+                edits = tuple(
+                    Edit(Span(instruction_start + a, instruction_start + b), ";") for a, b in ends
+                )
+                values = {
+                    "before": calls[0]["call"],
+                    "fix": ";".join(call["call"] for call in calls),
+                }
+                whole_span = Span(instruction_start + first_offset, instruction_start + end_offset)
+                span = Span(instruction_start + ends[0][0] - 1, instruction_start + ends[0][0])
                 repair = Repair(edits, False)
-                diagnostics.append(Diagnostic(codes.MISSING_SEPARATOR, at, values, place, repair))
-        start += len(line) + 1
+                diagnostics.append(
+                    Diagnostic(codes.MISSING_SEPARATOR, span, values, whole_span, repair)
+                )
+        line_start += len(line) + 1
     return diagnostics
 
 
 def _only_calls(piece: str) -> list[re.Match[str]]:
     """Return the calls of a text of calls alone, nothing where it has something else."""
     calls: list[re.Match[str]] = []
-    at = 0
-    while call := _CALL_AFTER_BLANKS.match(piece, at):
+    offset = 0
+    while call := _CALL_AFTER_BLANKS.match(piece, offset):
         calls.append(call)
-        at = call.end()
-    return [] if piece[at:].strip() else calls
+        offset = call.end()
+    return [] if piece[offset:].strip() else calls
 
 
 def _calls(body: str, start: int) -> Iterator[_Call]:
@@ -147,10 +156,10 @@ def _call_diagnostic(
     return Diagnostic(code, call.span, {**values, "fix": fix}, call.span, repair)
 
 
-def _points(call: _Call) -> Diagnostic | None:
+def _point_diagnostic(call: _Call) -> Diagnostic | None:
     """`BEEP(1. 440)`, of a phone: a point before a space is a comma."""
-    inside = call.text.partition("(")[2].rpartition(")")[0]
-    values = _split_values(_SPACED_POINT.sub(",", inside))
+    arguments_text = call.text.partition("(")[2].rpartition(")")[0]
+    values = _split_values(_SPACED_POINT.sub(",", arguments_text))
     is_whole = len(call.values) < len(call.word.arguments) == len(values)
     if not is_whole or not all(map(_NUMBER.fullmatch, values)):
         return None
@@ -158,25 +167,27 @@ def _points(call: _Call) -> Diagnostic | None:
     return _call_diagnostic(call, codes.MISSING_COMMA, fix, True)
 
 
-def _unit_apart(call: _Call) -> Diagnostic | None:
+def _unit_diagnostic(call: _Call) -> Diagnostic | None:
     """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
     unit = UNIT_OF.get(call.word.text, "")
     values = [value for value in call.values if value.upper() != unit]
-    before = _UNIT_BEFORE.fullmatch(values[0]) if values else None
-    if before and before["unit"].upper() == unit and len(values) == len(call.values):
-        values[0] = before["value"]
+    unit_match = _UNIT_BEFORE.fullmatch(values[0]) if values else None
+    if unit_match and unit_match["unit"].upper() == unit and len(values) == len(call.values):
+        values[0] = unit_match["value"]
     elif len(values) != len(call.values) - 1:
         return None
     if not unit or len(values) != len(call.word.arguments) or not all(values):
         return None
-    first, second = (word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
+    first_word, second_word = (
+        word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit
+    )
     fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
     return _call_diagnostic(
-        call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second
+        call, codes.UNIT_PLACE, fix, True, found=unit, first=first_word, second=second_word
     )
 
 
-def _thousands(call: _Call) -> Diagnostic | None:
+def _thousands_diagnostic(call: _Call) -> Diagnostic | None:
     """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
     arguments, number_match = call.word.arguments, _THOUSANDS.search(call.text)
     if number_match is None or len(call.values) <= len(arguments):
@@ -194,17 +205,17 @@ def _thousands(call: _Call) -> Diagnostic | None:
     return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=number_match[0])
 
 
-def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
+def _motor_time_diagnostic(call: _Call, text: str) -> Diagnostic | None:
     """`M(50, 80, 3)`, `M(3, 50, 80)`: how long the motors run is said by a W after them."""
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
     values = [_PERCENT_AT_END.sub("", value) for value in call.values]
     splits = [(values[-1], values[:-1]), (values[0], values[1:])]
     candidates = [(_seconds_text(time), powers) for time, powers in splits if _are_powers(powers)]
-    seconds, powers = next((each for each in candidates if each[0]), ("", []))
-    if not seconds:
+    seconds_text, powers = next((candidate for candidate in candidates if candidate[0]), ("", []))
+    if not seconds_text:
         return None
-    fix = f"{call.with_values(powers)};W({seconds})"
+    fix = f"{call.with_values(powers)};W({seconds_text})"
     fix += "" if text[call.span.end :].strip(" ;\t\r\n") else ";S"
     gap_values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
     return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **gap_values)
@@ -220,8 +231,8 @@ def _seconds_text(value: str) -> str:
 
 def _are_powers(values: Sequence[str]) -> bool:
     return all(
-        abs(float(it)) <= MOST_POWER if _NUMBER.fullmatch(it) else it.upper() not in WORDS
-        for it in values
+        abs(float(value)) <= MOST_POWER if _NUMBER.fullmatch(value) else value.upper() not in WORDS
+        for value in values
     )
 
 
@@ -230,8 +241,8 @@ def _are_powers(values: Sequence[str]) -> bool:
 
 def own_example(text: str) -> str:
     """Return how an instruction with CM or DEG in another place is written with its own values."""
-    if stored := _STORED_WITH_UNIT.fullmatch(text):
-        name, number, unit = stored[1], stored[2], stored[3].upper()
+    if stored_match := _STORED_WITH_UNIT.fullmatch(text):
+        name, number, unit = stored_match[1], stored_match[2], stored_match[3].upper()
         word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
         return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
     call = next(_calls(text, 0), None)
@@ -252,19 +263,22 @@ def likely_word(word: str, text: str) -> str:
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
-    short, similar_word = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
+    expansions, similar_word = (
+        expand_short(word),
+        "" if lexicon_concept(word) else heard_as(word) or "",
+    )
     if similar_word in CALL_WORDS:
-        result = similar_word
+        likely = similar_word
     elif is_tone:
-        result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
-    elif len(short) == 1:
-        result = short[0]
+        likely = "BEEP" if word[:1] == "B" or "BEEP" in expansions else ""
+    elif len(expansions) == 1:
+        likely = expansions[0]
     else:
-        result = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
-    return result if result in WORDS and len(WORDS[result].arguments) == len(values) else ""
+        likely = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
+    return likely if likely in WORDS and len(WORDS[likely].arguments) == len(values) else ""
 
 
-def usage_with(word: str, number: str) -> str:
+def usage_of_number(word: str, number: str) -> str:
     """Return how a word is written with the one number that is there, "" where that may be other.
 
     So much of a turn is degrees; of a way it may be a power.

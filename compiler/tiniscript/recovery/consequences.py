@@ -29,22 +29,26 @@ def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> l
     explained_codes = {
         code for diagnostic in diagnostics for code in _CONSEQUENCES.get(diagnostic.code, ())
     }
-    follow = {id(diagnostic) for rule in _RULES for diagnostic in rule(diagnostics, source)}
+    consequence_ids = {
+        id(diagnostic) for rule in _RULES for diagnostic in rule(diagnostics, source)
+    }
     return [
         diagnostic
         for diagnostic in diagnostics
-        if diagnostic.code not in explained_codes and id(diagnostic) not in follow
+        if diagnostic.code not in explained_codes and id(diagnostic) not in consequence_ids
     ]
 
 
 def _ends_of_a_misspelt_loop(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
     """Ends of blocks, where one END_LOOP is left for what is nearly LOOP."""
-    rights = [
+    missing_headers = [
         diagnostic.values["right"]
         for diagnostic in diagnostics
         if diagnostic.code is codes.NOT_OPEN
     ]
-    if rights == ["LOOP"] and any(it.values.get("near", "")[:4] == "LOOP" for it in diagnostics):
+    if missing_headers == ["LOOP"] and any(
+        it.values.get("near", "")[:4] == "LOOP" for it in diagnostics
+    ):
         yield from (diagnostic for diagnostic in diagnostics if diagnostic.code in _END_CODES)
 
 
@@ -68,14 +72,14 @@ def _uses_of_a_reserved_word(
     edits = [
         diagnostic.repair.edits[1:] for diagnostic in reserved_diagnostics if diagnostic.repair
     ]
-    renamed = {edit.span for edits_of_one in edits for edit in edits_of_one}
-    starts = {span.start for span in renamed}
+    renamed_spans = {edit.span for edits_of_one in edits for edit in edits_of_one}
+    starts = {span.start for span in renamed_spans}
     for diagnostic in diagnostics:
         if starts and instruction_at(diagnostic.span, source)[0] in starts:
             yield diagnostic
             continue
         is_of_word = diagnostic.code is codes.NO_VALUE and diagnostic.values.get("word") in words
-        if is_of_word or diagnostic.span in renamed:
+        if is_of_word or diagnostic.span in renamed_spans:
             yield diagnostic
 
 
@@ -97,13 +101,13 @@ def _uses_of_a_list(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Di
 def _units_of_an_unknown_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
-    unknown_places = [
+    unknown_offsets = [
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code in _WORD_CODES
     ]
     units = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNIT_PLACE]
-    for diagnostic in units[:_MOST_UNITS] if unknown_places else ():
+    for diagnostic in units[:_MOST_UNITS] if unknown_offsets else ():
         start, end = instruction_at(diagnostic.span, source)
-        if any(start <= place < end for place in unknown_places):
+        if any(start <= offset < end for offset in unknown_offsets):
             yield diagnostic
 
 
@@ -111,26 +115,26 @@ def _ends_of_a_question_after(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
     """That a move without end needs an UNTIL: `F(FOREVER, 60) WHILE(DISTANCE > 9)`."""
-    question_places = [
+    question_offsets = [
         diagnostic.span.start
         for diagnostic in diagnostics
         if diagnostic.code is codes.QUESTION_AFTER
     ]
     for diagnostic in diagnostics:
         start = diagnostic.span.start
-        after = (source.text[start:place] for place in question_places if start < place)
+        texts_between = (source.text[start:offset] for offset in question_offsets if start < offset)
         if diagnostic.code is codes.FOREVER_NEEDS_UNTIL and any(
-            not {*it} & {*";\r\n"} for it in after
+            not {*text_between} & {*";\r\n"} for text_between in texts_between
         ):
             yield diagnostic
 
 
 def _calls_of_a_task(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
     """What a TASK with a name was to be started by, which is told at the TASK."""
-    started = {it.values.get("started") for it in diagnostics} - {None, ""}
-    for diagnostic in diagnostics if started else ():
+    started_names = {it.values.get("started") for it in diagnostics} - {None, ""}
+    for diagnostic in diagnostics if started_names else ():
         names = (diagnostic.values.get(key, "").upper() for key in ("name", "found"))
-        if diagnostic.code in _UNTAUGHT_CODES and started & {*names}:
+        if diagnostic.code in _UNTAUGHT_CODES and started_names & {*names}:
             yield diagnostic
 
 

@@ -16,8 +16,8 @@ from tiniscript.base.words import WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery.meanings import Lexeme, lexemes
-from tiniscript.recovery.trailing_tokens import width
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.trailing_tokens import token_width
+from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 _INSTRUCTION_STARTS = (";", "{", "}", "|")
@@ -25,54 +25,56 @@ _IN_WORDS = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
-    """A header: tokens `start` up to `end` count `loop_count` with `name`, from `first` on, by
-    `step`.
+    """A header: tokens `start_index` to `end_index` count `loop_count` with `name`.
 
-    The words before `name_start` say that it is one: `for each`.
+    It begins at `first_value`, and goes on by `step`. The words before `name_index` say that it is
+    one: `for each`.
     """
 
-    start: int
-    name_start: int
-    end: int
+    start_index: int
+    name_index: int
+    end_index: int
     name: str
-    first: int
+    first_value: int
     loop_count: int
     step: int
 
 
-def counters(source: Source) -> list[Diagnostic]:
+def counter_diagnostics(source: Source) -> list[Diagnostic]:
     """Return what is told of headers with a counter that is used, and of the ends that name it."""
     diagnostics: list[Diagnostic] = []
-    rows = [lexemes(without_note(line)[0]) for line in source.text.split("\n")]
+    rows = [lexemes(split_note(line)[0]) for line in source.text.split("\n")]
     headers_by_row = [[*_headers(row)] for row in rows]
-    names = {item.name for row in headers_by_row for item in row}
+    names = {counter.name for row in headers_by_row for counter in row}
     if not names:
         return []
     words = Counter(token.text for row in rows for token in row)
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
-    start = 0
+    line_start = 0
     for row, headers, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
-        spans = _counter_spans(row, start)
-        for item in headers:
-            uses_in_header = [it.text for it in row[item.start : item.end]].count(item.name)
-            is_used = words[item.name] > uses_in_header + ends[item.name]
-            header = row[item.start : item.end]
-            is_of_c = any(it.text == ";" for it in header) and not row[item.end :]
-            if is_used or is_of_c or any(lexicon_meaning(it.text, "each") for it in header):
-                span = Span(spans[item.start].start, spans[item.end - 1].end)
+        spans = _counter_spans(row, line_start)
+        for counter in headers:
+            uses_in_header = [
+                token.text for token in row[counter.start_index : counter.end_index]
+            ].count(counter.name)
+            is_used = words[counter.name] > uses_in_header + ends[counter.name]
+            header = row[counter.start_index : counter.end_index]
+            is_of_c = any(token.text == ";" for token in header) and not row[counter.end_index :]
+            if is_used or is_of_c or any(lexicon_meaning(token.text, "each") for token in header):
+                span = Span(spans[counter.start_index].start, spans[counter.end_index - 1].end)
                 diagnostics.append(
                     _counter_diagnostic(
                         span,
-                        _spans_text(source, spans[item.start : item.name_start]),
+                        _spans_text(source, spans[counter.start_index : counter.name_index]),
                         "LOOP",
-                        _loop(item, is_used),
+                        _loop_text(counter, is_used),
                     )
                 )
         for k, (end, name) in enumerate(pairwise(row)):
             if name.text in names and _is_end(end, name, name.text):
                 span = Span(spans[k].start, spans[k + 1].end)
                 diagnostics.append(_counter_diagnostic(span, source[span], "END_LOOP", "END_LOOP"))
-        start += len(line) + 1
+        line_start += len(line) + 1
     return diagnostics
 
 
@@ -92,17 +94,17 @@ def _spans_text(source: Source, spans: Sequence[Span]) -> str:
     return source[Span(spans[0].start, spans[-1].end)].partition("(")[0].strip()
 
 
-def _loop(counter: _Counter, is_used: bool) -> str:
-    name, step, before = counter.name, counter.step, counter.first - counter.step
+def _loop_text(counter: _Counter, is_used: bool) -> str:
+    name, step, initial_value = counter.name, counter.step, counter.first_value - counter.step
     loop = f"LOOP({counter.loop_count})"
-    return f"{name} = {before};{loop};{name} = {name} + {step}" if is_used else loop
+    return f"{name} = {initial_value};{loop};{name} = {name} + {step}" if is_used else loop
 
 
-def _counter_spans(row: Sequence[Lexeme], start: int) -> list[Span]:
+def _counter_spans(row: Sequence[Lexeme], end: int) -> list[Span]:
     spans = []
     for token in row:
-        start += width(token)
-        spans.append(Span(start - len(token.source or ""), start))
+        end += token_width(token)
+        spans.append(Span(end - len(token.source or ""), end))
     return spans
 
 
@@ -117,87 +119,92 @@ def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
             yield counter
 
 
-def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
+def _header(tokens: Sequence[Lexeme], start_index: int) -> _Counter | None:
     """Return what a header counts that begins at a token."""
-    if not lexicon_meaning(row[start].text, "count") and lexicon_concept(row[start].text) != "LOOP":
+    if (
+        not lexicon_meaning(tokens[start_index].text, "count")
+        and lexicon_concept(tokens[start_index].text) != "LOOP"
+    ):
         return None
-    rest = _Rest(row, start + 1)
-    has_bracket = rest.take("(")
-    while rest.means("each", "every", "declare"):
-        rest.k += 1
-    name_start, name = rest.k, rest.text()
+    reader = _TokenReader(tokens, start_index + 1)
+    has_bracket = reader.try_take("(")
+    while reader.means("each", "every", "declare"):
+        reader.k += 1
+    name_index, name = reader.k, reader.text()
     if name in WORDS or not name.isidentifier() or lexicon_concept(name):
         return None
-    rest.k += 1
+    reader.k += 1
     step: int | None = 1
-    if rest.text() in _IN_WORDS and rest.text(1) == "RANGE" and rest.text(2) == "(":
-        rest.k += 3
-        numbers = [rest.number()]
-        numbers += [rest.number()] if rest.take(",") else []
-        step = rest.number() if rest.take(",") else step
-        first, bound = (0, *numbers)[-2:]
-        is_complete = rest.take(")")
-    elif rest.take("=", ":=") or rest.means("from", "to"):
-        rest.k += rest.means("from", "to")
-        first = rest.number()
-        if rest.take(";"):
-            is_complete = rest.take(name)
-            is_closed = rest.text() == "<="
-            is_complete &= rest.take("<", "<=")
-            bound = _plus(rest.number(), int(is_closed))
-            is_complete &= rest.take(";") and rest.take(name)
-            is_increment = rest.text() == "+" and rest.text(1) == "="
-            rest.k += 2 * is_increment
-            step = rest.number() if is_increment or rest.take("+=") else step
-            is_complete &= is_increment or step != 1 or rest.take("++")
+    if reader.text() in _IN_WORDS and reader.text(1) == "RANGE" and reader.text(2) == "(":
+        reader.k += 3
+        numbers = [reader.number()]
+        numbers += [reader.number()] if reader.try_take(",") else []
+        step = reader.number() if reader.try_take(",") else step
+        first_value, bound = (0, *numbers)[-2:]
+        is_complete = reader.try_take(")")
+    elif reader.try_take("=", ":=") or reader.means("from", "to"):
+        reader.k += reader.means("from", "to")
+        first_value = reader.number()
+        if reader.try_take(";"):
+            is_complete = reader.try_take(name)
+            is_closed = reader.text() == "<="
+            is_complete &= reader.try_take("<", "<=")
+            bound = _add(reader.number(), int(is_closed))
+            is_complete &= reader.try_take(";") and reader.try_take(name)
+            is_increment = reader.text() == "+" and reader.text(1) == "="
+            reader.k += 2 * is_increment
+            step = reader.number() if is_increment or reader.try_take("+=") else step
+            is_complete &= is_increment or step != 1 or reader.try_take("++")
         else:
-            is_complete = rest.means("to", "until")
-            while rest.means("to", "until"):
-                rest.k += 1
-            bound = _plus(rest.number(), 1)
-            if rest.unit() == "steps":
-                rest.k += 1
-                step = rest.number()
+            is_complete = reader.means("to", "until")
+            while reader.means("to", "until"):
+                reader.k += 1
+            bound = _add(reader.number(), 1)
+            if reader.unit_text() == "steps":
+                reader.k += 1
+                step = reader.number()
     else:
         return None
-    is_complete = is_complete and (not has_bracket or rest.take(")"))
-    rest.k += rest.text() == ":" or rest.means("do")
-    if not is_complete or first is None or bound is None or bound <= first or not step:
+    is_complete = is_complete and (not has_bracket or reader.try_take(")"))
+    reader.k += reader.text() == ":" or reader.means("do")
+    if not is_complete or first_value is None or bound is None or bound <= first_value or not step:
         return None
-    return _Counter(start, name_start, rest.k, name, first, -((first - bound) // step), step)
+    return _Counter(
+        start_index, name_index, reader.k, name, first_value, -((first_value - bound) // step), step
+    )
 
 
-def _plus(number: int | None, increment: int) -> int | None:
+def _add(number: int | None, increment: int) -> int | None:
     return None if number is None else number + increment
 
 
-class _Rest:
+class _TokenReader:
     """What follows in a row of tokens, from `k` on."""
 
-    def __init__(self, row: Sequence[Lexeme], k: int) -> None:
-        self.row = row
+    def __init__(self, tokens: Sequence[Lexeme], k: int) -> None:
+        self.tokens = tokens
         self.k = k
 
     def text(self, offset: int = 0) -> str:
-        return self.row[self.k + offset].text if self.k + offset < len(self.row) else ""
+        return self.tokens[self.k + offset].text if self.k + offset < len(self.tokens) else ""
 
     def means(self, *kinds: str) -> bool:
-        is_word = self.k < len(self.row) and self.row[self.k].kind is WORD
+        is_word = self.k < len(self.tokens) and self.tokens[self.k].kind is WORD
         return is_word and bool(lexicon_meaning(self.text(), *kinds))
 
-    def take(self, *signs: str) -> bool:
+    def try_take(self, *signs: str) -> bool:
         """Pass one of these signs, or say that there is none."""
         is_there = self.text() in signs
         self.k += is_there
         return is_there
 
-    def unit(self) -> str:
+    def unit_text(self) -> str:
         """Return the unit that a word is, "" for none."""
         return (*lexicon_meaning(self.text(), "unit")[:1], "")[0]
 
     def number(self) -> int | None:
         """Pass a whole number, None for anything else: an amount with a unit is no count."""
-        is_there = self.k < len(self.row) and self.row[self.k].kind is NUMBER
-        result = int(self.text()) if is_there and self.text().isdecimal() else None
+        is_there = self.k < len(self.tokens) and self.tokens[self.k].kind is NUMBER
+        number = int(self.text()) if is_there and self.text().isdecimal() else None
         self.k += is_there
-        return result if self.unit() in ("", "steps") else None
+        return number if self.unit_text() in ("", "steps") else None

@@ -35,9 +35,11 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
         for it in diagnostics
         if it.values.get("near") or it.values.get("first")
     }
-    quoted = {k for k, diagnostic in enumerate(diagnostics) if _unquotes(diagnostic, source)}
-    diagnostics = _unquoted([diagnostics[k] for k in sorted(quoted)], source) + [
-        diagnostic for k, diagnostic in enumerate(diagnostics) if k not in quoted
+    quote_indexes = {
+        k for k, diagnostic in enumerate(diagnostics) if _removes_quotes(diagnostic, source)
+    }
+    diagnostics = _merge_quotes([diagnostics[k] for k in sorted(quote_indexes)], source) + [
+        diagnostic for k, diagnostic in enumerate(diagnostics) if k not in quote_indexes
     ]
     groups: dict[object, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
@@ -55,15 +57,16 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
         elif code in _MERGED_CODES and not (
             code is codes.UNKNOWN_NAME and values.get("found") in words_meant
         ):
-            names = _MERGED_CODES[code]
+            gap_names = _MERGED_CODES[code]
             key = tuple(
-                values.get(name, "").upper() for name in (values if names is None else names)
+                values.get(gap_name, "").upper()
+                for gap_name in (values if gap_names is None else gap_names)
             )
         groups.setdefault((code, key), []).append(diagnostic)
     return codes.in_order([_merge_diagnostics(group, source) for group in groups.values()])
 
 
-def _unquotes(diagnostic: Diagnostic, source: Source) -> bool:
+def _removes_quotes(diagnostic: Diagnostic, source: Source) -> bool:
     """Whether a repair takes quotation marks out, and does nothing else."""
     edits = diagnostic.repair.edits if diagnostic.repair else ()
     return bool(edits) and all(
@@ -71,38 +74,41 @@ def _unquotes(diagnostic: Diagnostic, source: Source) -> bool:
     )
 
 
-def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
+def _merge_quotes(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return one diagnostic for all quotation marks of a line."""
-    rows: dict[int, list[Diagnostic]] = {}
+    groups_by_line: dict[int, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
-        rows.setdefault(source.position(diagnostic.span.start)[0], []).append(diagnostic)
-    result = []
-    for row, group in rows.items():
+        groups_by_line.setdefault(source.position(diagnostic.span.start)[0], []).append(diagnostic)
+    merged = []
+    for line_number, group in groups_by_line.items():
         repairs = [diagnostic.repair for diagnostic in group if diagnostic.repair]
         edits = sorted(edit for repair in repairs for edit in repair.edits)
         if len(group) > 1 and any(diagnostic.code is codes.QUOTE for diagnostic in group):
-            line = source.line_span(row)
-            shifted_edits = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
-            fix = apply_edits(source[line], shifted_edits).strip("\r\n \t")
+            line_span = source.line_span(line_number)
+            shifted_edits = [
+                Edit(Span(a - line_span.start, b - line_span.start), new_text)
+                for (a, b), new_text in edits
+            ]
+            fix = apply_edits(source[line_span], shifted_edits).strip("\r\n \t")
             repair = Repair(tuple(edits), all(repair.is_sure for repair in repairs))
             span = Span(edits[0].span.start, edits[-1].span.end)
             group = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
-        result += group
-    return result
+        merged += group
+    return merged
 
 
 def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnostic:
-    first = group[0]
-    if len(group) == 1 or first.code not in (*_GAPS_WITH_LINES, codes.MISSING_OPEN):
-        return first
-    if first.code is codes.MISSING_OPEN:
+    first_diagnostic = group[0]
+    if len(group) == 1 or first_diagnostic.code not in (*_GAPS_WITH_LINES, codes.MISSING_OPEN):
+        return first_diagnostic
+    if first_diagnostic.code is codes.MISSING_OPEN:
         words = ", ".join(dict.fromkeys(diagnostic.values["word"] for diagnostic in group))
         calls = (
             diagnostic.values.get("fix") or diagnostic.values["example"]
             for diagnostic in group[:MOST_EXAMPLE_CALLS]
         )
-        values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
-        return first._replace(values=values, place=None, repair=None)
+        values = {**first_diagnostic.values, "words": words, "fix": "", "example": "; ".join(calls)}
+        return first_diagnostic._replace(values=values, place=None, repair=None)
     first_line, *other_lines = (
         str(source.position(diagnostic.span.start)[0]) for diagnostic in group
     )
@@ -115,5 +121,7 @@ def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnosti
     edits = tuple(
         edit for diagnostic in group if diagnostic.repair for edit in diagnostic.repair.edits
     )
-    repair = first.repair and Repair(edits, all(it.repair and it.repair.is_sure for it in group))
-    return first._replace(values={**first.values, **gaps}, repair=repair)
+    repair = first_diagnostic.repair and Repair(
+        edits, all(it.repair and it.repair.is_sure for it in group)
+    )
+    return first_diagnostic._replace(values={**first_diagnostic.values, **gaps}, repair=repair)

@@ -17,7 +17,12 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import search, slips
-from tiniscript.recovery.ends import added_end, header_of, places_text, possible_places
+from tiniscript.recovery.ends import (
+    added_end_index,
+    candidates_text,
+    header_index,
+    possible_last_instructions,
+)
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
     WORD_OF_END,
@@ -29,8 +34,14 @@ from tiniscript.recovery.meanings import (
     texts,
 )
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import BLOCK_WORDS, Change, Slip, alike, instructions
-from tiniscript.recovery.writing import in_one_line, laid_out, spoken_signs, tokens_of, without_note
+from tiniscript.recovery.slips import BLOCK_WORDS, Change, Slip, common_lengths, instructions
+from tiniscript.recovery.writing import (
+    format_line,
+    in_one_line,
+    split_note,
+    spoken_signs,
+    tokens_of,
+)
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 _MOST_SIGN_NAMES = 3  # names of signs that a message shows
@@ -50,7 +61,7 @@ _ARMS = ("ELSE", "ELSEIF")
 _WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
 
 
-class Slipped(NamedTuple):
+class SlipDetails(NamedTuple):
     """A slip, and what only its line, or the text around it, can say of it.
 
     `right` are names that get their letters, or a note; `needless` is a brace, `early` an end, both
@@ -73,11 +84,11 @@ class Slipped(NamedTuple):
         own_values = {
             name: str(value) for name, value in self._asdict().items() if name != "slip" and value
         }
-        return slips.values_of(self.slip, code) | own_values
+        return slips.message_values(self.slip, code) | own_values
 
 
 @dataclass
-class Unended:
+class UnendedBlock:
     """A block that begins with `word` and lacks its end, `right`.
 
     It has `behind` on its own line, where it may end after any of `places`, or it is `begun` on
@@ -103,63 +114,66 @@ class Unended:
 
 @dataclass
 class Explanation:
-    """What is told of a line: its code, and what it is `about`.
+    """What is told of a line: its code, and what it is `details`.
 
-    Where more of its block changes, that becomes `whole`, and ends with `ends`.
+    Where more of its block changes, that becomes `block_text`, and ends with `end_word`.
 
     `place` is what `fix` stands for; `edits` are all that belong to it: ends, braces. It begins in
-    change `first`, from 0; `last` is a change, and how many of its lines belong to it; `opened` are
-    the changes in which blocks begin that it ends. `is_sure`: nothing that it changes is a guess.
+    change `first_change`, from 0; `last_line` is a change, and how many of its lines belong to it;
+    `opening_changes` are the changes in which blocks begin that it ends. `is_sure`: nothing that it
+    changes is a guess.
     """
 
     code: Code
     place: Span
     span: Span
-    about: Slipped | Unended
+    details: SlipDetails | UnendedBlock
     edits: list[Edit]
-    first: int
-    last: tuple[int, int]
-    whole: str = ""
-    ends: str = ""
-    opened: set[int] = field(default_factory=set)
+    first_change: int
+    last_line: tuple[int, int]
+    block_text: str = ""
+    end_word: str = ""
+    opening_changes: set[int] = field(default_factory=set)
     is_sure: bool = True
 
     @property
     def slip(self) -> Slip | None:
-        return self.about.slip if isinstance(self.about, Slipped) else None
+        return self.details.slip if isinstance(self.details, SlipDetails) else None
 
     @property
     def fix(self) -> str:
         """What the instruction becomes; nothing where only an end is missing."""
-        about = self.about
-        return (about.fix or slips.fix_of(about.slip)) if isinstance(about, Slipped) else ""
+        details = self.details
+        return (
+            (details.fix or slips.fix_of(details.slip)) if isinstance(details, SlipDetails) else ""
+        )
 
     def values_as(self, code: Code) -> dict[str, str]:
         """Return the values of a message with this code."""
-        return self.about.values(code) | {"whole": self.whole, "ends": self.ends}
+        return self.details.values(code) | {"whole": self.block_text, "ends": self.end_word}
 
 
-def explained(program: str, candidate: Candidate) -> list[Explanation]:
+def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
     explainer = _Explainer(program, candidate)
     for k, change in enumerate(candidate.changes):
         explainer.explain_change(k, change)
-    for item in explainer.out:
-        explainer.complete(item)
-    return explainer.out
+    for explanation in explainer.explanations:
+        explainer.finish(explanation)
+    return explainer.explanations
 
 
 @dataclass
 class _Block:
-    """A block that is open: what is told of its beginning, which is in change `first`.
+    """A block that is open: what is told of its beginning, which is in change `first_change`.
 
-    `inside` is the first word of each line of its last arm.
+    `first_words` is the first word of each line of its last arm.
     """
 
     word: str
-    first: int
+    first_change: int
     explanation: Explanation | None = None
-    inside: list[str] = field(default_factory=list)
+    first_words: list[str] = field(default_factory=list)
 
 
 class _Explainer:
@@ -168,17 +182,22 @@ class _Explainer:
         self.candidate = candidate
         self.changes = candidate.changes
         self.lines = program.split("\n")
-        self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
-        self.out: list[Explanation] = []
-        self.open: list[_Block] = []
+        self.line_starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
+        self.explanations: list[Explanation] = []
+        self.open_blocks: list[_Block] = []
 
-    def complete(self, explanation: Explanation) -> None:
+    def finish(self, explanation: Explanation) -> None:
         if explanation.code is not codes.NEVER_ENDS:
-            is_shown = self.candidate.is_whole and explanation.last > (explanation.first, 1)
-            explanation.whole = (
-                self.joined_changes(explanation.first, explanation.last) if is_shown else ""
+            is_shown = self.candidate.is_whole and explanation.last_line > (
+                explanation.first_change,
+                1,
             )
-        start, end = self.words(explanation.edits[0].span)
+            explanation.block_text = (
+                self.joined_changes(explanation.first_change, explanation.last_line)
+                if is_shown
+                else ""
+            )
+        start, end = self.widen_to_words(explanation.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
         explanation.span = Span(start, end)
@@ -186,292 +205,366 @@ class _Explainer:
 
     def is_sure(self, explanation: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
-        places = (place for edit in explanation.edits for place in edit.span)
-        lines = {self.program.count("\n", 0, place) for place in places}
+        offsets = (offset for edit in explanation.edits for offset in edit.span)
+        lines = {self.program.count("\n", 0, offset) for offset in offsets}
         touched_changes = [
-            change for change in self.changes if lines & {*range(change.first, change.last + 1)}
+            change
+            for change in self.changes
+            if lines & {*range(change.first_line, change.last_line + 1)}
         ]
-        touched_changes += [self.changes[k] for k in (explanation.first, *explanation.opened)]
-        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched_changes)
+        touched_changes += [
+            self.changes[k] for k in (explanation.first_change, *explanation.opening_changes)
+        ]
+        text = " ".join(
+            f"{change.text} {self.lines[change.first_line]}" for change in touched_changes
+        )
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & BLOCK_WORDS)
         is_block_sure = self.candidate.has_sure_blocks or not has_blocks
-        return is_block_sure and all(item.is_sure for item in touched_changes)
+        return is_block_sure and all(change.is_sure for change in touched_changes)
 
-    def words(self, span: Span) -> Span:
+    def widen_to_words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
         start, end = span
         if start < end:
-            line = self.program.rfind("\n", 0, start) + 1
-            before = _WORD_BEFORE.search(self.program, line, start + 1)
-            behind = _WORD.match(self.program, end - 1)
-            start -= len(before[0]) - 1 if before else 0
-            end += len(behind[0]) - 1 if behind else 0
+            line_start = self.program.rfind("\n", 0, start) + 1
+            word_start = _WORD_BEFORE.search(self.program, line_start, start + 1)
+            word_end = _WORD.match(self.program, end - 1)
+            start -= len(word_start[0]) - 1 if word_start else 0
+            end += len(word_end[0]) - 1 if word_end else 0
         return Span(start, end)
 
-    def joined_changes(self, first: int, last: tuple[int, int]) -> str:
+    def joined_changes(self, first_change: int, last_line: tuple[int, int]) -> str:
         """Return what changes become, as one line, nothing where that is long."""
-        *earlier_lines, text = (change.text for change in self.changes[first : last[0] + 1])
-        return in_one_line("\n".join((*earlier_lines, *text.split("\n")[: last[1]])))
+        *earlier_lines, last_text = (
+            change.text for change in self.changes[first_change : last_line[0] + 1]
+        )
+        return in_one_line("\n".join((*earlier_lines, *last_text.split("\n")[: last_line[1]])))
 
     def explain_change(self, k: int, change: search.Change) -> None:
-        old = "\n".join(self.lines[change.first : change.last + 1]).rstrip("\r")
+        old_text = "\n".join(self.lines[change.first_line : change.last_line + 1]).rstrip("\r")
         own_text, *ends = change.text.split("\n")
-        enclosing = self.open[-1] if self.open else None
-        before, after = tokens_of(old), tokens_of(own_text)
-        closed = self.walk(k, after)
-        parts = [] if closed or "\n" in old else self.parts(k, old, own_text, before, after)
-        for part in parts:
-            self.new(k, part, *slips.code_of(part))
-        if own_text != old and not parts:
-            place = Span(self.starts[change.first], self.starts[change.first] + len(old))
-            edit = trimmed(place.start, old, own_text)
-            if ends and edit.span.start == place.end:
+        enclosing = self.open_blocks[-1] if self.open_blocks else None
+        old_tokens, new_tokens = tokens_of(old_text), tokens_of(own_text)
+        closed_block = self.track_blocks(k, new_tokens)
+        instructions_changed = (
+            []
+            if closed_block or "\n" in old_text
+            else self.changed_instructions(k, old_text, own_text, old_tokens, new_tokens)
+        )
+        for instruction in instructions_changed:
+            self.add_explanation(k, instruction, *slips.code_of(instruction))
+        if own_text != old_text and not instructions_changed:
+            span = Span(
+                self.line_starts[change.first_line],
+                self.line_starts[change.first_line] + len(old_text),
+            )
+            edit = trimmed_edit(span.start, old_text, own_text)
+            if ends and edit.span.start == span.end:
                 edit = Edit(
-                    place, own_text
+                    span, own_text
                 )  # the ends that are missing behind it come behind all of it
-            part = Change(place, edit, self.changes[k].steps, before, after)
-            code, step = slips.code_of(part)
-            is_brace = code is codes.BRACES and before[0].text in BRACES
-            is_arm = bool(after) and after[0].text in _ARMS
+            instruction = Change(span, edit, self.changes[k].steps, old_tokens, new_tokens)
+            code, step = slips.code_of(instruction)
+            is_brace = code is codes.BRACES and old_tokens[0].text in BRACES
+            is_arm = bool(new_tokens) and new_tokens[0].text in _ARMS
             has_added_end = code in (_ARM_CODES if is_arm else _BLOCK_CODES) and (
-                closed or is_brace or is_arm
+                closed_block or is_brace or is_arm
             )
-            message = (
-                self.added(closed or enclosing, edit, (k, 1), after) if has_added_end else None
+            explanation = (
+                self.add_to_block_start(closed_block or enclosing, edit, (k, 1), new_tokens)
+                if has_added_end
+                else None
             )
-            message = message or self.new(k, part, code, step)
-            message.opened |= {closed.first} if closed else set()
-            if code is codes.WRONG_END and isinstance(details := message.about, Slipped):
+            explanation = explanation or self.add_explanation(k, instruction, code, step)
+            explanation.opening_changes |= {closed_block.first_change} if closed_block else set()
+            if code is codes.WRONG_END and isinstance(details := explanation.details, SlipDetails):
                 right = slips.right_of(details.slip)
-                line = str(self.changes[closed.first if closed else k].first + 1)
-                message.about = details._replace(
+                line = str(
+                    self.changes[closed_block.first_change if closed_block else k].first_line + 1
+                )
+                explanation.details = details._replace(
                     word=WORD_OF_END.get(right, ""), line=line, fix=right
                 )
-            for block in self.open:
-                if block.first == k or is_brace:
-                    block.explanation = block.explanation or message
+            for block in self.open_blocks:
+                if block.first_change == k or is_brace:
+                    block.explanation = block.explanation or explanation
         line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
-            self.end((k, count), change, end.strip(), line_end + end)
+            self.add_missing_end((k, count), change, end.strip(), line_end + end)
 
-    def parts(
-        self, k: int, old: str, own_text: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
+    def changed_instructions(
+        self,
+        k: int,
+        old_text: str,
+        own_text: str,
+        old_tokens: Sequence[Lexeme],
+        new_tokens: Sequence[Lexeme],
     ) -> list[Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
-            one, other = (instructions(item) for item in step[1:])
-            if len(one) != len(other) or step.code is codes.ASKED_AFTER:
+            before, after = (instructions(tokens) for tokens in step[1:])
+            if len(before) != len(after) or step.code is codes.ASKED_AFTER:
                 return []
-            pairs = enumerate(zip(one, other, strict=True))
-            n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
-            steps.setdefault(n, []).append(Step(step.code, one[n], other[n]))
-        old_instructions, new_instructions = instructions(before), instructions(after)
-        notes = (without_note(item)[1] for item in (old, own_text))
+            pairs = enumerate(zip(before, after, strict=True))
+            n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(before) - 1)
+            steps.setdefault(n, []).append(Step(step.code, before[n], after[n]))
+        old_instructions, new_instructions = instructions(old_tokens), instructions(new_tokens)
+        notes = (split_note(line)[1] for line in (old_text, own_text))
         if (
             len(old_instructions) != len(new_instructions)
             or len({*notes}) > 1
-            or {*texts(before)} & {*BRACES}
+            or {*texts(old_tokens)} & {*BRACES}
         ):
             return []
-        if _is_closed(before) and not all(map(_is_closed, old_instructions)):
+        if _is_closed(old_tokens) and not all(map(_is_closed, old_instructions)):
             return []  # a separator is in brackets
         changes = []
-        first, end = self.starts[self.changes[k].first], 0
-        for n, (part, instruction) in enumerate(
+        line_start, end = self.line_starts[self.changes[k].first_line], 0
+        for n, (instruction, new_instruction) in enumerate(
             zip(old_instructions, new_instructions, strict=True)
         ):
-            text, new = slips.text_of(part), slips.text_of(instruction)
-            start = old.index(text, end)
+            text, new_text = slips.text_of(instruction), slips.text_of(new_instruction)
+            start = old_text.index(text, end)
             end = start + len(text)
-            if text != new:
-                place = Span(first + start, first + end)
-                edit = trimmed(place.start, text, new)
-                if edit.span.start == place.end:
-                    edit = Edit(place, new)  # an end that is missing comes behind all of it
-                changes.append(Change(place, edit, steps.get(n, []), part, instruction))
+            if text != new_text:
+                span = Span(line_start + start, line_start + end)
+                edit = trimmed_edit(span.start, text, new_text)
+                if edit.span.start == span.end:
+                    edit = Edit(span, new_text)  # an end that is missing comes behind all of it
+                changes.append(Change(span, edit, steps.get(n, []), instruction, new_instruction))
                 if not steps.get(n) and text.isascii():
                     return []
-        has_all_texts = all(it.after for it in changes)
+        has_all_texts = all(change.new_tokens for change in changes)
         is_separate_line = not self.candidate.is_whole and has_all_texts  # others are not read
         return (
             changes if len(changes) > 1 or (len(old_instructions) > 1 and is_separate_line) else []
         )
 
-    def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
+    def track_blocks(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
-        closed = None
-        if self.open and tokens:
-            block_instructions, head = self.open[-1].inside, tokens[0].text
+        closed_block = None
+        if self.open_blocks and tokens:
+            block_instructions, head = self.open_blocks[-1].first_words, tokens[0].text
             block_instructions[:] = [] if head in _ARMS else [*block_instructions, head]
         for token in tokens:
             if token.text in BLOCK_ENDS:
-                self.open.append(_Block(token.text, k))
-            elif token.text in WORD_OF_END and self.open:
+                self.open_blocks.append(_Block(token.text, k))
+            elif token.text in WORD_OF_END and self.open_blocks:
                 ending_blocks = (
-                    item for item in self.open[::-1] if item.word == WORD_OF_END[token.text]
+                    item for item in self.open_blocks[::-1] if item.word == WORD_OF_END[token.text]
                 )
-                block = next(ending_blocks, self.open[-1])  # ends may be crossed
-                self.open.remove(block)
-                closed = closed or (block if block.first < k else None)
-                if block.explanation and block.explanation.last > (block.first, 1):
-                    block.explanation.last = max(block.explanation.last, (k, 1))
-        return closed
+                block = next(ending_blocks, self.open_blocks[-1])  # ends may be crossed
+                self.open_blocks.remove(block)
+                closed_block = closed_block or (block if block.first_change < k else None)
+                if block.explanation and block.explanation.last_line > (block.first_change, 1):
+                    block.explanation.last_line = max(block.explanation.last_line, (k, 1))
+        return closed_block
 
-    def added(
-        self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
+    def add_to_block_start(
+        self,
+        block: _Block | None,
+        edit: Edit,
+        last_line: tuple[int, int],
+        new_tokens: Sequence[Lexeme],
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
         explanation = block.explanation if block else None
         if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None
-        first = min(explanation.first, block.first)
-        if not self.joined_changes(first, last):
+        first_change = min(explanation.first_change, block.first_change)
+        if not self.joined_changes(first_change, last_line):
             return None
         explanation.edits.append(edit)
-        explanation.first, explanation.last = first, max(explanation.last, last)
-        ends = next((item.text for item in after if item.text in WORD_OF_END), "")
-        explanation.ends = explanation.ends or ends
+        explanation.first_change, explanation.last_line = (
+            first_change,
+            max(explanation.last_line, last_line),
+        )
+        ends = next((token.text for token in new_tokens if token.text in WORD_OF_END), "")
+        explanation.end_word = explanation.end_word or ends
         return explanation
 
-    def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
+    def add_explanation(self, k: int, change: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
         if (
-            spoken_signs_found := spoken_signs(self.program[slice(*part.place)])
-            if part.after
+            spoken_signs_found := spoken_signs(self.program[slice(*change.span)])
+            if change.new_tokens
             else ()
         ):
             code = codes.OTHER_SIGN
-            details: Slipped | Unended = Slipped(
-                slips.slip_of(part, code, step),
+            details: SlipDetails | UnendedBlock = SlipDetails(
+                slips.slip_of(change, code, step),
                 spoken=", ".join(spoken_signs_found[:_MOST_SIGN_NAMES]),
             )
         else:
-            details = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
-        self.out.append(Explanation(code, part.place, part.place, details, [part.edit], k, (k, 1)))
-        return self.out[-1]
+            details = (
+                self.describe_unended(k, change)
+                if is_end
+                else self.describe_slip(k, change, code, step)
+            )
+        self.explanations.append(
+            Explanation(code, change.span, change.span, details, [change.edit], k, (k, 1))
+        )
+        return self.explanations[-1]
 
-    def slipped(self, k: int, part: Change, code: Code, step: Step | None) -> Slipped:
-        slip = slips.slip_of(part, code, step)
-        if code is codes.BRACES and part.before and not part.after:
-            return Slipped(slip, needless=slips.found_in(slip))
+    def describe_slip(self, k: int, change: Change, code: Code, step: Step | None) -> SlipDetails:
+        slip = slips.slip_of(change, code, step)
+        if code is codes.BRACES and change.old_tokens and not change.new_tokens:
+            return SlipDetails(slip, needless=slips.found_in(slip))
         if code is codes.OTHER_NOTE:
-            return Slipped(slip, right=self.changes[k].text.strip())
+            return SlipDetails(slip, right=self.changes[k].text.strip())
         if code is codes.EXTRA_WORD and not step:
-            arm_match = _SECOND_WORD.match(self.program, self.words(part.edit.span).start)
-            arm = arm_match[1].upper() if arm_match else ""
-            is_early_arm = bool({arm, meant_by(arm)} & {*_ARMS})
-            return Slipped(slip, early=slips.found_in(slip) if is_early_arm else "")
-        if code is codes.OTHER_CALL and (words := _words_of_numbers(part)):
+            arm_match = _SECOND_WORD.match(
+                self.program, self.widen_to_words(change.edit.span).start
+            )
+            second_word = arm_match[1].upper() if arm_match else ""
+            is_early_arm = bool({second_word, meant_by(second_word)} & {*_ARMS})
+            return SlipDetails(slip, early=slips.found_in(slip) if is_early_arm else "")
+        if code is codes.OTHER_CALL and (words := _words_of_numbers(change)):
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
-            return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
+            return SlipDetails(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
         if code in _CODES_OF_EACH_WORD:  # LIGHT_L and LIGHT_R
-            steps = (it for it in self.changes[k].steps if it.code is code)
-            pairs = ((texts(it.before), texts(it.after)) for it in steps)
+            steps = (step for step in self.changes[k].steps if step.code is code)
+            pairs = ((texts(step.old_tokens), texts(step.new_tokens)) for step in steps)
             names = [
-                item
+                name
                 for old_texts, new_texts in pairs
-                for item in new_texts
-                if item not in old_texts
+                for name in new_texts
+                if name not in old_texts
             ]
             if slips.right_of(slip) in names:
-                return Slipped(slip, right=", ".join(dict.fromkeys(names)))
-        return Slipped(slip)
+                return SlipDetails(slip, right=", ".join(dict.fromkeys(names)))
+        return SlipDetails(slip)
 
-    def unended(self, k: int, part: Change) -> Unended:
+    def describe_unended(self, k: int, change: Change) -> UnendedBlock:
         """Return what is said of a block that lacks its end on the line where it begins."""
-        new_texts, at = texts(part.after), added_end(part.before, part.after)
-        end = (
-            next((it for it in new_texts if it in WORD_OF_END), "") if at is None else new_texts[at]
+        new_texts, end_index = (
+            texts(change.new_tokens),
+            added_end_index(change.old_tokens, change.new_tokens),
         )
-        unended = Unended(WORD_OF_END.get(end, ""), end)
+        end = (
+            next((it for it in new_texts if it in WORD_OF_END), "")
+            if end_index is None
+            else new_texts[end_index]
+        )
+        unended = UnendedBlock(WORD_OF_END.get(end, ""), end)
         block_instructions = [
-            instruction for instruction in instructions(part.after[:at]) if instruction
+            instruction
+            for instruction in instructions(change.new_tokens[:end_index])
+            if instruction
         ]
-        above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if at is not None and unended.word in new_texts[:at]:
-            unended.behind = laid_out(block_instructions[-1]) if block_instructions else ""
-            unended.places = places_text(
-                possible_places(part.after[header_of(part.after, at) : at])
+        change_above = next(
+            (change for change in self.changes[k - 1 :: -1] if change.text.strip()), None
+        )
+        if end_index is not None and unended.word in new_texts[:end_index]:
+            unended.behind = format_line(block_instructions[-1]) if block_instructions else ""
+            unended.places = candidates_text(
+                possible_last_instructions(
+                    change.new_tokens[header_index(change.new_tokens, end_index) : end_index]
+                )
             )
-        elif k and above:  # its indentation says where it ends
-            unended.line, unended.last = str(above.last + 1), _first_line(above)
+        elif k and change_above:  # its indentation says where it ends
+            unended.line, unended.last = str(change_above.last_line + 1), _first_line(change_above)
         return unended
 
-    def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
+    def add_missing_end(
+        self, last_line: tuple[int, int], change: search.Change, end: str, text: str
+    ) -> None:
         """Tell of an end that is missing behind a line."""
-        block = self.open.pop() if self.open else None
-        end_offset = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
+        block = self.open_blocks.pop() if self.open_blocks else None
+        end_offset = self.line_starts[change.last_line] + len(
+            self.lines[change.last_line].rstrip("\r")
+        )
         edit = Edit(Span(end_offset, end_offset), text)
-        if self.added(block, edit, last, lexemes(end)):
+        if self.add_to_block_start(block, edit, last_line, lexemes(end)):
             return
-        first, word = (block.first, block.word) if block else (last[0], "")
-        result = Unended(word, end, line=str(change.last + 1), last=_first_line(change))
-        whole_text = self.joined_changes(first, last)
-        if block and self.may_end_earlier(block, last[0]):
-            result.several, result.last, whole_text = result.last, "", ""
-            if before := self.early(block, last[0]):
-                result.early, result.begins = str(before.last + 1), _first_line(before)
-        if first < last[0]:
-            result.begun = str(self.changes[first].first + 1)
-        place = Span(self.starts[self.changes[first].first], end_offset)
-        self.out.append(
+        first_change, word = (block.first_change, block.word) if block else (last_line[0], "")
+        details = UnendedBlock(word, end, line=str(change.last_line + 1), last=_first_line(change))
+        whole_text = self.joined_changes(first_change, last_line)
+        if block and self.may_end_earlier(block, last_line[0]):
+            details.several, details.last, whole_text = details.last, "", ""
+            if earlier_change := self.earlier_end(block, last_line[0]):
+                details.early, details.begins = (
+                    str(earlier_change.last_line + 1),
+                    _first_line(earlier_change),
+                )
+        if first_change < last_line[0]:
+            details.begun = str(self.changes[first_change].first_line + 1)
+        span = Span(self.line_starts[self.changes[first_change].first_line], end_offset)
+        self.explanations.append(
             Explanation(
-                codes.NEVER_ENDS, place, place, result, [edit], first, (first, 1), whole_text
+                codes.NEVER_ENDS,
+                span,
+                span,
+                details,
+                [edit],
+                first_change,
+                (first_change, 1),
+                whole_text,
             )
         )
 
-    def early(self, block: _Block, last: int) -> search.Change | None:
+    def earlier_end(self, block: _Block, last: int) -> search.Change | None:
         """Return the line before an empty line in a block, or its first header.
 
         It may end there as well.
         """
-        above = None
-        for change in self.changes[block.first + 1 : last + 1]:
+        change_above = None
+        for change in self.changes[block.first_change + 1 : last + 1]:
             words = texts(tokens_of(change.text))
             is_separate = not change.text.strip() or (words[:1] and words[0] in BLOCK_ENDS)
-            if above and is_separate:
-                return above
-            above = change if words else above
+            if change_above and is_separate:
+                return change_above
+            change_above = change if words else change_above
         return None
 
-    def may_end_earlier(self, block: _Block, last: int) -> bool:
+    def may_end_earlier(self, block: _Block, last_change: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
 
         A sign or a stop behind others may as well come when a LOOP or a DEF is over.
         """
-        block_instructions = block.inside
-        header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
-        is_deeper = end[:1].isspace() > header[:1].isspace()
+        first_words = block.first_words
+        header, last_text = (
+            self.changes[k].text.split("\n")[0] for k in (block.first_change, last_change)
+        )
+        is_deeper = last_text[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
-        if len(block_instructions) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
+        if len(first_words) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
         is_sign_of_end = (
-            block_instructions[-1] in _WORDS_OF_SIGNS
-            and block_instructions[-1] not in block_instructions[:-1]
+            first_words[-1] in _WORDS_OF_SIGNS and first_words[-1] not in first_words[:-1]
         )
         return is_sign_of_end or block.word not in ("LOOP", "DEF")
 
 
 def _first_line(change: search.Change) -> str:
-    return laid_out(tokens_of(change.text.split("\n")[0]))
+    return format_line(tokens_of(change.text.split("\n")[0]))
 
 
-def _words_of_numbers(part: Change) -> list[str]:
+def _words_of_numbers(change: Change) -> list[str]:
     """Return the words that a change writes in digits, nothing where it changes more."""
-    if len(part.before) != len(part.after):
+    if len(change.old_tokens) != len(change.new_tokens):
         return []
-    pairs = zip(part.before, part.after, strict=True)
-    changed_pairs = [(was, now) for was, now in pairs if was.text != now.text]
-    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed_pairs)
-    return list(dict.fromkeys(was.source or "" for was, _ in changed_pairs)) if are_words else []
+    pairs = zip(change.old_tokens, change.new_tokens, strict=True)
+    changed_pairs = [
+        (old_token, new_token) for old_token, new_token in pairs if old_token.text != new_token.text
+    ]
+    are_words = all(
+        old_token.kind is WORD and new_token.kind is NUMBER
+        for old_token, new_token in changed_pairs
+    )
+    return (
+        list(dict.fromkeys(old_token.source or "" for old_token, _ in changed_pairs))
+        if are_words
+        else []
+    )
 
 
 def _is_closed(tokens: Sequence[Lexeme]) -> bool:
     return texts(tokens).count("(") == texts(tokens).count(")")
 
 
-def trimmed(start: int, old: str, new: str) -> Edit:
+def trimmed_edit(start: int, old: str, new: str) -> Edit:
     """Return the edit of what differs."""
-    head, tail = alike(old, new)
+    head, tail = common_lengths(old, new)
     return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])

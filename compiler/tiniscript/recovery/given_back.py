@@ -25,63 +25,66 @@ _KINDS_IN_SUMS = {WORD, NUMBER, "(", ")", *_SUM_SIGNS}
 _YES_NO_WORDS = ("AND", "OR", "NOT")
 
 
-def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
+def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     """Return what is told of DEFs that give a value back, and edits to read the rest with."""
     text = source.text
     if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
         return [], []
     tokens = scan(text).tokens
-    names = {after.text for token, after in pairwise(tokens) if token.text == "DEF"}
+    names = {following.text for token, following in pairwise(tokens) if token.text == "DEF"}
     calls: dict[str, list[Span]] = {}
-    for name, k in _values(tokens, names):
-        calls.setdefault(name, []).append(_call(tokens, k))
+    for name, k in _value_calls(tokens, names):
+        calls.setdefault(name, []).append(_call_span(tokens, k))
     diagnostics: list[Diagnostic] = []
     edits: list[Edit] = []
-    returned: set[str] = set()
-    result = (
+    diagnosed_names: set[str] = set()
+    result_name = (
         _RESULT_NAME
         if _RESULT_NAME not in names_in(text)
         else next(numbered_names(text, _RESULT_NAME))
     )
-    for name, word, value in _returns(tokens, {*calls}):
+    for name, word_token, value_span in _returns(tokens, {*calls}):
         calls_of_name = calls.get(name, [])
-        values = {"word": name, "back": text[slice(*value)]}
+        values = {"word": name, "back": text[slice(*value_span)]}
         values |= {"call": text[slice(*calls_of_name[0])]} if calls_of_name else {}
-        edits.append(Edit(Span(word.start, value.start), f"{result} = "))
-        if name not in returned:
-            diagnostics.append(Diagnostic(codes.NO_VALUE, word.span, values))
-        returned.add(name)
+        edits.append(Edit(Span(word_token.start, value_span.start), f"{result_name} = "))
+        if name not in diagnosed_names:
+            diagnostics.append(Diagnostic(codes.NO_VALUE, word_token.span, values))
+        diagnosed_names.add(name)
     for name, spans in calls.items():
-        if name not in returned:
-            place = Span(spans[0].start, spans[0].start + len(name))
+        if name not in diagnosed_names:
+            name_span = Span(spans[0].start, spans[0].start + len(name))
             values = {"word": name, "called": name, "call": text[slice(*spans[0])]}
-            diagnostics.append(Diagnostic(codes.NO_VALUE, place, values))
-        edits += [Edit(span, result if name in returned else _filler(text, span)) for span in spans]
+            diagnostics.append(Diagnostic(codes.NO_VALUE, name_span, values))
+        edits += [
+            Edit(span, result_name if name in diagnosed_names else _placeholder(text, span))
+            for span in spans
+        ]
     return diagnostics, edits
 
 
-def _values(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:
+def _value_calls(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:
     """Yield each call of a DEF, with brackets, that stands for a value."""
     for k, token in enumerate(tokens[:-1]):
         if token.kind is not WORD or token.text not in names or tokens[k + 1].kind != "(":
             continue
-        before = tokens[k - 1] if k else None
-        if before is None or before.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
-            if before is None or before.text not in _YES_NO_WORDS:
+        previous = tokens[k - 1] if k else None
+        if previous is None or previous.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
+            if previous is None or previous.text not in _YES_NO_WORDS:
                 continue
-        if any(each.kind == ")" for each in _until_end(tokens, k)):
+        if any(following.kind == ")" for following in _until_end(tokens, k)):
             yield token.text, k
 
 
-def _call(tokens: Sequence[Token], k: int) -> Span:
+def _call_span(tokens: Sequence[Token], k: int) -> Span:
     """Return where a call is, with its brackets, or what there is of them on its line."""
-    depth, last = 0, tokens[k]
+    depth, last_token = 0, tokens[k]
     for token in _until_end(tokens, k + 1):
         depth += (token.kind == "(") - (token.kind == ")")
-        last = token
+        last_token = token
         if not depth:
             break
-    return Span(tokens[k].start, last.end)
+    return Span(tokens[k].start, last_token.end)
 
 
 def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
@@ -92,38 +95,43 @@ def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
         yield token
 
 
-def _returns(tokens: Sequence[Token], names_used: set[str]) -> Iterator[tuple[str, Token, Span]]:
+def _returns(tokens: Sequence[Token], called_names: set[str]) -> Iterator[tuple[str, Token, Span]]:
     """Yield each RETURN with a value in a DEF: the name of that, the word, and the value.
 
-    So is a sum alone, `N * 2`, in one that is `names_used` as a value.
+    So is a sum alone, `N * 2`, in one that is `called_names` as a value.
     """
-    name, begins = "", True
+    name, begins_instruction = "", True
     for k, token in enumerate(tokens):
         if token.text == "DEF":
             name = tokens[min(k + 1, len(tokens) - 1)].text
         elif token.text in _DEF_ENDS:
             name = ""
-        elif begins and name and token.kind is WORD and lexicon_meaning(token.text, "leaves"):
-            value = [*_until_end(tokens, k + 1)]
-            if value:
-                yield name, token, Span(value[0].start, value[-1].end)
-        elif begins and name in names_used and token.kind in (WORD, NUMBER, "("):
-            value = [*_until_end(tokens, k)]
-            kinds = {each.kind for each in value}
+        elif (
+            begins_instruction
+            and name
+            and token.kind is WORD
+            and lexicon_meaning(token.text, "leaves")
+        ):
+            value_tokens = [*_until_end(tokens, k + 1)]
+            if value_tokens:
+                yield name, token, Span(value_tokens[0].start, value_tokens[-1].end)
+        elif begins_instruction and name in called_names and token.kind in (WORD, NUMBER, "("):
+            value_tokens = [*_until_end(tokens, k)]
+            kinds = {value_token.kind for value_token in value_tokens}
             if (
-                len(value) > 2
-                and value[1].kind != "("
+                len(value_tokens) > 2
+                and value_tokens[1].kind != "("
                 and kinds <= _KINDS_IN_SUMS
                 and kinds & _SUM_SIGNS
             ):
-                yield name, token, Span(value[0].start, value[-1].end)
-        begins = token.kind in _INSTRUCTION_ENDS
+                yield name, token, Span(value_tokens[0].start, value_tokens[-1].end)
+        begins_instruction = token.kind in _INSTRUCTION_ENDS
 
 
-def _filler(text: str, span: Span) -> str:
+def _placeholder(text: str, span: Span) -> str:
     """Return a value that may stand for a call: a yes where that is a whole question."""
     before, after = text[: span.start].rstrip(), text[span.end :].lstrip()
     word = before.removesuffix("(").rstrip()[-6:].upper()
-    is_asked = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
+    is_condition = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
     is_joined = before.upper().endswith(_YES_NO_WORDS) or after[:3].upper() in ("AND", "OR ")
-    return "TRUE" if (is_asked and after.startswith(")")) or is_joined else "1"
+    return "TRUE" if (is_condition and after.startswith(")")) or is_joined else "1"

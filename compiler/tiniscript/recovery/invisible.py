@@ -11,16 +11,16 @@ _INVISIBLE_CATEGORIES = ("Cc", "Cf", "Zl", "Zp")
 _VISIBLE_CONTROLS = "\t\n\r"
 
 
-def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def name_invisible_sign(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake whose repair takes invisible signs out alone as one of such a sign."""
     edits = diagnostic.repair.edits if diagnostic.repair else ()
     pairs = [(text[slice(*edit.span)], edit.text) for edit in edits]
     pairs = pairs or [(text[slice(*diagnostic.span)], "")] * (
         diagnostic.code is codes.ODD_CHARACTER
     )
-    if not pairs or not all(old != new == _visible_code(old) for old, new in pairs):
+    if not pairs or not all(old != new == _visible_text(old) for old, new in pairs):
         return diagnostic
-    sign = next(item for old, _ in pairs for item in old if _is_invisible(item))
+    sign = next(character for old, _ in pairs for character in old if _is_invisible(character))
     return diagnostic._replace(
         code=codes.ODD_CHARACTER, values={"found": f"U+{ord(sign):04X}", "fix": ""}
     )
@@ -30,5 +30,5 @@ def _is_invisible(sign: str) -> bool:
     return sign not in _VISIBLE_CONTROLS and category(sign) in _INVISIBLE_CATEGORIES
 
 
-def _visible_code(text: str) -> str:
+def _visible_text(text: str) -> str:
     return "".join(sign for sign in text if not _is_invisible(sign))

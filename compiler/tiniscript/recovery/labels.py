@@ -15,7 +15,7 @@ from tiniscript.base.words import WORDS, lexicon, lexicon_concept, lexicon_meani
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import meant_by, plain
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _FIRST_NUMBERS = (1, 10, 100)
 _COUNTED_LINE = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
@@ -29,7 +29,7 @@ _NAMED_WORD = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
 
 
 @lru_cache(100)
-def labels(text: str) -> tuple[Span, ...]:
+def label_spans(text: str) -> tuple[Span, ...]:
     """Return where the labels of a text are, each with the spaces behind it."""
     numbers = [*_COUNTED_LINE.finditer(text)]
     line_numbers = [int(number[1]) for number in numbers]
@@ -38,58 +38,60 @@ def labels(text: str) -> tuple[Span, ...]:
         *range(line_numbers[0], line_numbers[-1] + 1, line_numbers[0])
     ]:
         return tuple(Span(number.start(1), number.end()) for number in numbers)
-    return tuple(_in_lines(text))
+    return tuple(_spans_in_lines(text))
 
 
-def labelled(source: Source) -> list[Diagnostic]:
+def label_diagnostics(source: Source) -> list[Diagnostic]:
     """Return what is told of the labels of a text: each is taken out."""
     return [
-        Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(found)), {"found": found},
-                   None, Repair((Edit(span, ""),), True))
-        for span in labels(source.text)
-        if (found := source[span].rstrip())
+        Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(label_text)),
+                   {"found": label_text}, None, Repair((Edit(span, ""),), True))
+        for span in label_spans(source.text)
+        if (label_text := source[span].rstrip())
     ]  # fmt: skip
 
 
-def _in_lines(text: str) -> Iterator[Span]:
-    start, is_value_open = 0, False
+def _spans_in_lines(text: str) -> Iterator[Span]:
+    line_start, is_value_open = 0, False
     for line in text.split("\n"):
-        body = without_note(line)[0]
+        body = split_note(line)[0]
         depth = counted_to = 0  # of brackets, up to where they are counted
-        for place in _INSTRUCTION_START.finditer(body):
-            depth += body.count("(", counted_to, place.start()) - body.count(
-                ")", counted_to, place.start()
+        for match in _INSTRUCTION_START.finditer(body):
+            depth += body.count("(", counted_to, match.start()) - body.count(
+                ")", counted_to, match.start()
             )
-            counted_to = place.start()
-            label = _LABEL.match(body, place.end())
-            if label and not is_value_open and depth <= 0 and _is_label(label, text):
-                yield Span(start + label.start(), start + label.end())
+            counted_to = match.start()
+            label_match = _LABEL.match(body, match.end())
+            if label_match and not is_value_open and depth <= 0 and _is_label(label_match, text):
+                yield Span(line_start + label_match.start(), line_start + label_match.end())
         is_value_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
-        start += len(line) + 1
+        line_start += len(line) + 1
 
 
-def _is_label(label: re.Match[str], text: str) -> bool:
-    word, sign = plain(label["word"] or ""), (label["sign"] or "").strip()
-    is_order = _is_order(plain(label["next"]), label["after"] or "", text)
+def _is_label(label_match: re.Match[str], text: str) -> bool:
+    word, sign = plain(label_match["word"] or ""), (label_match["sign"] or "").strip()
+    is_order = _is_order(plain(label_match["next"]), label_match["after"] or "", text)
     if word:
         return is_order and (_is_step(word) if not sign else _is_step(word) or _is_free(word, text))
-    if label["count"].isalpha():
-        is_apart = bool(label["space"]) or sign == ")"
-        is_name = sign != ")" and _is_name(label["count"], text)
+    if label_match["count"].isalpha():
+        is_apart = bool(label_match["space"]) or sign == ")"
+        is_name = sign != ")" and _is_name(label_match["count"], text)
         return bool(sign) and is_apart and is_order and not is_name
-    return bool(sign) and (bool(label["space"]) or sign[-1] in ".)]º" or is_order)
+    return bool(sign) and (bool(label_match["space"]) or sign[-1] in ".)]º" or is_order)
 
 
 def _is_order(word: str, sign: str, text: str) -> bool:
     """Whether an instruction begins with a word and the sign after it."""
-    meant = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
-    return bool(sign or meant or lexicon_meaning(word, "set", "declare")) or _is_name(word, text)
+    known_words = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
+    return bool(sign or known_words or lexicon_meaning(word, "set", "declare")) or _is_name(
+        word, text
+    )
 
 
 def _is_step(word: str) -> bool:
     """Whether a word counts what is done: `paso`, `step`, `line`."""
-    texts = {(item.kind, item.value) for item in lexicon().get(word, ())}
-    return ("unit", "steps") in texts or ("stem", "LINE") in texts
+    entries = {(item.kind, item.value) for item in lexicon().get(word, ())}
+    return ("unit", "steps") in entries or ("stem", "LINE") in entries
 
 
 def _is_free(word: str, text: str) -> bool:

@@ -16,7 +16,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.calls import likely_word
 from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Lexeme, Names, lexemes, plain
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.lexer import WORD
 
 _SETUP_ANYWHERE = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
@@ -33,83 +33,94 @@ _EMPTY_WORDS = frozenset((
 ))  # fmt: skip
 
 
-def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
+def leftover_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of all that is left over in a text."""
-    rows = [without_note(line)[0] for line in source.text.split("\n")]
-    names = Names([lexemes(row) for row in rows], kit)
+    bodies = [split_note(line)[0] for line in source.text.split("\n")]
+    names = Names([lexemes(body) for body in bodies], kit)
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
     tasks = frozenset(_NAMED_TASK.findall(plain(source.text)))  # which have no name
     diagnostics: list[Diagnostic] = []
-    for row, start in zip(rows, starts, strict=False):
-        diagnostics += _words(row, start, names, tasks)
+    for body, start in zip(bodies, starts, strict=False):
+        diagnostics += _filler_diagnostics(body, start, names, tasks)
     return diagnostics
 
 
-def setup_and_end_leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
+def setup_and_end_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
-    rows = [without_note(line)[0] for line in source.text.split("\n")]
+    bodies = [split_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
-    messages = [
-        setup for row, start in zip(rows, starts, strict=False) for setup in _setups(row, start)
+    setup_diagnostics = [
+        diagnostic
+        for body, start in zip(bodies, starts, strict=False)
+        for diagnostic in _setup_diagnostics(body, start)
     ]
-    return [*messages, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
+    return [
+        *setup_diagnostics,
+        *_end_word_diagnostics(bodies, starts, Names([lexemes(body) for body in bodies], kit)),
+    ]
 
 
-def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterator[Diagnostic]:
+def _end_word_diagnostics(
+    bodies: Sequence[str], starts: Sequence[int], names: Names
+) -> Iterator[Diagnostic]:
     """Give the word for an end below a program in which no block begins: `Fim.`"""
-    last = max((k for k, row in enumerate(rows) if row.strip()), default=0)
-    tokens = [token for token in lexemes(rows[last]) if token.text not in (".", ";")]
+    last_index = max((k for k, body in enumerate(bodies) if body.strip()), default=0)
+    tokens = [token for token in lexemes(bodies[last_index]) if token.text not in (".", ";")]
     instructions_above = [
-        part
-        for row in rows[:last]
-        for part in _SETUP_AT_START.sub("", row).split(";")
-        if part.strip()
+        instruction
+        for body in bodies[:last_index]
+        for instruction in _SETUP_AT_START.sub("", body).split(";")
+        if instruction.strip()
     ]
-    calls = [_CALL.fullmatch(part) for part in instructions_above]
-    has_block_start = any(it is None or not _is_call(it, names) for it in calls)
-    is_end = len(tokens) == 1 and last > 0 and bool(lexicon_meaning(tokens[0].text, "end"))
+    calls = [_CALL.fullmatch(instruction) for instruction in instructions_above]
+    has_block_start = any(call is None or not _is_call(call, names) for call in calls)
+    is_end = len(tokens) == 1 and last_index > 0 and bool(lexicon_meaning(tokens[0].text, "end"))
     if is_end and not has_block_start and not names.is_name(tokens[0].text):
-        begin = starts[last] + len(rows[last]) - len(rows[last].lstrip())
-        span = Span(begin, starts[last] + len(rows[last]))
+        word_start = starts[last_index] + len(bodies[last_index]) - len(bodies[last_index].lstrip())
+        span = Span(word_start, starts[last_index] + len(bodies[last_index]))
         word = tokens[0].source or ""
         repair = Repair((Edit(span, ""),), True)
         yield Diagnostic(codes.EXTRA_WORD, span, {"found": word}, span, repair)
 
 
-def _is_call(part: re.Match[str], names: Names) -> bool:
+def _is_call(call: re.Match[str], names: Names) -> bool:
     """Whether an instruction begins no block: it is one of the language, or nearly so."""
-    word = part[1].upper()
-    meant = names.meant(word) or likely_word(word, part[0].strip())
+    word = call[1].upper()
+    meant = names.meant(word) or likely_word(word, call[0].strip())
     return names.is_name(word) or (meant in WORDS and meant not in _HEADER_WORDS)
 
 
-def _setups(row: str, start: int) -> Iterator[Diagnostic]:
+def _setup_diagnostics(body: str, start: int) -> Iterator[Diagnostic]:
     """Give each `SI|` behind an instruction of its line: what follows it comes next."""
-    for match in _SETUP_ANYWHERE.finditer(row):
+    for match in _SETUP_ANYWHERE.finditer(body):
         follows_instruction = match["before"] == ")" or bool(
-            _SETUP_AT_START.search(row[: match.start("setup")])
+            _SETUP_AT_START.search(body[: match.start("setup")])
         )
         if match["before"] is None or not follows_instruction or match["setup"][1:2] in "Bb":
             continue
-        place = Span(start + match.start("setup"), start + match.end("setup"))
+        setup_span = Span(start + match.start("setup"), start + match.end("setup"))
         edit = Edit(Span(start + match.end("before"), start + match.end()), "; ")
         values = {"found": match["setup"], "between": match["setup"]}
-        yield Diagnostic(codes.SETUP_TWICE, place, values, place, Repair((edit,), True))
+        yield Diagnostic(codes.SETUP_TWICE, setup_span, values, setup_span, Repair((edit,), True))
 
 
-def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diagnostic]:
-    for part in _INSTRUCTION.finditer(row):
-        tokens = lexemes(part[0])
+def _filler_diagnostics(
+    body: str, start: int, names: Names, tasks: Set[str]
+) -> Iterator[Diagnostic]:
+    for match in _INSTRUCTION.finditer(body):
+        tokens = lexemes(match[0])
         if not 1 < len(tokens) <= 1 + _MOST_LEFTOVER_WORDS or tokens[0].text not in _WORDS_ALONE:
             continue
-        if all(it.text in tasks or _is_filler(it, names) for it in tokens[1:]):
-            end = start + part.start() + len(part[0].rstrip())
-            begin = start + part.start() + part[0].index(tokens[0].source or "")
-            begin += len(tokens[0].source or "")
+        if all(token.text in tasks or _is_filler(token, names) for token in tokens[1:]):
+            end = start + match.start() + len(match[0].rstrip())
+            word_end = start + match.start() + match[0].index(tokens[0].source or "")
+            word_end += len(tokens[0].source or "")
             words = " ".join(token.source or "" for token in tokens[1:])
-            span = Span(end - len(part[0].rstrip()[begin - start - part.start() :].lstrip()), end)
-            repair = Repair((Edit(Span(begin, end), ""),), False)
+            span = Span(
+                end - len(match[0].rstrip()[word_end - start - match.start() :].lstrip()), end
+            )
+            repair = Repair((Edit(Span(word_end, end), ""),), False)
             values = {"before": tokens[0].source or "", "words": words, "needless": words}
             yield Diagnostic(codes.WORDS_AFTER, span, values, span, repair)
 

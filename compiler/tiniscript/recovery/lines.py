@@ -27,11 +27,11 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Meaning,
     Names,
-    closed,
-    made,
+    brackets_end,
+    make_token,
     texts,
 )
-from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
+from tiniscript.recovery.slots import LEAST_MILLISECONDS, fill_call
 from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
@@ -59,8 +59,8 @@ class Step(NamedTuple):
     """A rewrite that was made: what it was for, and the line before and after it."""
 
     code: Code
-    before: Sequence[Lexeme]
-    after: Sequence[Lexeme]
+    old_tokens: Sequence[Lexeme]
+    new_tokens: Sequence[Lexeme]
 
 
 class Reading(NamedTuple):
@@ -85,28 +85,28 @@ class Reading(NamedTuple):
         return Reading(self.cost + cost, tokens, steps, is_still_sure, has_new_line)
 
     @property
-    def text(self) -> tuple[str, ...]:
+    def token_texts(self) -> tuple[str, ...]:
         return texts(self.tokens)
 
     @property
-    def text_read(self) -> str:
+    def normal_text(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
-        text = " ".join(item for item in self.text if item != ";")
-        while (bare := _NEEDLESS_BRACKETS.sub(r"\1\2", text)) != text:
-            text = bare
+        text = " ".join(token_text for token_text in self.token_texts if token_text != ";")
+        while (simpler_text := _NEEDLESS_BRACKETS.sub(r"\1\2", text)) != text:
+            text = simpler_text
         return text
 
 
-def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
+def parse_line(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
-    return _parse_items(tuple(map(_normalized, tokens)), names)
+    return _parse_items(tuple(map(_normalize, tokens)), names)
 
 
 def is_right(tokens: Sequence[Lexeme], names: Names) -> bool:
-    return not isinstance(right(tokens, names), Failure)
+    return not isinstance(parse_line(tokens, names), Failure)
 
 
-def _normalized(token: Lexeme) -> tuple[str, str]:
+def _normalize(token: Lexeme) -> tuple[str, str]:
     """Return a token as the lexer has it; all numbers that any instruction reads alike are one."""
     text = token.text
     if text in DEGREES:
@@ -120,26 +120,28 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
     items: list[Item] = []
     start = 0
     padded_texts = [";", *(text for _, text in tokens), BRACES[1], ";"]
-    for k, (before, text, after) in enumerate(
+    for k, (previous, text, following) in enumerate(
         zip(padded_texts, padded_texts[1:], padded_texts[2:], strict=False)
     ):
-        is_separate = {before, after} <= {";", "|", *BRACES}
+        is_separate = {previous, following} <= {";", "|", *BRACES}
         is_end = is_separate and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
-        part = outline(tokens[start:k], names.read_as)
-        if isinstance(part, Failure):
-            return Failure(part.start + start, part.at + start)
-        if joined_name := _joined_names(tokens[start:k]):
+        items_of_part = outline(tokens[start:k], names.readable_names)
+        if isinstance(items_of_part, Failure):
+            return Failure(items_of_part.start + start, items_of_part.failed_at + start)
+        if joined_name := _joining_word_index(tokens[start:k]):
             return Failure(start, joined_name + start)
-        items += [item._replace(start=item.start + start, end=item.end + start) for item in part]
+        items += [
+            item._replace(start=item.start + start, end=item.end + start) for item in items_of_part
+        ]
         if k < len(tokens):
             items.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
         start = k + 1
     return items
 
 
-def _joined_names(tokens: Sequence[tuple[str, str]]) -> int:
+def _joining_word_index(tokens: Sequence[tuple[str, str]]) -> int:
     """Return where a word joins the names of a DEF, 0 for nowhere: `DEF SIDE(X and Y)`."""
     is_in_brackets = is_def = False
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
@@ -169,23 +171,29 @@ def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Read
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole_readings = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    message = ((reading, right(reading.tokens, names)) for reading in whole_readings)
-    return [reading._replace(items=its) for reading, its in message if not isinstance(its, Failure)]
+    readings_and_items = (
+        (reading, parse_line(reading.tokens, names)) for reading in whole_readings
+    )
+    return [
+        reading._replace(items=items)
+        for reading, items in readings_and_items
+        if not isinstance(items, Failure)
+    ]
 
 
 _Successors = Callable[[Reading, Failure], Iterator[Reading]]
 
 
 class _Search:
-    """Reads a line by what `rewritten` makes of it, and where that reads nothing by slips."""
+    """Reads a line by what `rewrite` makes of it, and where that reads nothing by slips."""
 
     def __init__(self, names: Names) -> None:
         self.names = names
 
     def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
-        first = self.at_once(Reading(0, tokens, (), True, False))
+        first_reading = self.apply_first_rewrites(Reading(0, tokens, (), True, False))
         readings = self.search(
-            first, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewritten
+            first_reading, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewrite
         )
         has_word_or_number = any(token.kind in (WORD, NUMBER) for token in tokens)
         if (
@@ -194,120 +202,134 @@ class _Search:
             and has_word_or_number
             and len(tokens) < MOST_TOKENS_WITH_SLIPS
         ):
-            readings_found = self.search(first, MOST_SLIP_STATES, self.with_slips)
+            readings_found = self.search(first_reading, MOST_SLIP_STATES, self.undo_slips)
             readings_found = [
                 reading
                 for reading in readings_found
                 if reading.items and reading.cost < readings_found[0].cost + SLIP_MARGIN
             ]
-            is_only_reading = len({reading.text_read for reading in readings_found}) == 1
+            is_only_reading = len({reading.normal_text for reading in readings_found}) == 1
             readings = [
                 reading._replace(is_sure=reading.is_sure and is_only_reading)
                 for reading in readings_found
             ]
         return readings
 
-    def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
-        """Return up to RIVALS right readings, the cheapest first, after `states` lines at most."""
+    def search(
+        self, first_reading: Reading, most_states: int, successors: _Successors
+    ) -> list[Reading]:
+        """Return the cheapest right readings, which are few, of `most_states` lines at most."""
         order = count()
-        heap = [(first.cost, next(order), first)]
+        heap = [(first_reading.cost, next(order), first_reading)]
         texts_seen: set[tuple[str, ...]] = set()
         readings: list[Reading] = []
-        while heap and len(texts_seen) < states:
+        while heap and len(texts_seen) < most_states:
             cost, _, reading = heapq.heappop(heap)
             if readings and (
                 cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MOST_RIVALS
             ):
                 break
-            text = reading.text
-            if text in texts_seen:
+            texts = reading.token_texts
+            if texts in texts_seen:
                 continue
-            texts_seen.add(text)
-            items = right(reading.tokens, self.names)
+            texts_seen.add(texts)
+            items = parse_line(reading.tokens, self.names)
             if not isinstance(items, Failure):
-                if not self.says_twice(reading, items, first):
+                if not self.says_twice(reading, items, first_reading):
                     readings.append(reading._replace(items=items))
                 continue
-            for after in successors(reading, items):
-                if len(after.tokens) < MOST_TOKENS:
-                    heapq.heappush(heap, (after.cost, next(order), after))
+            for successor in successors(reading, items):
+                if len(successor.tokens) < MOST_TOKENS:
+                    heapq.heappush(heap, (successor.cost, next(order), successor))
         return readings
 
     @staticmethod
-    def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
+    def says_twice(reading: Reading, items: Sequence[Item], first_reading: Reading) -> bool:
         """Whether one instruction of the line became the same one twice, which nobody wrote."""
-        messages = [texts(reading.tokens[item.start : item.end]) for item in items]
-        for one, other, item in zip(messages, messages[1:], items, strict=False):
-            if item.kind == "do" and one[0] == other[0]:
-                if one == other and one[0] in ("S", "STOP", "SHOW"):
-                    return first.text.count(one[0]) < messages.count(one)
-                if not reading.is_sure and one == other == first.text[: len(one)]:
+        instruction_texts = [texts(reading.tokens[item.start : item.end]) for item in items]
+        for instruction, next_instruction, item in zip(
+            instruction_texts, instruction_texts[1:], items, strict=False
+        ):
+            if item.kind == "do" and instruction[0] == next_instruction[0]:
+                if instruction == next_instruction and instruction[0] in ("S", "STOP", "SHOW"):
+                    return first_reading.token_texts.count(
+                        instruction[0]
+                    ) < instruction_texts.count(instruction)
+                if (
+                    not reading.is_sure
+                    and instruction
+                    == next_instruction
+                    == first_reading.token_texts[: len(instruction)]
+                ):
                     return True
         return False
 
-    def at_once(self, reading: Reading) -> Reading:
+    def apply_first_rewrites(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
         for _ in range(_MOST_FIRST_STEPS):
-            one = rewrites.one_word(reading.tokens, self.names)
-            if one is not None:
-                tokens, is_sensor_name = one
+            joined = rewrites.join_one_name(reading.tokens, self.names)
+            if joined is not None:
+                tokens, is_sensor_name = joined
                 code = codes.NAME_WITH_SPACE if is_sensor_name else codes.OTHER_LANGUAGE
                 reading = reading.with_change(tokens, 1.0 if is_sensor_name else 0.5, code)
                 continue
-            after = next(self._apply_patterns(reading, None), None)
-            if after is None:
+            successor = next(self._apply_patterns(reading, None), None)
+            if successor is None:
                 break
-            reading = after
+            reading = successor
         return reading
 
-    def rewritten(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+    def rewrite(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Give what a reading becomes where it fails: by rows, calls in words, meanings."""
-        ways = (self._apply_patterns, self._fill_slots, self._translate_word)
-        return map(self.at_once, chain(*(way(reading, failure) for way in ways)))
+        rewriters = (self._apply_patterns, self._fill_slots, self._translate_word)
+        return map(
+            self.apply_first_rewrites,
+            chain(*(rewriter(reading, failure) for rewriter in rewriters)),
+        )
 
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Make the rows that touch a place; for none those that come before all others."""
-        line = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.rows_to_try(line, is_first=failure is None):
-            for match in line.matches(row.pattern):
-                start, end = line.span(match)
+        encoded = rewrites.Encoded(reading.tokens, self.names)
+        for row in rewrites.rows_to_try(encoded, is_first=failure is None):
+            for match in encoded.matches(row.pattern):
+                start, end = encoded.span(match)
                 if failure and not _is_near(failure, start, end):
                     continue
-                tokens = line.rewritten(row, match)
+                tokens = encoded.apply_row(row, match)
                 if tokens is not None:
-                    is_new = ";" in row.replacement
+                    is_new_line = ";" in row.replacement
                     yield reading.with_change(
-                        tokens, row.cost, row.code, not row.is_offered, is_new
+                        tokens, row.cost, row.code, not row.is_offered, is_new_line
                     )
                     break
 
     def _fill_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         tokens = reading.tokens
-        for start, end in _calls(tokens):
+        for start, end in _call_ranges(tokens):
             words = tokens[start:end]
             if not _is_near(failure, start, end):
                 continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
-            call = filled(words, self.names, has_until)
+            call = fill_call(words, self.names, has_until)
             if call is None or call.times or texts(call.tokens) == texts(words):
                 continue
-            line = [*tokens[:start], *call.tokens, *tokens[end:]]
-            yield reading.with_change(line, call.cost, _code_of_call(words), call.is_sure)
+            new_tokens = [*tokens[:start], *call.tokens, *tokens[end:]]
+            yield reading.with_change(new_tokens, call.cost, _code_of_call(words), call.is_sure)
 
     def _translate_word(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
-        tokens, padded_texts = reading.tokens, ("", *reading.text, "")
-        for k, token in enumerate(tokens[: failure.at + 2]):
+        tokens, padded_texts = reading.tokens, ("", *reading.token_texts, "")
+        for k, token in enumerate(tokens[: failure.failed_at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
             is_function = padded_texts[k] in ("(", ",", *SIGNS) and padded_texts[k + 2] == "("
             is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
-            meanings = guess or self.names.meanings(token.text)
-            if _is_long(tokens, k, meanings[0].concept if meanings else ""):
+            guesses = (Meaning(suggestion, KNOWN),) if suggestion else ()
+            word_meanings = guesses or self.names.meanings(token.text)
+            if _has_unlikely_time(tokens, k, word_meanings[0].concept if word_meanings else ""):
                 continue
-            for concept, cost in meanings:
+            for concept, cost in word_meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
                 if (
                     concept == "TIME"
@@ -317,42 +339,59 @@ class _Search:
                 ):
                     continue  # for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
-                line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
-                yield reading.with_change(line, cost, codes.OTHER_LANGUAGE, is_sure)
-            if meanings:
+                new_tokens = [
+                    *tokens[:k],
+                    make_token(concept)._replace(space=token.space),
+                    *tokens[k + 1 :],
+                ]
+                yield reading.with_change(new_tokens, cost, codes.OTHER_LANGUAGE, is_sure)
+            if word_meanings:
                 break
 
-    def with_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+    def undo_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """One sign wrong, missing, too much or after its neighbour, where the line fails."""
-        tokens, (start, at) = reading.tokens, failure
-        for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
-            head, rest = tokens[:k], tokens[k + 1 :]
-            for sign, code in rows.MISSING.items():
-                yield reading.with_change([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
+        tokens, (start, failure_index) = reading.tokens, failure
+        for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, failure_index + 2))):
+            tokens_before, tokens_after = tokens[:k], tokens[k + 1 :]
+            for sign, code in rows.CODE_OF_MISSING_SIGN.items():
+                yield reading.with_change(
+                    [*tokens_before, make_token(sign), *tokens[k:]], rows.MISSING_COST, code
+                )
             if k == len(tokens):
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            neighbours = texts((*head[-1:], *rest[:1]))
-            for sign in rows.CONFUSED.get(token.text, ""):
+            neighbours = texts((*tokens_before[-1:], *tokens_after[:1]))
+            for sign in rows.SIGNS_MEANT_BY.get(token.text, ""):
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
-                line = [*head, made(sign), *rest]
-                yield reading.with_change(line, rows.CONFUSED_COST, code, sign not in neighbours)
-            is_needed = _CALCULATION_SIGNS & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
+                new_tokens = [*tokens_before, make_token(sign), *tokens_after]
+                yield reading.with_change(
+                    new_tokens, rows.CONFUSED_COST, code, sign not in neighbours
+                )
+            is_needed = _CALCULATION_SIGNS & {
+                token.text,
+                *texts(tokens_after[:1]),
+            } or _is_grouping_bracket(tokens, k)
             if is_sign and not is_needed and category(token.text[0]) != "Sm":
                 code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
-                yield reading.with_change([*head, *rest], rows.EXTRA_COST, code, is_bracket)
-            if rest and (is_bracket or rest[0].text in ("(", ")")):
-                if not is_sign or rest[0].kind in (WORD, NUMBER):
-                    line = [*head, rest[0], token, *rest[1:]]
-                    yield reading.with_change(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
+                yield reading.with_change(
+                    [*tokens_before, *tokens_after], rows.EXTRA_COST, code, is_bracket
+                )
+            if tokens_after and (is_bracket or tokens_after[0].text in ("(", ")")):
+                if not is_sign or tokens_after[0].kind in (WORD, NUMBER):
+                    new_tokens = [*tokens_before, tokens_after[0], token, *tokens_after[1:]]
+                    yield reading.with_change(new_tokens, rows.SWAPPED_COST, codes.MISSING_OPEN)
 
 
-def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
+def _is_grouping_bracket(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
-    before = tokens[k - 1].text if k else ""
-    rest = [token.text for token in tokens[k + 1 :]]
-    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATION_SIGNS & {*rest})
+    previous = tokens[k - 1].text if k else ""
+    texts_after = [token.text for token in tokens[k + 1 :]]
+    return (
+        tokens[k].text == "("
+        and previous in ("=", *SIGNS)
+        and bool(_CALCULATION_SIGNS & {*texts_after})
+    )
 
 
 def _code_of_call(words: Sequence[Lexeme]) -> Code:
@@ -364,28 +403,31 @@ def _code_of_call(words: Sequence[Lexeme]) -> Code:
         return codes.MISSING_OPEN
     if "=" in signs:
         return codes.NAMED_ARGUMENT
-    inside = words[signs.index("(") :]
-    if any(lexicon_meaning(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
+    argument_tokens = words[signs.index("(") :]
+    if any(
+        lexicon_meaning(token.text, "unit") and token.text not in (*WAYS, "°", "º")
+        for token in argument_tokens
+    ):
         return codes.UNIT
     return codes.OTHER_CALL
 
 
 def _is_near(failure: Failure, start: int, end: int) -> bool:
-    return start <= failure.at + 1 and end >= failure.start - 1
+    return start <= failure.failed_at + 1 and end >= failure.start - 1
 
 
-def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+def _has_unlikely_time(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
-    least = LONG_TIME_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
+    least_time = LONG_TIME_S if concept in (*MOVES, "BEEP") else LEAST_MILLISECONDS
     is_timed = concept in (*MOVES, "BEEP", "W")
-    return is_timed and bool(numbers) and float(numbers[0].text) >= least
+    return is_timed and bool(numbers) and float(numbers[0].text) >= least_time
 
 
-def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
+def _call_ranges(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     """Give the pieces of a line in which a call may be told: between separators and headers."""
     start = 0
-    for k, token in enumerate([*tokens, made(";")]):
+    for k, token in enumerate([*tokens, make_token(";")]):
         is_edge = token.text in _EDGE_WORDS
         is_next_call = k > 0 and tokens[k - 1].text == ")" and token.text in CALL_WORDS
         if (is_edge or is_next_call) and start < k:
@@ -394,4 +436,4 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
         if is_edge:
             start = max(start, k + 1)
         if token.text in _WORDS_AT_END:
-            start = max(start, closed(tokens, k + 1) or k + 2)
+            start = max(start, brackets_end(tokens, k + 1) or k + 2)

@@ -17,7 +17,7 @@ from tiniscript.base.words import BLOCK_ENDS, POWER, UNIT_OF, WORDS, lexicon_mea
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import LONG_TIME_S, Names, lexemes, plain
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _TOKEN = re.compile(
     r"(?P<word>[^\W\d]\w*)|(?P<number>\d+(?:\.\d+)?)|(?P<sign>[\[\]])"
@@ -36,53 +36,55 @@ class _Token(NamedTuple):
     span: Span
 
 
-def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
+def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each line of Logo."""
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
-    diagnostics = _taught(source)
-    start = 0
+    diagnostics = _definition_diagnostics(source)
+    line_start = 0
     for line in source.text.split("\n"):
-        pieces = _pieces(without_note(line)[0], start)
+        pieces = _pieces(split_note(line)[0], line_start)
         while pieces:
             ends = range(min(len(pieces), _MOST_INSTRUCTIONS), 0, -1)
             attempts = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
             ends_and_diagnostics = (
                 (end, _diagnostic(tokens, source, names)) for end, tokens in attempts
             )
-            end, diagnostic = next((it for it in ends_and_diagnostics if it[1]), (1, None))
+            end, diagnostic = next(
+                (attempt for attempt in ends_and_diagnostics if attempt[1]), (1, None)
+            )
             diagnostics += [diagnostic] if diagnostic else []
             pieces = pieces[end:]
-        start += len(line) + 1
+        line_start += len(line) + 1
     return diagnostics
 
 
-def _taught(source: Source) -> list[Diagnostic]:
+def _definition_diagnostics(source: Source) -> list[Diagnostic]:
     """Return what is told of words that are taught: each is a DEF."""
     diagnostics: list[Diagnostic] = []
     head: Diagnostic | None = None
     is_empty = True
-    start = 0
+    line_start = 0
     for line in source.text.split("\n"):
-        body = without_note(line)[0]
+        body = split_note(line)[0]
         definition, lone_word = _TAUGHT_WORD.fullmatch(body), _LONE_WORD.fullmatch(body)
         if definition and lexicon_meaning(plain(definition["to"]), "teach"):
-            span = Span(start + definition.start("to"), start + definition.end("name"))
+            span = Span(line_start + definition.start("to"), line_start + definition.end("name"))
             name = plain(definition["name"])
             fix = f"DEF {name}" if name.isidentifier() and name not in WORDS else ""
-            head = _taught_part(source, span, definition["to"], fix) if fix else None
+            head = _definition_diagnostic(source, span, definition["to"], fix) if fix else None
             is_empty = True
         elif head and lone_word and lexicon_meaning(plain(lone_word[1]), "end"):
-            span = Span(start + lone_word.start(1), start + lone_word.end(1))
-            end = _taught_part(source, span, lone_word[1], BLOCK_ENDS["DEF"])
+            span = Span(line_start + lone_word.start(1), line_start + lone_word.end(1))
+            end = _definition_diagnostic(source, span, lone_word[1], BLOCK_ENDS["DEF"])
             diagnostics += [] if is_empty else [head, end]  # `para todo` stops
             head = None
         else:
             is_empty = is_empty and not body.strip()
-        start += len(line) + 1
+        line_start += len(line) + 1
     return diagnostics
 
 
-def _taught_part(source: Source, span: Span, found_text: str, fix: str) -> Diagnostic:
+def _definition_diagnostic(source: Source, span: Span, found_text: str, fix: str) -> Diagnostic:
     values = {"found": found_text, "right": fix.split()[0], "fix": fix}
     repair = Repair((Edit(span, fix),), False)
     return Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
@@ -113,16 +115,20 @@ def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagn
         return None
     reader = _Reader(tokens, names)
     orders, end = reader.orders(0, 0)
-    is_turtle = reader.is_bracketed or (reader.moves > 1 and reader.is_turned)
+    is_turtle = reader.is_bracketed or (reader.move_count > 1 and reader.is_turned)
     if not orders or end != len(tokens) or not is_turtle:
         return None
-    place = Span(tokens[0].span.start, tokens[-1].span.end)
-    first = source[tokens[0].span]
+    whole_span = Span(tokens[0].span.start, tokens[-1].span.end)
+    first_word = source[tokens[0].span]
     fix = ";".join(orders)
-    right = re.split(r"\W", fix)[0]
-    values = {"found": first, "right": right, "fix": fix}
+    right_word = re.split(r"\W", fix)[0]
+    values = {"found": first_word, "right": right_word, "fix": fix}
     return Diagnostic(
-        codes.OTHER_LANGUAGE, place, values, place, Repair((Edit(place, fix),), False)
+        codes.OTHER_LANGUAGE,
+        whole_span,
+        values,
+        whole_span,
+        Repair((Edit(whole_span, fix),), False),
     )
 
 
@@ -132,46 +138,46 @@ class _Reader:
     def __init__(self, tokens: Sequence[_Token], names: Names) -> None:
         self.tokens = tokens
         self.names = names
-        self.power = names.usual.get(POWER.unit) or POWER.sample
+        self.power = names.usual_values.get(POWER.unit) or POWER.sample
         self.is_bracketed = self.is_turned = False
-        self.moves = 0
+        self.move_count = 0
 
     def orders(self, k: int, depth: int) -> tuple[list[str], int]:
         """Return the orders from a token on, and where they end; nothing where one is none."""
-        result: list[str] = []
+        orders: list[str] = []
         while k < len(self.tokens) and self.tokens[k].text != "]":
-            word, after = self.tokens[k], self.tokens[k + 1 : k + 2]
-            if word.kind != "word" or not after or after[0].kind != "number":
+            token, number_tokens = self.tokens[k], self.tokens[k + 1 : k + 2]
+            if token.kind != "word" or not number_tokens or number_tokens[0].kind != "number":
                 return [], k
-            order = self._meant(word.text)
-            if order == "LOOP" and depth < _MOST_NESTED_LOOPS and self._sign(k + 2) == "[":
+            order = self._meaning_of(token.text)
+            if order == "LOOP" and depth < _MOST_NESTED_LOOPS and self._text_at(k + 2) == "[":
                 self.is_bracketed = True
                 inner_orders, end = self.orders(k + 3, depth + 1)
-                if not inner_orders or self._sign(end) != "]":
+                if not inner_orders or self._text_at(end) != "]":
                     return [], k
-                result += [f"LOOP({after[0].text})", *inner_orders, BLOCK_ENDS["LOOP"]]
+                orders += [f"LOOP({number_tokens[0].text})", *inner_orders, BLOCK_ENDS["LOOP"]]
                 k = end + 1
                 continue
-            move = self._move(order, after[0].text)
+            move = self._move_text(order, number_tokens[0].text)
             if not move:
                 return [], k
-            result.append(move)
+            orders.append(move)
             k += 2
-        return result, k
+        return orders, k
 
-    def _sign(self, k: int) -> str:
+    def _text_at(self, k: int) -> str:
         return self.tokens[k].text if k < len(self.tokens) else ""
 
-    def _meant(self, word: str) -> str:
+    def _meaning_of(self, word: str) -> str:
         if word in WORDS:
             return word
         meanings = lexicon_meaning(word, "turtle")
         return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
 
-    def _move(self, word: str, number: str) -> str:
+    def _move_text(self, word: str, number: str) -> str:
         unit = UNIT_OF.get(word, "")
         if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
-        self.moves += 1
+        self.move_count += 1
         self.is_turned |= unit == "DEG"
         return f"{word}({number} {unit}, {self.power})"

@@ -26,7 +26,7 @@ WORD_OF_END = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
-SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
+UNNAMED_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
 CALL_WORDS = frozenset(word.text for word in WORDS.values() if word.is_call)
 INSTRUCTION_WORDS = CALL_WORDS | {"S", "STOP", "BREAK"}
 ASKING_WORDS = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
@@ -48,12 +48,17 @@ _CLASSES = {
 NEAR_CM = "10"  # an example of what is near
 LONG_TIME_S = 20  # so much without a unit may be a power, degrees or centimetres
 MOST_POWER = 100
-_EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
+_EIGHTH_TURN, FULL_TURN = (
+    45,
+    360,
+)  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
 _CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
-    "@whole": float.is_integer, "@time": lambda it: it < LONG_TIME_S,
-    "@power": lambda it: LONG_TIME_S <= it <= MOST_POWER,
-    "@angle": lambda it: MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
+    "@whole": float.is_integer, "@time": lambda number: number < LONG_TIME_S,
+    "@power": lambda number: LONG_TIME_S <= number <= MOST_POWER,
+    "@angle": lambda number: (
+        MOST_POWER < number <= FULL_TURN or (number >= _EIGHTH_TURN and number % _EIGHTH_TURN == 0)
+    ),
 }  # fmt: skip
 _YEAR_WORDS = ("ANO", "ANOS")  # nobody writes AÑO so
 REMEMBERED_LINES = 500  # lines: each is asked for often while one program is read
@@ -85,21 +90,21 @@ def lexemes(line: str) -> list[Lexeme]:
 
 @lru_cache(REMEMBERED_LINES)
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
-    result, end = [], 0
+    tokens_found, end_offset = [], 0
     for match in _TOKEN.finditer(line):
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
         if kind is WORD:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):
-                other = plain(re.sub("[ñÑ]", "ni", match[0]))
-                text = other if lexicon().get(other) or text in _YEAR_WORDS else text
+                respelt = plain(re.sub("[ñÑ]", "ni", match[0]))
+                text = respelt if lexicon().get(respelt) or text in _YEAR_WORDS else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
             kind, text = WORD, text[0]  # an arrow says a command
-        result.append(Lexeme(kind, text, match[0], line[end : match.start()]))
-        end = match.end()
-    return tuple(result)
+        tokens_found.append(Lexeme(kind, text, match[0], line[end_offset : match.start()]))
+        end_offset = match.end()
+    return tuple(tokens_found)
 
 
 def number_text(number: float) -> str:
@@ -107,7 +112,7 @@ def number_text(number: float) -> str:
 
 
 @cache
-def made(text: str) -> Lexeme:
+def make_token(text: str) -> Lexeme:
     """Return a token that a repair writes."""
     return lexemes(text)[0]._replace(source=None, space=None)
 
@@ -122,7 +127,7 @@ def setup_of(tokens: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return tokens[:2] if is_begun else tokens[:0]
 
 
-def closed(tokens: Sequence[Lexeme], start: int) -> int:
+def brackets_end(tokens: Sequence[Lexeme], start: int) -> int:
     """Return where the brackets end that begin at a token, 0 where they do not."""
     depth = 0
     for k in range(start, len(tokens)):
@@ -141,8 +146,8 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    result = (word for word in lexicon() if lexicon_meaning(word, *kinds))
-    return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
+    words = (word for word in lexicon() if lexicon_meaning(word, *kinds))
+    return f"(?:{'|'.join(map(re.escape, sorted(words, key=len, reverse=True)))})"
 
 
 _END_PATTERN = re.compile(words_of("end") + "_?")
@@ -158,13 +163,17 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     """Return which words of the language a word may mean, the likeliest first."""
     if word == "SI":
         return (Meaning("IF", KNOWN),)
-    if found := lexicon_concept(word):
-        return (Meaning(found, KNOWN),)
+    if concept := lexicon_concept(word):
+        return (Meaning(concept, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
-    shortened = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
-    if shortened != word:
-        return (Meaning(shortened, MISSPELT),) if shortened in WORDS else meanings(shortened)
+    shortened_word = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
+    if shortened_word != word:
+        return (
+            (Meaning(shortened_word, MISSPELT),)
+            if shortened_word in WORDS
+            else meanings(shortened_word)
+        )
     parts = word.split("_")
     if (
         len(parts) > 1
@@ -172,8 +181,8 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         != parts
     ):
         return meanings("_".join(kept_parts))  # `SENSOR_LUZ_DERECHA`
-    if found := _sensor_with_side(parts):
-        return (Meaning(found, KNOWN),)
+    if concept := _sensor_with_side(parts):
+        return (Meaning(concept, KNOWN),)
     near_miss = _speller().find_near_miss(word)
     guesses = (
         (heard_as(word), KNOWN),
@@ -181,7 +190,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         (_in_two_words(word), KNOWN),
         (nearest(word, WORDS), NEAR),
     )
-    return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
+    return next(((Meaning(concept, cost),) for concept, cost in guesses if concept), ())
 
 
 def heard_as(word: str) -> str | None:
@@ -197,11 +206,13 @@ def _sensor_with_side(parts: Sequence[str]) -> str:
     splits = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else splits if len(parts) == 1 else []
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
-        sensor_stem = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
-        ways = ("X", "Y") if sensor_stem == "PAD" else ("L", "R")
-        way = side if side in ways else lexicon_concept(side)
-        if sensor_stem and way in ways:
-            return f"{sensor_stem}_{way}"
+        sensor_stem = next(
+            (entry.value for entry in lexicon().get(stem, ()) if entry.kind == "stem"), ""
+        )
+        sides = ("X", "Y") if sensor_stem == "PAD" else ("L", "R")
+        side_letter = side if side in sides else lexicon_concept(side)
+        if sensor_stem and side_letter in sides:
+            return f"{sensor_stem}_{side_letter}"
     return ""
 
 
@@ -214,38 +225,38 @@ def _in_two_words(word: str) -> str | None:
     """Return what `moverAdelante` means: two words that say one command."""
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
-        long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
-        texts = {half if half == "STOP" else lexicon_concept(half) or "" for half in long}
+        long_halves = [half for half in halves if len(half) > 2]  # `there` is no THE RE
+        concepts = {half if half == "STOP" else lexicon_concept(half) or "" for half in long_halves}
         turns = [half for half in halves if lexicon_meaning(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
         filler_words = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
-        commands = texts - {"", "M", "F"} or texts - {"", "M"}
+        commands = concepts - {"", "M", "F"} or concepts - {"", "M"}
         is_framed = (
-            bool(texts & {"F", "M"} or filler_words) or len({*map(lexicon_concept, halves)}) == 1
+            bool(concepts & {"F", "M"} or filler_words) or len({*map(lexicon_concept, halves)}) == 1
         )
         are_all_known = all(
             half in filler_words or half == "STOP" or lexicon_concept(half) for half in halves
         )
         if len(commands) == 1 and is_framed and are_all_known:
-            only = next(iter(commands))
-            if only == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
+            command = next(iter(commands))
+            if command == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
                 return "S"
-            if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
-                return only
+            if command in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
+                return command
     return None
 
 
-class _OfLine(NamedTuple):
-    """The names of one line; `rows` are those that are written as several words."""
+class _LineNames(NamedTuple):
+    """The names of one line; `spaced_names` are those that are written as several words."""
 
     variables: set[str]
     defs: set[str]
     in_brackets: set[str]
-    rows: set[tuple[str, ...]]
+    spaced_names: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
-    pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
+    names_with_values: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
-    called: set[str]  # words that are an instruction alone
+    lone_words: set[str]  # words that are an instruction alone
     compared_words: set[str]  # words beside a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     open_headers: int  # headers that lack an end
@@ -255,59 +266,73 @@ class _OfLine(NamedTuple):
 
 
 @lru_cache(REMEMBERED_LINES)
-def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
+def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
     block_starts, counted_starts, open_headers = _block_counts(line)
-    of_line = _OfLine(
+    names_found = _LineNames(
         set(), set(), set(), set(), {}, set(), block_starts, _standalone_words(line),
-        _compared_words(line), counted_starts, open_headers, _given(line),
+        _compared_words(line), counted_starts, open_headers, _units_given(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
-    for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
+    for next_index, (token, following) in enumerate(pairwise([*line, make_token(";")]), 2):
         depth += (token.text == "(") - (token.text == ")")
         if token.kind is not WORD:
             continue
         if depth > 0:
-            of_line.in_brackets.add(token.text)
-        elif after.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS:
-            of_line.variables.add(token.text)
+            names_found.in_brackets.add(token.text)
+        elif (
+            following.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS
+        ):
+            names_found.variables.add(token.text)
         is_def = "DEF" in (token.text, lexicon_concept(token.text))
-        is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
-        is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
-        if is_def and after.kind is WORD and after.text not in WORDS:
-            if not lexicon_meaning(after.text, "main") and lexicon_concept(after.text) != "START":
-                of_line.defs.add(after.text)
-                if bare_values := _bare_values(line[at:]):
-                    of_line.pairs.add((after.text, *bare_values))
-                end = closed(line, at)
-                names_given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
-                if all(item.isidentifier() and item not in WORDS for item in names_given):
-                    of_line.parameters[after.text] = names_given
+        is_def = is_def or (
+            token.text == "TASK" and next_index == len(line)
+        )  # a name that it needs not
+        is_def = is_def or (
+            token.text == "TO" and next_index == 2 and bool(_logo_names(line[next_index:]))
+        )
+        if is_def and following.kind is WORD and following.text not in WORDS:
+            if (
+                not lexicon_meaning(following.text, "main")
+                and lexicon_concept(following.text) != "START"
+            ):
+                names_found.defs.add(following.text)
+                if bare_values := _bare_values(line[next_index:]):
+                    names_found.names_with_values.add((following.text, *bare_values))
+                end = brackets_end(line, next_index)
+                names_given = (
+                    texts(line[next_index + 1 : end - 1 : 2])
+                    if end
+                    else _logo_names(line[next_index:])
+                )
+                if all(name.isidentifier() and name not in WORDS for name in names_given):
+                    names_found.parameters[following.text] = names_given
     if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
-        row, names = _name_in_words(head[1:], ";"), of_line.defs
+        spaced_name, target = _name_in_words(head[1:], ";"), names_found.defs
     else:
-        row, names = _name_in_words(head, "="), of_line.variables
-    if row:
-        of_line.rows.add(row)
-        names.add(joined_name(row))
-    return of_line
+        spaced_name, target = _name_in_words(head, "="), names_found.variables
+    if spaced_name:
+        names_found.spaced_names.add(spaced_name)
+        target.add(joined_name(spaced_name))
+    return names_found
 
 
-def _given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
+def _units_given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
     """Return the powers and the pitches that calls of a line give as plain numbers, by unit."""
-    rows = zip(line, line[1:], line[2:], line[3:], line[4:], line[5:], strict=False)
+    windows = zip(line, line[1:], line[2:], line[3:], line[4:], line[5:], strict=False)
     return {
         (WORDS[word.text].arguments[1].unit, value.text)
-        for word, is_open, _, comma, value, is_closed in rows
-        if (is_open.text, comma.text, is_closed.text) == ("(", ",", ")") and value.kind is NUMBER
+        for word, open_bracket, _, comma, value, close_bracket in windows
+        if (open_bracket.text, comma.text, close_bracket.text) == ("(", ",", ")")
+        and value.kind is NUMBER
         if word.text in CALL_WORDS and word.text != "M" and len(WORDS[word.text].arguments) > 1
     }
 
 
 def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
-    row = " ".join(texts(tokens)).partition(";")[0]
-    names = tuple(row.replace(",", " ").split())
+    values_text = " ".join(texts(tokens)).partition(";")[0]
+    names = tuple(values_text.replace(",", " ").split())
     return names if all(name.isidentifier() and name not in WORDS for name in names) else ()
 
 
@@ -319,33 +344,35 @@ def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
 
 def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
-    around = (";", *texts(line), ";")
-    triples = zip(around, around[1:], around[2:], strict=False)
-    return {word for before, word, after in triples if before in ";|" and after == ";"}
+    texts_around = (";", *texts(line), ";")
+    triples = zip(texts_around, texts_around[1:], texts_around[2:], strict=False)
+    return {word for previous, word, following in triples if previous in ";|" and following == ";"}
 
 
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
-    rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
+    windows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     lone_words = {
         name.text
-        for head, before, name, after in rows
-        if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
+        for head, previous, name, following in windows
+        if (previous.text, following.text) == ("(", ")") and name.kind is head.kind is WORD
         if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING_WORDS
     }
     return lone_words | {
         name.text
-        for before, one, sign, other in rows
-        for name, number in ((one, other), (other, one))
+        for previous, left, sign, right in windows
+        for name, number in ((left, right), (right, left))
         if sign.text in COMPARISONS - {"="} and name.kind is WORD and number.kind is NUMBER
-        if before.text not in SEPARATORS
+        if previous.text not in SEPARATORS
     }
 
 
-def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
-    """Return a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
-    row: list[str] = []
-    is_glued = after == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
+def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
+    """Return a name of several words that ends before `end_text`: `mi vel = 5`, `DEF paso 1`."""
+    name_words: list[str] = []
+    is_glued = (
+        end_text == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
+    )
     for token in tokens[: _MOST_NAME_WORDS + 1]:
         text = token.text
         if (
@@ -354,17 +381,24 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
             or text in INSTRUCTION_WORDS
         ):
             break
-        if not row and (lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)):
+        if not name_words and (
+            lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)
+        ):
             break
         is_reserved = (
             text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
         )
-        if token.kind is WORD and is_reserved and len(row) != 1:
+        if token.kind is WORD and is_reserved and len(name_words) != 1:
             break
-        row.append(text)
-    ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
-    is_long_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
-    return tuple(row) if is_long_name else ()
+        name_words.append(text)
+    next_text = tokens[len(name_words)].text if len(tokens) > len(name_words) else ";"
+    is_long_name = (
+        len(name_words) > 1
+        and next_text == end_text
+        and name_words[0] not in WORDS
+        and name_words[-1] != "-"
+    )
+    return tuple(name_words) if is_long_name else ()
 
 
 class Names:
@@ -373,54 +407,72 @@ class Names:
     def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
         readings = [reading for reading in kit.readings if reading.name]
         self.sensors = frozenset(reading.name for reading in readings)
-        self.measuring = tuple(sorted(sensor.name for sensor in kit.sensors))
-        self.asked = {reading.name: reading for reading in readings if not reading.is_yes_no}
+        self.sensor_names = tuple(sorted(sensor.name for sensor in kit.sensors))
+        self.number_readings = {
+            reading.name: reading for reading in readings if not reading.is_yes_no
+        }
         self.actuators = {actuator.name: actuator for actuator in kit.actuators}
-        of_lines = [_names_of(tuple(line)) for line in lines]
-        self.in_brackets = {name for line in of_lines for name in line.in_brackets}
-        self.rows = {row for line in of_lines for row in line.rows}
+        names_of_lines = [_names_of(tuple(line)) for line in lines]
+        self.in_brackets = {name for line in names_of_lines for name in line.in_brackets}
+        self.spaced_names = {row for line in names_of_lines for row in line.spaced_names}
         self.parameters = {
-            k: parameters_of_def
-            for line in of_lines
-            for k, parameters_of_def in line.parameters.items()
+            name: parameters_of_def
+            for line in names_of_lines
+            for name, parameters_of_def in line.parameters.items()
         }
-        for pair in {pair for line in of_lines for pair in line.pairs}:
-            if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
-                self.parameters[pair[0]] = pair[1:]
-                self.rows.discard(pair)
-        self.begun = {word: block for line in of_lines for word, block in line.block_starts.items()}
-        if sum(line.open_headers for line in of_lines) < 0:
-            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted_starts}
-        self.variables = {name for line in of_lines for name in line.variables}
+        for name_with_values in {
+            name_with_values
+            for line in names_of_lines
+            for name_with_values in line.names_with_values
+        }:
+            if self.in_brackets.issuperset(
+                name_with_values[1:]
+            ):  # `DEF LADO X`, and `F(X, 50)` below
+                self.parameters[name_with_values[0]] = name_with_values[1:]
+                self.spaced_names.discard(name_with_values)
+        self.block_of_word = {
+            word: block for line in names_of_lines for word, block in line.block_starts.items()
+        }
+        if sum(line.open_headers for line in names_of_lines) < 0:
+            self.block_of_word |= {
+                word: "LOOP" for line in names_of_lines for word in line.counted_starts
+            }
+        self.variables = {name for line in names_of_lines for name in line.variables}
         self.variables.update(chain.from_iterable(self.parameters.values()))
-        self.defs = {name for line in of_lines for name in line.defs} - {
-            row[0] for row in self.rows
+        self.defs = {name for line in names_of_lines for name in line.defs} - {
+            row[0] for row in self.spaced_names
         }
-        units_and_numbers = {pair for line in of_lines for pair in line.units_given}
+        units_and_numbers = {pair for line in names_of_lines for pair in line.units_given}
         units = [unit for unit, _ in units_and_numbers]
-        self.usual = {unit: text for unit, text in units_and_numbers if units.count(unit) == 1}
-        self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
+        self.usual_values = {
+            unit: text for unit, text in units_and_numbers if units.count(unit) == 1
+        }
+        self.called_defs = frozenset(
+            self.defs & {word for line in names_of_lines for word in line.lone_words}
+        )
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         defs_without_values = {name for name, count in counts.items() if not count}
         calls = {*counts.items(), *((name, 1) for name in self.actuators)}
         values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
-        self.known = KnownNames(frozenset(values), instructions, frozenset(calls))
+        self.known_names = KnownNames(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared_names = {
-            name for line in of_lines for name in line.compared_words if name not in WORDS
+            name for line in names_of_lines for name in line.compared_words if name not in WORDS
         }
         word_of_name = {name: self.meant(name, NEAR) for name in compared_names - values}
-        self.strange = {
+        self.unknown_names = {
             name for name, concept in word_of_name.items() if not concept or concept in CALL_WORDS
         }
-        self.read_as = self.known._replace(values=frozenset(values | self.strange))
-        words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
+        self.readable_names = self.known_names._replace(
+            values=frozenset(values | self.unknown_names)
+        )
+        words = (frozenset(names) for names in (self.defs, self.in_brackets, self.spaced_names))
         self._content = (
-            self.read_as,
+            self.readable_names,
             *words,
-            self.called,
-            frozenset(self.begun.items()),
-            frozenset(self.usual.items()),
+            self.called_defs,
+            frozenset(self.block_of_word.items()),
+            frozenset(self.usual_values.items()),
             kit.actuators,
         )
         self._labels: dict[tuple[str, str, bool], str] = {}
@@ -432,57 +484,65 @@ class Names:
         return hash(self._content)
 
     def is_name(self, word: str) -> bool:
-        return word in self.known.values or word in self.defs or word in self.actuators
+        return word in self.known_names.values or word in self.defs or word in self.actuators
 
     def is_yes_no(self, word: str) -> bool:
         """Whether a word is a yes or a no by itself, which nothing is compared with."""
-        return word in ("TRUE", "FALSE") or (word in self.sensors and word not in self.asked)
+        return word in ("TRUE", "FALSE") or (
+            word in self.sensors and word not in self.number_readings
+        )
 
     def meanings(self, word: str) -> tuple[Meaning, ...]:
         """Return what a word that is no name of the program may mean."""
         if self.is_name(word):
             return ()
-        if word in self.begun:
-            return (Meaning(self.begun[word], KNOWN),)
+        if word in self.block_of_word:
+            return (Meaning(self.block_of_word[word], KNOWN),)
         end, _, block = word.partition("_")
         if lexicon_meaning(end, "end") and block in (*WORDS, *self.defs):
-            return (Meaning(SOME_END, KNOWN),)
-        if concept := self.sided(word) or self._lamp(word):
+            return (Meaning(UNNAMED_END, KNOWN),)
+        if concept := self.sensor_with_side(word) or self._lamp_of(word):
             return (Meaning(concept, KNOWN),)
-        result = meanings(word)
+        word_meanings = meanings(word)
         return tuple(
-            meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
+            meaning
+            for meaning in word_meanings
+            if meaning.concept in WORDS or self.is_device_or_end(meaning.concept)
         )
 
-    def sided(self, word: str) -> str:
+    def sensor_with_side(self, word: str) -> str:
         """Return the sensor of a side that `SENSOR_L` says, "" for none."""
         parts = word.split("_")
         kept_parts = [part for part in parts if not lexicon_meaning(part, "sensing")]
         if len(kept_parts) != 1 or len(parts) == 1:
             return ""
         side = "".join(lexicon_meaning(kept_parts[0], "left", "right"))[:1].upper()
-        return self.on_side(side or lexicon_concept(kept_parts[0]) or kept_parts[0])
+        return self.sensor_on_side(side or lexicon_concept(kept_parts[0]) or kept_parts[0])
 
-    def _lamp(self, word: str) -> str:
+    def _lamp_of(self, word: str) -> str:
         """Return the lamp that a word for light says of a robot which sees none."""
         is_light = lexicon_meaning(word, "stem") == ("LIGHT",) and "LED" in self.actuators
-        return "LED" * (is_light and not any(it.startswith("LIGHT_") for it in self.sensors))
+        return "LED" * (is_light and not any(name.startswith("LIGHT_") for name in self.sensors))
 
-    def on_side(self, side: str) -> str:
+    def sensor_on_side(self, side: str) -> str:
         """Return the one sensor of the robot on L or R, "" for none or several."""
         sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
         return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
-    def meant(self, word: str, most_cost: int = MISSPELT) -> str:
+    def meant(self, word: str, highest_cost: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
-        result = self.meanings(word)
-        return result[0].concept if result and result[0].cost <= most_cost else ""
+        word_meanings = self.meanings(word)
+        return (
+            word_meanings[0].concept
+            if word_meanings and word_meanings[0].cost <= highest_cost
+            else ""
+        )
 
-    def has(self, concept: str) -> bool:
+    def is_device_or_end(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
-        return concept in self.sensors or concept in self.actuators or concept == SOME_END
+        return concept in self.sensors or concept in self.actuators or concept == UNNAMED_END
 
     def takes_values(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
@@ -503,41 +563,47 @@ class Names:
     def _classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
-            fitting = (name for name, fits in _CHECK_OF_UNIT.items() if fits(float(text)))
-            return [text, "@num", *ANY_LABELS, *fitting]
+            fitting_classes = (name for name, check in _CHECK_OF_UNIT.items() if check(float(text)))
+            return [text, "@num", *ANY_LABELS, *fitting_classes]
         if token.kind is not WORD:
-            fitting = (name for name, without in _EXCLUSIONS.items() if text not in without)
-            own = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
-            return [f"s{text}", *fitting, *own]
+            fitting_classes = (
+                name for name, excluded in _EXCLUSIONS.items() if text not in excluded
+            )
+            own_classes = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
+            return [f"s{text}", *fitting_classes, *own_classes]
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
-        texts = [meaning.kind for meaning in lexicon().get(text, ())]
+        kinds = [meaning.kind for meaning in lexicon().get(text, ())]
         is_own_name = text in self.variables or text in self.defs
-        classes = [item for item in texts if item.islower() and not is_own_name]
+        classes = [kind for kind in kinds if kind.islower() and not is_own_name]
         if text not in WORDS:
-            classes += [_CLASSES[item] for item in lexicon().get(text, ()) if item in _CLASSES]
-        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own_name else []
+            classes += [_CLASSES[entry] for entry in lexicon().get(text, ()) if entry in _CLASSES]
+        classes += ["@unit"] if "unit" in kinds and text not in WORDS and not is_own_name else []
         classes += ["@cross"] if text == "X" and not is_own_name else []
-        if "unit" not in texts and text not in WORDS and not is_own_name:
-            classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
+        if "unit" not in kinds and text not in WORDS and not is_own_name:
+            classes += [f"@like_{unit_word}" for unit_word in WAYS if is_slip(text, unit_word)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
         classes += [
-            item
-            for item in ANY_LABELS
-            if not lexicon_meaning(text, "do") or item not in _LABELS_WITHOUT_DO
+            label
+            for label in ANY_LABELS
+            if not lexicon_meaning(text, "do") or label not in _LABELS_WITHOUT_DO
         ]
-        if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
+        if (
+            text in self.readable_names.values
+            or word in ("TRUE", "FALSE", "TIME")
+            or word in self.sensors
+        ):
             classes.append("@val")
-            classes += ["@measured"] if {word, text} & self.asked.keys() else []
+            classes += ["@measured"] if {word, text} & self.number_readings.keys() else []
             classes += [] if self.is_yes_no(word) or self.is_yes_no(text) else ["@amount"]
         if text in self.defs:
-            own = ["@defw", "@callw"] if self.takes_values(text) else ["@step", "@close"]
-            classes += ["@def", "@start", "@startm", *own]
+            def_classes = ["@defw", "@callw"] if self.takes_values(text) else ["@step", "@close"]
+            classes += ["@def", "@start", "@startm", *def_classes]
         is_device = word in self.actuators or text in self.actuators
         if (word in INSTRUCTION_WORDS or is_device) and (not is_name or is_device):
             classes += ["@start", *(["@startm"] if word != "BEEP" else [])]
@@ -561,22 +627,26 @@ def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], 
     block_of_word: dict[str, str] = {}
     counted_starts: list[str] = []
     open_headers = 0
-    for k, (one, other) in enumerate(pairwise([made(";"), *line])):
-        pair = [one.text, other.text] if lexicon_meaning(one.text, "end") else [other.text]
+    for k, (word_before, token) in enumerate(pairwise([make_token(";"), *line])):
+        pair = (
+            [word_before.text, token.text]
+            if lexicon_meaning(word_before.text, "end")
+            else [token.text]
+        )
         block = WORD_OF_END.get(lexicon_concept("_".join(pair)) or "", "")
         word = _END_PATTERN.sub("", "_".join(pair), count=1)
         if block and lexicon_concept(word) in INSTRUCTION_WORDS:
             block_of_word[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
-        if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
-            counted_starts.append(other.text)
-        open_headers += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
-        open_headers -= bool(lexicon_meaning(other.text, "end") or other.text in WORD_OF_END)
+        if is_called and lexicon_meaning(token.text, "count") and lexicon_concept(token.text):
+            counted_starts.append(token.text)
+        open_headers += (lexicon_concept(token.text) or token.text) in BLOCK_ENDS
+        open_headers -= bool(lexicon_meaning(token.text, "end") or token.text in WORD_OF_END)
     return block_of_word, counted_starts, open_headers
 
 
-def joined_name(row: Iterable[str]) -> str:
-    parts = [item for item in row if item != "-"]
+def joined_name(words: Iterable[str]) -> str:
+    parts = [word for word in words if word != "-"]
     if parts[0][0].isdecimal():  # `2PASOS`
         return "".join((*parts[1:], parts[0]))
     return "_".join(parts)
@@ -589,5 +659,7 @@ _EXCLUSIONS: dict[str, tuple[str, ...]] = {
     "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
 ANY_LABELS = tuple(_EXCLUSIONS)
-SEPARATOR = "|".join(("s;", *(name for name, without in _EXCLUSIONS.items() if ";" not in without)))
+SEPARATOR = "|".join(
+    ("s;", *(name for name, excluded in _EXCLUSIONS.items() if ";" not in excluded))
+)
 _LABELS_WITHOUT_DO = ("@cond", "@noparen")

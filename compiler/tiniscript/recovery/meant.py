@@ -12,11 +12,11 @@ from tiniscript.base.words import MOVES, UNIT_OF, WAYS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
-from tiniscript.recovery.conserved import difference, keeps_all
-from tiniscript.recovery.explanation import Explanation, explained, trimmed
+from tiniscript.recovery.conserved import difference, which_keep_all
+from tiniscript.recovery.explanation import Explanation, explain_candidate, trimmed_edit
 from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
-from tiniscript.recovery.writing import in_one_line, laid_out
+from tiniscript.recovery.writing import format_line, in_one_line
 
 _ENDLESS_LOOP = "LOOP(FOREVER)"
 # Codes whose sentence names what is right.
@@ -34,68 +34,86 @@ _DEF_HEADER = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
 _VALUE_WITH_UNIT = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
-def meant_in(
+def meant_diagnostics(
     source: Source, diagnostics: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
     """Return what is wrong with a text where it is known what is meant by it.
 
     `is_sure`: by all of it surely; else by the lines that are read.
     """
-    candidate = recovery.sure() if is_sure else recovery.best()
+    candidate = recovery.sure_candidate() if is_sure else recovery.best_candidate()
     if candidate is None:
         return []
     text = recovery.program
-    sentence = source.text
-    message = explained(sentence, candidate)
-    if not message and candidate.is_whole:
-        misplaced_diagnostics = [each for each in diagnostics if each.code in rows.MISPLACED]
-        said_of_it = misplaced_diagnostics or [each for each in diagnostics if each.is_mistake]
+    source_text = source.text
+    explanations = explain_candidate(source_text, candidate)
+    if not explanations and candidate.is_whole:
+        misplaced_diagnostics = [
+            mistake for mistake in diagnostics if mistake.code in rows.MISPLACED_CODES
+        ]
+        reported_diagnostics = misplaced_diagnostics or [
+            mistake for mistake in diagnostics if mistake.is_mistake
+        ]
         return [
-            _moved_lines_diagnostic(each, sentence, candidate, recovery.kit) for each in said_of_it
+            _moved_lines_diagnostic(mistake, source_text, candidate, recovery.kit)
+            for mistake in reported_diagnostics
         ][:1]
-    if not message:
+    if not explanations:
         return []
-    explained_diagnostics = [(each, _diagnostic(each, candidate, diagnostics)) for each in message]
+    explained_diagnostics = [
+        (explanation, _diagnostic(explanation, candidate, diagnostics))
+        for explanation in explanations
+    ]
     loses_nothing = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
     if loses_nothing and difference(text, candidate.text, recovery.kit).losses:
-        is_kept_of = (
+        kept_flags = (
             []
             if is_sure
-            else keeps_all([own for _, own in explained_diagnostics], source.text, recovery.kit)
+            else which_keep_all(
+                [diagnostic for _, diagnostic in explained_diagnostics], source.text, recovery.kit
+            )
         )
         explained_diagnostics = [
-            it for it, is_kept in zip(explained_diagnostics, is_kept_of, strict=False) if is_kept
+            it for it, is_kept in zip(explained_diagnostics, kept_flags, strict=False) if is_kept
         ]
-    other_explanations = [each for other in recovery.others for each in explained(sentence, other)]
+    other_explanations = [
+        explanation
+        for other in recovery.other_candidates
+        for explanation in explain_candidate(source_text, other)
+    ]
     return [
-        _with_rival(_with_carried_unit(own, source.text), each, other_explanations)
-        for each, own in explained_diagnostics
+        _with_rival(_with_carried_unit(diagnostic, source.text), explanation, other_explanations)
+        for explanation, diagnostic in explained_diagnostics
     ]
 
 
 def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
-    set_to = (
+    assignment_match = (
         _NUMBER_ASSIGNMENT.fullmatch(diagnostic.values.get("fix", ""))
         if diagnostic.code is codes.UNIT
         else None
     )
     unit = _UNIT_AT_END.search(diagnostic.values.get("found", ""))
-    way = _unit_word(unit[0]) if unit else ""
-    uses = [*_move_pattern(set_to[1], way).finditer(text)] if set_to and way else []
+    unit_word = _unit_word(unit[0]) if unit else ""
+    uses = (
+        [*_move_pattern(assignment_match[1], unit_word).finditer(text)]
+        if assignment_match and unit_word
+        else []
+    )
     uses = uses or [
         unit_match
-        for head, unit_match, _ in _in_bodies(text, text)
+        for value_span, unit_match, _ in _uses_in_bodies(text, text)
         if diagnostic.code is codes.UNIT
-        and diagnostic.span.start < head.end
-        and diagnostic.span.end > head.start
+        and diagnostic.span.start < value_span.end
+        and diagnostic.span.end > value_span.start
     ]
     if not uses or not diagnostic.repair:
         return diagnostic
-    edits = (Edit(Span(*item.span("unit")), f" {way}") for item in uses)
+    edits = (Edit(Span(*use.span("unit")), f" {unit_word}") for use in uses)
     start, end = uses[0].span()
-    place = uses[0].start("unit")
-    carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
+    unit_offset = uses[0].start("unit")
+    carried = format_line(lexemes(f"{text[start:unit_offset]} {unit_word}{text[unit_offset:end]}"))
     repair = diagnostic.repair._replace(edits=(*diagnostic.repair.edits, *edits))
     return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
 
@@ -104,55 +122,61 @@ def _with_rival(
     diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    fixes = (item.fix for item in other_explanations if item.place == explanation.place)
-    other = next((fix for fix in fixes if fix and fix != explanation.fix), "")
-    if not other:
+    other_fixes = (other.fix for other in other_explanations if other.place == explanation.place)
+    rival = next((fix for fix in other_fixes if fix and fix != explanation.fix), "")
+    if not rival:
         return diagnostic
-    values = {**diagnostic.values, "rival": other}
+    values = {**diagnostic.values, "rival": rival}
     if diagnostic.code is codes.MISSING_CLOSE:
-        values |= dict(zip(("one", "another"), _in_brackets(explanation.fix, other), strict=True))
+        values |= dict(
+            zip(("one", "another"), _bracket_contents(explanation.fix, rival), strict=True)
+        )
     return diagnostic._replace(values=values)
 
 
-def _in_brackets(one: str, other: str) -> tuple[str, str]:
+def _bracket_contents(fix: str, rival_fix: str) -> tuple[str, str]:
     """Return what the brackets hold in which two texts differ first."""
-    common_start = slips.alike(one, other)[0]
+    common_start = slips.common_lengths(fix, rival_fix)[0]
     start, depth = common_start, 0
     while start > 0 and depth < 1:
         start -= 1
-        depth += (one[start] == "(") - (one[start] == ")")
-    inside = [_BALANCED_TEXT.match(item, start + 1) for item in (one, other)]
-    return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
+        depth += (fix[start] == "(") - (fix[start] == ")")
+    content_matches = [_BALANCED_TEXT.match(text, start + 1) for text in (fix, rival_fix)]
+    return content_matches[0][0] if content_matches[0] else "", content_matches[1][
+        0
+    ] if content_matches[1] else ""
 
 
 def _diagnostic(
     explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    is_explained = (
+    has_certain_count = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
     )  # how often
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
-    repair = Repair(tuple(explanation.edits), is_explained and is_sure)
+    repair = Repair(tuple(explanation.edits), has_certain_count and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
-        explanation.whole = ""  # where it ends is a guess
-    code, values = _in_words(explanation)
+        explanation.block_text = ""  # where it ends is a guess
+    code, values = _code_and_values(explanation)
     checker_code = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
-    checker_diagnostics = (each for each in diagnostics if each.code is checker_code)
-    for each in checker_diagnostics if checker_code in _CHECKER_CODES else ():
-        if explanation.place.start <= each.span.start < explanation.place.end:
-            values = {**each.values, "fix": explanation.fix}
-            return Diagnostic(each.code, each.span, values, explanation.place, repair)
+    checker_diagnostics = (
+        diagnostic for diagnostic in diagnostics if diagnostic.code is checker_code
+    )
+    for diagnostic in checker_diagnostics if checker_code in _CHECKER_CODES else ():
+        if explanation.place.start <= diagnostic.span.start < explanation.place.end:
+            values = {**diagnostic.values, "fix": explanation.fix}
+            return Diagnostic(diagnostic.code, diagnostic.span, values, explanation.place, repair)
     if code in _CHECKER_CODES[:2]:  # its values are not counted
         code, values = codes.OTHER_CALL, explanation.values_as(codes.OTHER_CALL)
     return Diagnostic(code, explanation.span, values, explanation.place, repair)
 
 
-def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
+def _code_and_values(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     """Return the code of the sentence that has a word for what is told, and its values."""
     code, slip = explanation.code, explanation.slip
     if slip and code in _CODES_WITH_RIGHT and not slips.right_of(slip):
-        has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
+        has_bracket = "(" in slips.text_before(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = explanation.values_as(code)
     found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
@@ -171,22 +195,22 @@ def _moved_lines_diagnostic(
     diagnostic: Diagnostic, text: str, candidate: Candidate, kit: Kit
 ) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    result = _with_units(text, candidate.text)
-    lost = [item for item in difference(text, result, kit).losses
-            if (unit := _UNIT_AT_END.search(item)) and _unit_word(unit[0])]  # fmt: skip
-    values = {**diagnostic.values, "whole": in_one_line(result)}
-    values |= {"lost": ", ".join(lost)} if lost else {}
+    moved_text = _with_units(text, candidate.text)
+    lost_units = [loss for loss in difference(text, moved_text, kit).losses
+            if (unit := _UNIT_AT_END.search(loss)) and _unit_word(unit[0])]  # fmt: skip
+    values = {**diagnostic.values, "whole": in_one_line(moved_text)}
+    values |= {"lost": ", ".join(lost_units)} if lost_units else {}
     if diagnostic.code is codes.WRONG_END:
         values |= {"swapped": diagnostic.values["right"], "apart": ""}
     elif (move := candidate.move) is not None:
-        values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
+        values |= {"name": move.name, "line": str(move.target_line), "last": str(move.last_line)}
         if diagnostic.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
             diagnostic = diagnostic._replace(code=codes.CALL_BEFORE_DEF)
-        is_one_line = move.first == move.last and not move.is_end
-        values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
-        if move.is_end and move.last > len(text.splitlines()):
+        is_one_line = move.first_line == move.last_line and not move.moves_only_end
+        values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first_line)}
+        if move.moves_only_end and move.last_line > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
-    repair = Repair((trimmed(0, text, result),), candidate.is_applied and not lost)
+    repair = Repair((trimmed_edit(0, text, moved_text),), candidate.is_applied and not lost_units)
     return diagnostic._replace(values=values, repair=repair)
 
 
@@ -195,34 +219,40 @@ def _moved_lines_diagnostic(
 
 def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
-    text = lexicon_meaning(plain(unit), "unit")
-    return next((way for way, way_unit in WAYS.items() if text and way_unit.unit == text[0]), "")
+    meaning = lexicon_meaning(plain(unit), "unit")
+    return next(
+        (word for word, way_unit in WAYS.items() if meaning and way_unit.unit == meaning[0]), ""
+    )
 
 
-def _move_pattern(name: str, way: str) -> re.Pattern[str]:
+def _move_pattern(name: str, unit_word: str) -> re.Pattern[str]:
     """Return the pattern of the moves that go so much of a unit, and have none."""
-    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
+    moves = "|".join(move for move in MOVES if UNIT_OF[move] == unit_word)
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
 
 
-def _in_bodies(written_text: str, meant_text: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+def _uses_in_bodies(
+    written_text: str, meant_text: str
+) -> Iterator[tuple[Span, re.Match[str], str]]:
     """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
-    for head in _DEF_HEADER.finditer(written_text):
-        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant_text)
-        for match in _VALUE_WITH_UNIT.finditer(written_text, head.start("values"), head.end()):
-            way = _unit_word(match[2])
+    for def_match in _DEF_HEADER.finditer(written_text):
+        body_match = re.search(rf"(?is)\bDEF\s+{def_match[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant_text)
+        for match in _VALUE_WITH_UNIT.finditer(
+            written_text, def_match.start("values"), def_match.end()
+        ):
+            unit_word = _unit_word(match[2])
             for use in (
-                _move_pattern(match[1], way).finditer(meant_text, *body.span())
-                if body and way
+                _move_pattern(match[1], unit_word).finditer(meant_text, *body_match.span())
+                if body_match and unit_word
                 else ()
             ):
-                yield Span(*match.span()), use, way
+                yield Span(*match.span()), use, unit_word
 
 
 def _with_units(written_text: str, meant_text: str) -> str:
     """Return a program in whose DEFs the moves have the units that stood at their values."""
     edits = [
-        Edit(Span(*it.span("unit")), f" {way}")
-        for _, it, way in _in_bodies(written_text, meant_text)
+        Edit(Span(*use.span("unit")), f" {unit_word}")
+        for _, use, unit_word in _uses_in_bodies(written_text, meant_text)
     ]
     return apply_edits(meant_text, edits)

@@ -17,7 +17,7 @@ from tiniscript.base.words import MOVES, WORDS, foreign_word_hints, lexicon_conc
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import meanings, number_text, plain
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _MOTOR_CALL = re.compile(r"(?P<name>[^\W\d][\w.]*)[ \t]*\([ \t]*(?P<power>-?\d+)[ \t]*%?[ \t]*\)")
 _SWITCH_CALL = re.compile(
@@ -52,28 +52,28 @@ class _Switch(NamedTuple):
     span: Span
 
 
-def switched(source: Source) -> list[Diagnostic]:
+def switch_diagnostics(source: Source) -> list[Diagnostic]:
     """Return what is told of motors that are switched on, and off or to another way after a wait.
 
     Each with its wait is one move, and the stop after the last one needs no word.
     """
-    result: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     text, calls = source.text, [*_switches(source.text)]
     k = 0
     while k < len(calls):
         end, moves = k, list[str]()
-        while end + 1 < len(calls) and _is_on(calls[end]) and _is_wait(calls[end + 1]):
+        while end + 1 < len(calls) and _switches_on(calls[end]) and _is_wait(calls[end + 1]):
             if moves and not _are_together(text, calls[end - 1], calls[end]):
                 break
             if not _are_together(text, calls[end], calls[end + 1]):
                 break
-            seconds = _seconds(calls[end + 1].number)
+            seconds = _seconds_text(calls[end + 1].number)
             moves.append(f"{calls[end].word}({seconds}, {calls[end].number})")
             end += 2
-        is_ended = moves and end < len(calls) and calls[end].word in _STOP_WORDS
-        is_ended = is_ended and _are_together(text, calls[end - 1], calls[end])
-        if is_ended or len(moves) > 1:
-            whole_span = Span(calls[k].span.start, calls[end - (not is_ended)].span.end)
+        has_stop = moves and end < len(calls) and calls[end].word in _STOP_WORDS
+        has_stop = has_stop and _are_together(text, calls[end - 1], calls[end])
+        if has_stop or len(moves) > 1:
+            whole_span = Span(calls[k].span.start, calls[end - (not has_stop)].span.end)
             fix = ";".join(moves)
             word, name = calls[k].word, calls[k].name
             values = {"found": name, "right": word, "takes": WORDS[word].usage, "fix": fix}
@@ -83,12 +83,12 @@ def switched(source: Source) -> list[Diagnostic]:
                 values["usage"] = WORDS[word].usage
                 code = codes.ARGUMENT_COUNT
             repair = Repair((Edit(whole_span, fix),), False)
-            result.append(Diagnostic(code, whole_span, values, whole_span, repair))
+            diagnostics.append(Diagnostic(code, whole_span, values, whole_span, repair))
         k = max(k + 1, end)
-    return result
+    return diagnostics
 
 
-def _is_on(call: _Switch) -> bool:
+def _switches_on(call: _Switch) -> bool:
     is_whole = call.number.isdecimal()
     return (
         call.word in MOVES and call.word != "W" and is_whole and int(call.number) in _LIKELY_POWERS
@@ -99,73 +99,73 @@ def _is_wait(call: _Switch) -> bool:
     return call.word == "W" and bool(call.number.strip("."))
 
 
-def _are_together(text: str, one: _Switch, other: _Switch) -> bool:
-    return not text[one.span.end : other.span.start].strip(_SEPARATORS)
+def _are_together(text: str, first: _Switch, second: _Switch) -> bool:
+    return not text[first.span.end : second.span.start].strip(_SEPARATORS)
 
 
-def _seconds(number: str) -> str:
+def _seconds_text(number: str) -> str:
     """Return how long a wait lasts: 500 are milliseconds."""
     return number_text(float(number) / 1000) if float(number) >= _LEAST_WAIT_MS else number
 
 
 def _switches(text: str) -> Iterator[_Switch]:
-    start = 0
+    line_start = 0
     def_names = {plain(match[1]) for match in _DEF.finditer(text)}
     for line in text.split("\n"):
-        for piece in _PIECE.finditer(without_note(line)[0]):
-            match = _SWITCH_CALL.fullmatch(piece[0].strip())
+        for instruction in _PIECE.finditer(split_note(line)[0]):
+            match = _SWITCH_CALL.fullmatch(instruction[0].strip())
             if match:
-                begin = start + piece.start() + piece[0].index(match[0])
+                start = line_start + instruction.start() + instruction[0].index(match[0])
                 word = plain(match["name"].rpartition(".")[2])
                 concept = word if word in WORDS else next((it.concept for it in meanings(word)), "")
                 concept = "" if word in def_names else concept
-                span = Span(begin, begin + len(match[0]))
+                span = Span(start, start + len(match[0]))
                 yield _Switch(concept, match["number"] or "", match["name"], span)
-        start += len(line) + 1
+        line_start += len(line) + 1
 
 
-def one_by_one(source: Source) -> list[tuple[Diagnostic, Edit]]:
+def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
     """Return what is told of motors that are set one by one, and how the rest is read."""
     text, motor_orders = source.text, [*_motors(source.text)]
-    result: list[tuple[Diagnostic, Edit]] = []
+    findings: list[tuple[Diagnostic, Edit]] = []
     spans_used: set[Span] = set()
-    for one, other in zip_longest(motor_orders, motor_orders[1:]):
-        if one.span in spans_used:
+    for motor, next_motor in zip_longest(motor_orders, motor_orders[1:]):
+        if motor.span in spans_used:
             continue
-        is_pair = other and one.side != other.side
-        if is_pair and not text[one.span.end : other.span.start].strip(_SEPARATORS):
-            powers = {it.side: it.power for it in (one, other)}
+        is_pair = next_motor and motor.side != next_motor.side
+        if is_pair and not text[motor.span.end : next_motor.span.start].strip(_SEPARATORS):
+            powers = {it.side: it.power for it in (motor, next_motor)}
             fix = f"M({powers['left']}, {powers['right']})"
-            whole_span = Span(one.span.start, other.span.end)
+            whole_span = Span(motor.span.start, next_motor.span.end)
             edit = Edit(whole_span, fix)
-            call_values = {"found": one.name, "right": "M", "takes": WORDS["M"].usage, "fix": fix}
+            call_values = {"found": motor.name, "right": "M", "takes": WORDS["M"].usage, "fix": fix}
             repair = Repair((edit,), False)
-            spans_used.add(other.span)
-            result.append(
+            spans_used.add(next_motor.span)
+            findings.append(
                 (
                     Diagnostic(codes.OTHER_LANGUAGE, whole_span, call_values, whole_span, repair),
                     edit,
                 )
             )
         else:
-            values = {"found": one.name, **foreign_word_hints("MOTOR")}
-            name = Span(one.span.start, one.span.start + len(one.name))
-            blank = Edit(one.span, " " * (one.span.end - one.span.start))
-            result.append((Diagnostic(codes.UNKNOWN_WORD, name, values), blank))
-    return result
+            values = {"found": motor.name, **foreign_word_hints("MOTOR")}
+            name_span = Span(motor.span.start, motor.span.start + len(motor.name))
+            blanking_edit = Edit(motor.span, " " * (motor.span.end - motor.span.start))
+            findings.append((Diagnostic(codes.UNKNOWN_WORD, name_span, values), blanking_edit))
+    return findings
 
 
 def _motors(text: str) -> Iterator[_Motor]:
-    start = 0
+    line_start = 0
     for line in text.split("\n"):
-        for piece in _PIECE.finditer(without_note(line)[0]):
-            match = _MOTOR_CALL.fullmatch(piece[0].strip())
+        for instruction in _PIECE.finditer(split_note(line)[0]):
+            match = _MOTOR_CALL.fullmatch(instruction[0].strip())
             side = _side_of(match["name"]) if match else ""
             if match and side and not re.search(rf"(?i)\bDEF\s+{match['name']}\b", text):
-                begin = start + piece.start() + piece[0].index(match[0])
-                span = Span(begin, begin + len(match[0]))
+                start = line_start + instruction.start() + instruction[0].index(match[0])
+                span = Span(start, start + len(match[0]))
                 yield _Motor(side, match["power"], match["name"], span)
-        start += len(line) + 1
+        line_start += len(line) + 1
 
 
 def _side_of(name: str) -> str:

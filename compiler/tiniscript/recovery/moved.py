@@ -12,26 +12,26 @@ from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.recovery.meanings import WORD_OF_END
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
 _MOST_MOVES = 20
 _FIRST_WORDS = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
-class Moved(NamedTuple):
+class MovedProgram(NamedTuple):
     """A program in which all DEFs stand right, and what was moved first: its lines, from 1.
 
-    The end of `name` alone where `is_end`, else all of its block; `before` which line. `is_guess`:
-    something else may be meant.
+    The end of `name` alone where `moves_only_end`, else all of its block; `target_line` which line.
+    `is_guess`: something else may be meant.
     """
 
     text: str
     name: str
-    first: int
-    last: int
-    before: int
-    is_end: bool
+    first_line: int
+    last_line: int
+    target_line: int
+    moves_only_end: bool
     is_guess: bool
 
 
@@ -44,71 +44,77 @@ class _Piece(NamedTuple):
     name: str  # what follows the word
 
 
-def ordered(text: str) -> Iterator[Moved]:
+def reorder_defs(text: str) -> Iterator[MovedProgram]:
     """Give programs with DEFs and ends where they belong: DEFs at the beginning, or later."""
-    setup = _SETUP.match(text)
-    start = setup.end() if setup else 0
+    setup_match = _SETUP.match(text)
+    start = setup_match.end() if setup_match else 0
     for is_at_start in (True, False):
         if moved := _reorder(text[start:], is_at_start):
             yield moved._replace(text=text[:start] + moved.text)
 
 
-def _reorder(text: str, is_at_start: bool) -> Moved | None:
+def _reorder(text: str, is_at_start: bool) -> MovedProgram | None:
     pieces = [*_pieces(text)]
-    first: Moved | None = None
+    first_move: MovedProgram | None = None
     is_guess = False
     for _ in range(_MOST_MOVES):
-        swap, late_end = _swapped_ends(pieces), _end_too_late(pieces)
+        swap, late_end = _swapped_ends(pieces), _late_end(pieces)
         move = swap or late_end or _late_def(pieces, is_at_start)
         if move is None:
-            return first and first._replace(text=_join_pieces(pieces), is_guess=is_guess)
-        begin, end, target = move
-        name = next((it.name for it in pieces[begin::-1] if it.word == "DEF"), pieces[0].name)
-        is_called = bool([*_calls(pieces, name, 0, len(pieces))])
+            return first_move and first_move._replace(text=_join_pieces(pieces), is_guess=is_guess)
+        start, end, target = move
+        name = next((it.name for it in pieces[start::-1] if it.word == "DEF"), pieces[0].name)
+        is_called = bool([*_call_indexes(pieces, name, 0, len(pieces))])
         is_guess = is_guess or bool(late_end and not swap) or not (swap or is_called)
-        if first is None:
-            rows = [pieces[k].line for k in move]
-            first = Moved(
-                text, name, rows[0], rows[1], rows[2], bool(swap or late_end), is_guess=False
+        if first_move is None:
+            line_numbers = [pieces[k].line for k in move]
+            first_move = MovedProgram(
+                text,
+                name,
+                line_numbers[0],
+                line_numbers[1],
+                line_numbers[2],
+                bool(swap or late_end),
+                is_guess=False,
             )
-        pieces[target : end + 1] = [*pieces[begin : end + 1], *pieces[target:begin]]
+        pieces[target : end + 1] = [*pieces[start : end + 1], *pieces[target:start]]
     return None
 
 
 def _pieces(text: str) -> Iterator[_Piece]:
-    for line, row in enumerate(text.split("\n"), 1):
-        body, note = without_note(row)
+    for line_number, line_text in enumerate(text.split("\n"), 1):
+        body, note = split_note(line_text)
         parts = [part for part in body.split(";") if part.strip()] or [""]
         for k, part in enumerate(parts):
             match = _FIRST_WORDS.match(part.upper())
             word, name = match.groups() if match else ("", "")
             piece_text = part + note if note and k + 1 == len(parts) else part.rstrip()
-            yield _Piece(piece_text, line, ALIASES.get(word, word), name)
+            yield _Piece(piece_text, line_number, ALIASES.get(word, word), name)
 
 
 def _join_pieces(pieces: list[_Piece]) -> str:
     """Return a program in which pieces of one line stay in it, where they are neighbours."""
     text = pieces[0].text.lstrip()
-    for before, piece in pairwise(pieces):
-        is_near = before.line == piece.line and "//" not in before.text
+    for previous, piece in pairwise(pieces):
+        is_near = previous.line == piece.line and "//" not in previous.text
         text += (";" if is_near else "\n") + piece.text
     return text
 
 
-def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
+def _outermost_start(pieces: list[_Piece], k: int, start: int = 0) -> int:
     """Return where the block around a piece begins that none from `start` on is around."""
-    depth, result = 0, k
-    for place in range(start, k):
-        if pieces[place].word in BLOCK_ENDS:
-            result = place if not depth else result
+    depth, outermost = 0, k
+    for index in range(start, k):
+        if pieces[index].word in BLOCK_ENDS:
+            outermost = index if not depth else outermost
             depth += 1
-        elif pieces[place].word in WORD_OF_END:
+        elif pieces[index].word in WORD_OF_END:
             depth -= 1
-        result = k if not depth else result
-    return result
+        outermost = k if not depth else outermost
+    return outermost
 
 
-def _defs(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:
+def _def_ranges(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:
     """Give the places of each DEF and of its end."""
     for k, piece in enumerate(pieces):
         if piece.word == "DEF" and piece.name:
@@ -117,7 +123,7 @@ def _defs(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:
                 yield k, end
 
 
-def _calls(pieces: list[_Piece], name: str, start: int, end: int) -> Iterator[int]:
+def _call_indexes(pieces: list[_Piece], name: str, start: int, end: int) -> Iterator[int]:
     return (k for k in range(start, end) if pieces[k].word == name and not pieces[k].name)
 
 
@@ -131,32 +137,32 @@ def _swapped_ends(pieces: list[_Piece]) -> _Move | None:
         if piece.word in BLOCK_ENDS:
             open_words.append(BLOCK_ENDS[piece.word])
         elif piece.word in WORD_OF_END and open_words:
-            after = pieces[k + 1].word if k + 1 < len(pieces) else ""
-            if open_words[-2:] == [piece.word, after] and piece.word != after:
+            next_word = pieces[k + 1].word if k + 1 < len(pieces) else ""
+            if open_words[-2:] == [piece.word, next_word] and piece.word != next_word:
                 return k + 1, k + 1, k
             open_words.pop()
     return None
 
 
-def _end_too_late(pieces: list[_Piece]) -> _Move | None:
-    for k, end in _defs(pieces):
+def _late_end(pieces: list[_Piece]) -> _Move | None:
+    for k, end in _def_ranges(pieces):
         name = pieces[k].name
-        call = next(_calls(pieces, name, k + 1, end), None)
-        if call is None or [*_calls(pieces, name, end, len(pieces))]:
+        call = next(_call_indexes(pieces, name, k + 1, end), None)
+        if call is None or [*_call_indexes(pieces, name, end, len(pieces))]:
             continue  # it may be meant to begin again
-        to = _outermost(pieces, call, k + 1)
-        if to > k + 1:
-            return end, end, to
+        target = _outermost_start(pieces, call, k + 1)
+        if target > k + 1:
+            return end, end, target
     return None
 
 
 def _late_def(pieces: list[_Piece], is_at_start: bool) -> _Move | None:
     """A DEF below its first call, or in a block."""
-    before = 0
-    for k, end in _defs(pieces):
-        to = _outermost(pieces, next(_calls(pieces, pieces[k].name, 0, k), k))
-        to = before if is_at_start and to < k else to
-        before = end + 1
-        if to < k:
-            return k, end, to
+    def_end = 0
+    for k, end in _def_ranges(pieces):
+        target = _outermost_start(pieces, next(_call_indexes(pieces, pieces[k].name, 0, k), k))
+        target = def_end if is_at_start and target < k else target
+        def_end = end + 1
+        if target < k:
+            return k, end, target
     return None

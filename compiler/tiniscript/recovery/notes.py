@@ -15,7 +15,7 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_concept
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import plain
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 
 _NOTE_SIGN = re.compile(
     r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)[ \t]*(?=[^\W\d]|[¡¿\"'])"
@@ -26,12 +26,12 @@ _DEFINE = re.compile(r"(?i)define\b")
 _CALL = re.compile(r"([^\W\d]\w*)\s*\(")
 
 
-def noted(source: Source) -> list[Diagnostic]:
+def note_diagnostics(source: Source) -> list[Diagnostic]:
     """Return what is told of the notes of a text that begin with another sign."""
     return [
-        Diagnostic(codes.OTHER_NOTE, span, {"found": source[span], "right": right}, span,
+        Diagnostic(codes.OTHER_NOTE, span, {"found": source[span], "right": corrected_line}, span,
                    Repair(edits, True))
-        for span, right, edits in _notes(source.text)
+        for span, corrected_line, edits in _notes(source.text)
     ]  # fmt: skip
 
 
@@ -42,38 +42,43 @@ def note_edits(text: str) -> list[Edit]:
 
 def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
     """Give the sign of each note, its line as it should be, and the edits that make it so."""
-    start = 0
+    line_start = 0
     for line in text.split("\n"):
-        body = without_note(line)[0]
-        sign = next((it for it in _NOTE_SIGN.finditer(body) if _is_note(body, it)), None)
-        if sign is not None:
-            end = _NOTE_END.search(line, sign.end())
-            sign_edit = Edit(Span(start + sign.start(), start + sign.end()), "// ")
+        body = split_note(line)[0]
+        match = next((it for it in _NOTE_SIGN.finditer(body) if _is_note(body, it)), None)
+        if match is not None:
+            end_match = _NOTE_END.search(line, match.end())
+            sign_edit = Edit(Span(line_start + match.start(), line_start + match.end()), "// ")
             edits = (
-                (sign_edit, Edit(Span(start + end.start(), start + end.end()), ""))
-                if end
+                (
+                    sign_edit,
+                    Edit(Span(line_start + end_match.start(), line_start + end_match.end()), ""),
+                )
+                if end_match
                 else (sign_edit,)
             )
             corrected_line = (
-                line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
+                line[: match.start()]
+                + "// "
+                + line[match.end() : end_match.start() if end_match else None]
             )
             yield (
-                Span(start + sign.start(), start + sign.end("sign")),
+                Span(line_start + match.start(), line_start + match.end("sign")),
                 corrected_line.strip(),
                 tuple(edits),
             )
-        start += len(line) + 1
+        line_start += len(line) + 1
 
 
-def _is_note(body: str, sign: re.Match[str]) -> bool:
-    before, after = body[: sign.start()], body[sign.end() :]
+def _is_note(body: str, match: re.Match[str]) -> bool:
+    before, after = body[: match.start()], body[match.end() :]
     is_inside = before.count("(") > before.count(")") or _OPEN_VALUE.search(before) is not None
-    if is_inside or (sign["sign"] == "#" and _DEFINE.match(after)):
+    if is_inside or (match["sign"] == "#" and _DEFINE.match(after)):
         return False
     return not any(_is_order(word) for word in _CALL.findall(after))
 
 
 def _is_order(word: str) -> bool:
     """Whether a word before a bracket is one of the language, a block's only as it is written."""
-    meant = WORDS.get(plain(word)) or WORDS.get(lexicon_concept(plain(word)) or "")
-    return word in BLOCK_ENDS or (meant is not None and meant.is_call)
+    meant_word = WORDS.get(plain(word)) or WORDS.get(lexicon_concept(plain(word)) or "")
+    return word in BLOCK_ENDS or (meant_word is not None and meant_word.is_call)

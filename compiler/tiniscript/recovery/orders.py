@@ -17,13 +17,13 @@ from tiniscript.recovery.meanings import (
     WORD_OF_END,
     Lexeme,
     Names,
-    closed,
+    brackets_end,
     lexicon_meaning,
-    made,
+    make_token,
 )
-from tiniscript.recovery.slots import Filled, filled
-from tiniscript.recovery.worded import worded
-from tiniscript.recovery.writing import laid_out
+from tiniscript.recovery.slots import FilledCall, fill_call
+from tiniscript.recovery.worded import condition_values
+from tiniscript.recovery.writing import format_line
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -45,87 +45,107 @@ class Order(NamedTuple):
     is_repeated: bool = False
 
 
-def written(orders: Sequence[Order]) -> str:
+def orders_text(orders: Sequence[Order]) -> str:
     return ";".join(order.text for order in orders)
 
 
-def made_up(orders: Sequence[Order]) -> str:
+def samples_text(orders: Sequence[Order]) -> str:
     """Return what no word says: `2 s, 80 %`."""
     return ", ".join(sorted({sample for order in orders for sample in order.samples}))
 
 
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return the orders of a sentence, in turn."""
-    result: list[Order] = []
+    found_orders: list[Order] = []
     if len(words) > MOST_WORDS:
         return []
     words = [
-        one
-        for one, after in pairwise([*_join_words(words, names), made(";")])
-        if not lexicon_meaning(one.text, "the")
-        or lexicon_meaning(after.text, "the")
-        or not lexicon_meaning(after.text, "idle")
+        word
+        for word, next_word in pairwise([*_join_words(words, names), make_token(";")])
+        if not lexicon_meaning(word.text, "the")
+        or lexicon_meaning(next_word.text, "the")
+        or not lexicon_meaning(next_word.text, "idle")
     ]  # `o robô` is no OR
     words_meant = ["", *(names.meant(word.text) for word in words[1:])]
-    question_at = next((k for k, each in enumerate(words_meant) if each in ("IF", "WHEN")), 0)
-    if question_at:
+    question_index = next(
+        (k for k, concept in enumerate(words_meant) if concept in ("IF", "WHEN")), 0
+    )
+    if question_index:
         return _orders_with_condition(
-            orders(words[:question_at], names), words[question_at:], names
+            orders(words[:question_index], names), words[question_index:], names
         )
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(
         words, key=lambda it: it.text in (*joins,) or bool(lexicon_meaning(it.text, "then"))
     )
     for is_joint, group in groups:
-        part = list(group)
+        group_words = list(group)
         if is_joint or (
-            not result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in part)
+            not found_orders
+            and all(lexicon_meaning(lexeme.text, "filler") for lexeme in group_words)
         ):
             continue  # `Hola robot, …`
-        part_orders = _orders(part, names)
-        if not part_orders or any(order.is_repeated for order in part_orders[bool(not result) :]):
+        part_orders = _orders(group_words, names)
+        if not part_orders or any(
+            order.is_repeated for order in part_orders[bool(not found_orders) :]
+        ):
             return []  # nobody knows how much of it is done so often
-        result += part_orders
-    return result
+        found_orders += part_orders
+    return found_orders
 
 
 def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
     """Return words in which those that are one are one: `para adelante`, `si no`."""
-    while joined := rewrites.one_word(words, names):
+    while joined := rewrites.join_one_name(words, names):
         words = joined[0]
     return words
 
 
 def _orders_with_condition(
-    first: list[Order], words: Sequence[Lexeme], names: Names
+    orders_before: list[Order], words: Sequence[Lexeme], names: Names
 ) -> list[Order]:
     """Return orders and the condition after them; a move that it stops is watched meanwhile."""
     question = block(words, names, goes_on=False)
-    if not question and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
-        return _stopped_when(first[:-1], words, names)
-    if not first or not question:
+    if not question and [order.word for order in orders_before[-1:]] in (["S"], ["STOP"]):
+        return _stopped_when(orders_before[:-1], words, names)
+    if not orders_before or not question:
         return []
-    header, stop, *rest = question.split(";")
-    number = any(word.kind is NUMBER for word in words)
-    samples = () if number else (f"{NEAR_CM} cm",)
-    if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
-        move, made_of = first[-1], first[-1].samples + samples
-        stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
-        branch_orders = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
-        return [*first[:-1], stopped, *branch_orders]
-    return [*first, Order("IF", question, samples)]
+    header, first_instruction, *later_instructions = question.split(";")
+    has_number = any(word.kind is NUMBER for word in words)
+    samples = () if has_number else (f"{NEAR_CM} cm",)
+    if (
+        first_instruction in ("S", "STOP")
+        and orders_before[-1].word in MOVES
+        and "UNTIL" not in orders_before[-1].text
+    ):
+        move, move_samples = orders_before[-1], orders_before[-1].samples + samples
+        bounded_move = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=move_samples)
+        branch_orders = (
+            [Order("IF", ";".join((header, *later_instructions)), ())]
+            if len(later_instructions) > 1
+            else []
+        )
+        return [*orders_before[:-1], bounded_move, *branch_orders]
+    return [*orders_before, Order("IF", question, samples)]
 
 
-def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
+def _stopped_when(orders_before: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return orders of which a condition ends the last one: `anda y para cuando …`."""
-    condition, sample = _parse_condition(words[1:], names)
-    if not first or not condition or first[-1].word not in MOVES or "UNTIL" in first[-1].text:
+    condition, condition_samples = _parse_condition(words[1:], names)
+    if (
+        not orders_before
+        or not condition
+        or orders_before[-1].word not in MOVES
+        or "UNTIL" in orders_before[-1].text
+    ):
         return []
-    move = first[-1]
-    made_of = tuple(sample for sample in move.samples if not sample.endswith(" s"))
-    text = move.text if made_of == move.samples else f"{move.word}(FOREVER, {POWER.sample})"
-    stopped = move._replace(text=f"{text} UNTIL({condition})", samples=made_of + sample)
-    return [*first[:-1], stopped]
+    move = orders_before[-1]
+    move_samples = tuple(sample for sample in move.samples if not sample.endswith(" s"))
+    text = move.text if move_samples == move.samples else f"{move.word}(FOREVER, {POWER.sample})"
+    bounded_move = move._replace(
+        text=f"{text} UNTIL({condition})", samples=move_samples + condition_samples
+    )
+    return [*orders_before[:-1], bounded_move]
 
 
 def _orders(words: list[Lexeme], names: Names) -> list[Order]:
@@ -133,12 +153,12 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     if order := _order(words, names):
         return [order]
     for k in range(2, len(words) - 1):
-        first = _order(words[:k], names) if _begins_order(words[k], names) else None
-        if first and first.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
+        first_order = _order(words[:k], names) if _begins_order(words[k], names) else None
+        if first_order and first_order.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
             return []
-        rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
-        if first and rest:
-            return [first, *rest]
+        rest = _orders(words[k:], names) if first_order and len(first_order.samples) < 2 else []
+        if first_order and rest:
+            return [first_order, *rest]
     return []
 
 
@@ -149,40 +169,55 @@ def _begins_order(token: Lexeme, names: Names) -> bool:
 
 
 def _order(words: list[Lexeme], names: Names) -> Order | None:
-    if to_wall := _until(words, names):
-        return to_wall
-    first = names.meant(words[0].text)
-    rest = [lexeme.text for lexeme in words[1:]]
-    if first in ("S", "STOP") and rest:
-        if all(lexicon_meaning(item, "the", "engine", "filler") for item in rest):
+    if bounded_move := _move_until(words, names):
+        return bounded_move
+    concept = names.meant(words[0].text)
+    texts_after = [lexeme.text for lexeme in words[1:]]
+    if concept in ("S", "STOP") and texts_after:
+        if all(lexicon_meaning(text, "the", "engine", "filler") for text in texts_after):
             return Order("S", "S", ())
         if any(lexeme.kind is NUMBER for lexeme in words):
-            pause = filled([made("W"), *words[1:]], names, has_until=False)
-            return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
-    call = filled(words, names, has_until=False, is_order=True)
+            wait_call = fill_call([make_token("W"), *words[1:]], names, has_until=False)
+            return (
+                Order("S", f"{concept};{format_line(wait_call.tokens)}", ()) if wait_call else None
+            )
+    call = fill_call(words, names, has_until=False, is_order=True)
     is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
     if is_free_turn:
         other_words = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
-        call = filled([made("R"), *other_words], names, has_until=False, is_order=True)
+        call = fill_call([make_token("R"), *other_words], names, has_until=False, is_order=True)
     if call is None:
         return None
-    text, word = laid_out(call.tokens), call.tokens[0].text
+    text, word = format_line(call.tokens), call.tokens[0].text
     if call.times:
         pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
         text = f"LOOP({call.times});{text};{pause_s}{BLOCK_ENDS['LOOP']}"
     return Order(word, text, call.samples, is_free_turn, bool(call.times))
 
 
-def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
+def _move_until(words: Sequence[Lexeme], names: Names) -> Order | None:
     """Return the move that words say up to a condition."""
-    k = next((k for k, lexeme in enumerate(words) if names.meant(lexeme.text) == "UNTIL"), 0)
-    call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
+    until_index = next(
+        (
+            until_index
+            for until_index, lexeme in enumerate(words)
+            if names.meant(lexeme.text) == "UNTIL"
+        ),
+        0,
+    )
+    call: FilledCall | None = (
+        fill_call(words[:until_index], names, has_until=True, is_order=True)
+        if until_index
+        else None
+    )
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
     word = call.tokens[0].text
-    condition, sample = _parse_condition(words[k + 1 :], names, may_be_distance=word == "F")
-    text = f"{laid_out(call.tokens)} UNTIL({condition})"
-    return Order(word, text, call.samples + sample) if condition else None
+    condition, condition_samples = _parse_condition(
+        words[until_index + 1 :], names, may_be_distance=word == "F"
+    )
+    text = f"{format_line(call.tokens)} UNTIL({condition})"
+    return Order(word, text, call.samples + condition_samples) if condition else None
 
 
 def _parse_condition(
@@ -192,16 +227,16 @@ def _parse_condition(
 
     `may_be_distance`: it may be one for something near, which DISTANCE sees.
     """
-    if exact := laid_out(condition_in(words, names)):
-        return exact, ()
-    text = (worded(words, names) if may_be_distance else None) or {}
-    condition = text.get("asked") or text.get("question", "")
+    if condition_text := format_line(condition_in(words, names)):
+        return condition_text, ()
+    values = (condition_values(words, names) if may_be_distance else None) or {}
+    condition = values.get("asked") or values.get("question", "")
     has_other_question = any(
         names.meant(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
     )
     if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()
-    return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
+    return condition, () if "asked" in values else (f"{NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
@@ -217,41 +252,49 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     while tokens[-1].text in WORD_OF_END or lexicon_meaning(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
-    arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
-    other = orders(tokens[arm + 1 :], names)
-    comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
-    for k in [comma] if comma else range(2, arm):
-        header = _head(word, tokens[1:k], names)
+    else_index = next(
+        (k for k, text in enumerate(texts) if names.meant(text) == "ELSE"), len(texts)
+    )
+    else_orders = orders(tokens[else_index + 1 :], names)
+    comma_index = next((k for k in range(2, else_index) if texts[k] == "," and word != "LOOP"), 0)
+    for k in [comma_index] if comma_index else range(2, else_index):
+        header = _block_header(word, tokens[1:k], names)
         if is_when and ("(KEY_" in header or "(PAD_" in header):
             word, header = "WHEN", f"WHEN{header[2:]}"
-        body = orders(tokens[k:arm], names) if header else []
-        if header and not body and _begins_order(tokens[k], names):
+        body_orders = orders(tokens[k:else_index], names) if header else []
+        if header and not body_orders and _begins_order(tokens[k], names):
             return ""  # another order than the words after it say
-        if not body or any(order.is_side_free for order in (*body, *other)):
+        if not body_orders or any(order.is_side_free for order in (*body_orders, *else_orders)):
             continue
         is_side_word = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
         if word != "LOOP" and tokens[k].source and is_side_word:
             return ""  # where the wall is, or where to go
-        place = next((j for j in range(k, arm) if not lexicon_meaning(texts[j], "filler")), k)
-        if lexicon_meaning(texts[place], "front") and place + 1 < arm:
+        word_index = next(
+            (j for j in range(k, else_index) if not lexicon_meaning(texts[j], "filler")), k
+        )
+        if lexicon_meaning(texts[word_index], "front") and word_index + 1 < else_index:
             continue  # `uma parede na frente, para`
         is_mixed = any(
             lexicon_meaning(text, "then") and not lexicon_meaning(text, "and") for text in texts[k:]
         )
-        if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
+        if (word == "LOOP" and is_mixed) or (else_index < len(texts) and not else_orders):
             return ""
-        parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
+        parts = [
+            header,
+            orders_text(body_orders),
+            *(["ELSE", orders_text(else_orders)] if else_orders else []),
+        ]
         return ";".join(parts if goes_on else [*parts, BLOCK_ENDS[word]])
     return ""
 
 
-def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
+def _block_header(word: str, words: Sequence[Lexeme], names: Names) -> str:
     """Return the header that words say: how often, or what is asked."""
     if word == "LOOP":
         number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
         return f"LOOP({number})" if number and lexicon_meaning(words[-1].text, "times") else ""
-    asked = _parse_condition(words, names)[0]
-    return f"{word}({asked})" if asked else ""
+    condition = _parse_condition(words, names)[0]
+    return f"{word}({condition})" if condition else ""
 
 
 def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
@@ -259,15 +302,17 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
 
     A comparison is one, and what says yes or no by itself: `KEY_A`, `NOT KEY_A`.
     """
-    words = words[1:-1] if closed(words, 0) == len(words) else words
-    readings = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
+    words = words[1:-1] if brackets_end(words, 0) == len(words) else words
+    readings = lines.read(
+        [make_token("IF"), make_token("("), *words, make_token(")")], names, is_quick=True
+    )
     tokens = readings[0].tokens if readings else []
     end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
     lexemes = tokens[2:end]
-    return lexemes if any(_asks(lexeme.text, names) for lexeme in lexemes) else []
+    return lexemes if any(_is_question_word(lexeme.text, names) for lexeme in lexemes) else []
 
 
-def _asks(word: str, names: Names) -> bool:
+def _is_question_word(word: str, names: Names) -> bool:
     """Whether a word makes a question of those beside it: a yes or no that never changes does not,
     and may be said for more: `si no avanza`.
     """

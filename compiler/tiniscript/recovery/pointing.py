@@ -13,13 +13,13 @@ from tiniscript.recovery.meanings import plain
 
 # what they found is a calculated number
 _COUNTING_CODES = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
-_CODES_WITH_WAYS = (
+_CODES_WITHOUT_PLACE = (
     codes.QUESTION_AFTER,
     codes.NOT_CALLABLE,
 )  # without a place they ask for no change
 
 
-def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
+def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     """Return a diagnostic at what it names, and with the place that it had for what to try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
     found_text = diagnostic.values.get("found", "").strip()
@@ -27,42 +27,46 @@ def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
         return diagnostic
     if _normalized(source[span]) == _normalized(found_text):
         return diagnostic
-    result = _nearest(found_text, span, source)
-    if result is None:
+    found_span = _nearest_span(found_text, span, source)
+    if found_span is None:
         return diagnostic
-    if place is None and code not in _CODES_WITH_WAYS:
+    if place is None and code not in _CODES_WITHOUT_PLACE:
         place = span
-    return diagnostic._replace(span=result, place=place)
+    return diagnostic._replace(span=found_span, place=place)
 
 
 def _normalized(text: str) -> str:
     return " ".join(plain(text).split())
 
 
-def _nearest(found_text: str, span: Span, source: Source) -> Span | None:
+def _nearest_span(found_text: str, span: Span, source: Source) -> Span | None:
     """Return where `found_text` stands in the lines of a place: in it, or else nearest to it."""
     text = source.text
-    begin = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
+    line_start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
     assert line_end is not None  # each text has an end
-    part = _unaccented(text[begin : line_end.start()])
+    line_part = _unaccented(text[line_start : line_end.start()])
     words = r"\s*".join(map(re.escape, _unaccented(found_text).split()))
     head = (
         r"(?<!\w)" if found_text[0].isdigit() else r"(?<![^\W\d])" * found_text[0].isalpha()
     )  # V of 2V
     tail = r"(?!\w)" * found_text[-1].isalnum()
-    word_matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
-    places = (Span(begin + match.start(), begin + match.end()) for match in word_matches)
-    return min(places, key=lambda it: _distance(it, span), default=None)
+    word_matches = [*re.finditer(f"{head}{words}{tail}", line_part)] or [
+        *re.finditer(words, line_part)
+    ]
+    spans = (Span(line_start + match.start(), line_start + match.end()) for match in word_matches)
+    return min(spans, key=lambda found_span: _distance(found_span, span), default=None)
 
 
-def _distance(one: Span, other: Span) -> tuple[int, int]:
+def _distance(span: Span, other_span: Span) -> tuple[int, int]:
     """Return how far a place is from another, 0 where it is in it or around it."""
-    gap = max(0, other.start - one.end, one.start - other.end)
-    return gap, abs(one.start - other.start)
+    gap = max(0, other_span.start - span.end, span.start - other_span.end)
+    return gap, abs(span.start - other_span.start)
 
 
 @lru_cache(16)
 def _unaccented(text: str) -> str:
     """Return a text in capitals without accents, each character in its place."""
-    return "".join(short if len(short := plain(item)) == 1 else item for item in text)
+    return "".join(
+        short if len(short := plain(character)) == 1 else character for character in text
+    )

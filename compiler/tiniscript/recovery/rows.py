@@ -59,13 +59,13 @@ PARTS = {
 }
 
 # Of a DEF or an end that stands where it may not.
-MISPLACED = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
+MISPLACED_CODES = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
 
 # Slips of one sign, tried where no row reads a line: of one that is missing, of one that is taken
 # for another, of one too many, and of one after its neighbour.
-MISSING = {"(": codes.MISSING_OPEN, ")": codes.MISSING_CLOSE, ",": codes.MISSING_COMMA}
+CODE_OF_MISSING_SIGN = {"(": codes.MISSING_OPEN, ")": codes.MISSING_CLOSE, ",": codes.MISSING_COMMA}
 MISSING_COST, CONFUSED_COST, EXTRA_COST, SWAPPED_COST = 1.6, 1.1, 1.5, 1.7
-CONFUSED = {
+SIGNS_MEANT_BY = {
     "(": ")", ")": "(", "[": "(", "]": ")", "{": "(", "}": ")", ".": ",;", ";": ",)", ":": ",;",
     ",": ";", "'": ",", "|": ";", "!": "|",
 }  # fmt: skip

@@ -12,16 +12,24 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.meanings import CALL_WORDS, Lexeme, Names, lexemes, made, plain, texts
-from tiniscript.recovery.orders import block, made_up, orders, written
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.meanings import (
+    CALL_WORDS,
+    Lexeme,
+    Names,
+    lexemes,
+    make_token,
+    plain,
+    texts,
+)
+from tiniscript.recovery.orders import block, orders, orders_text, samples_text
+from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.operators import COMPARISONS
 
 SEAL = "~"  # begins a checksum: what has one is copied again
 _MOST_CHARACTERS = 4_000  # characters of a first line that are read
 _MOST_START_WORDS = 8  # words that say how a program starts
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
-_BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
+_SETUP, _LINE = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
 _FRAME_HEADER = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void[ \t]*)?\))\s*\{")
 _SETUP_INSIDE = re.compile(r"(?i)\s*(S[IB])\b[ \t]*\|?[ \t]*")
@@ -31,60 +39,62 @@ _BRACKET_CONTENT = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that a
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
-def beginning(
+def beginning_diagnostics(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
     """Return what is told of a text by the way that it begins: with it the rest is read."""
-    text = setup(source.text)
-    if text and text.repair:
-        after = check(apply_edits(source.text, text.repair.edits))
-        is_call = _CALL.match(source.text, text.repair.edits[0].span.end) is not None
-        if is_call or is_better(after, diagnostics, text.repair.edits):
-            return [text]
-    if framed := _framed(source):
-        return [framed]
-    if orders := _spoken(source, kit):
-        return [orders]
-    return _set_before(source, kit) or _titles(source, kit)
+    setup_problem = setup_diagnostic(source.text)
+    if setup_problem and setup_problem.repair:
+        diagnostics_after = check(apply_edits(source.text, setup_problem.repair.edits))
+        is_call = _CALL.match(source.text, setup_problem.repair.edits[0].span.end) is not None
+        if is_call or is_better(diagnostics_after, diagnostics, setup_problem.repair.edits):
+            return [setup_problem]
+    if frame_problem := _frame_diagnostic(source):
+        return [frame_problem]
+    if spoken_problem := _spoken_diagnostic(source, kit):
+        return [spoken_problem]
+    return _assignments_before_setup(source, kit) or _titles(source, kit)
 
 
-def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
+def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return what is told of a word before the bar that is no `SI`."""
-    first = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
-    is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
-    message = (diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN)
-    return None if is_own else next(message, None)
+    first_lexemes = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
+    has_setup = SEAL in source.text or (first_lexemes and first_lexemes[0].text in ("SI", "SB"))
+    setup_diagnostics = (
+        diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN
+    )
+    return None if has_setup else next(setup_diagnostics, None)
 
 
-def setup(text: str) -> Diagnostic | None:
+def setup_diagnostic(text: str) -> Diagnostic | None:
     """Return what is told of the beginning of a program where something stands for its `SI|`."""
     start = len(text) - len(text.lstrip())
     line = text[start:].split("\n", 1)[0]
-    body = without_note(line)[0]
+    body = split_note(line)[0]
     match = re.match(rows.SETUP, body)
     if match is None or match["sep"].strip() == "|":
         return None
-    head, sign, rest = plain(match["head"]), match["sep"].strip(), body[match.end() :]
+    head, sign, text_after = plain(match["head"]), match["sep"].strip(), body[match.end() :]
     end = match.end("head") + len(match["sep"].rstrip())
     is_start_word = head in ("SI", "SB")
-    is_setup = is_start_word and (not rest or sign in rows.BARS)
+    is_setup = is_start_word and (not text_after or sign in rows.BARS)
     is_separate = match.end() > match.end("head")
-    if SEAL in line[end:] or not (is_setup or _begins_instruction(rest, sign, is_separate)):
+    if SEAL in line[end:] or not (is_setup or _begins_instruction(text_after, sign, is_separate)):
         return None
     head_meant = head if is_start_word else "SI"
     fix = head_meant + "|"
     span = Span(start, start + end)
     edits = [Edit(span, fix)]
-    if sign == "(" and (inside := _BRACKET_CONTENT.match(rest)):
-        close = start + match.end() + inside.end()
-        edits.append(Edit(Span(close, close + 1), ""))
-        fix += text[span.end : close]
+    if sign == "(" and (content_match := _BRACKET_CONTENT.match(text_after)):
+        close_offset = start + match.end() + content_match.end()
+        edits.append(Edit(Span(close_offset, close_offset + 1), ""))
+        fix += text[span.end : close_offset]
     values = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     is_sure = not any(item.isdecimal() for item in head + sign)
     return Diagnostic(codes.SETUP_NEEDS_BAR, span, values, None, Repair(tuple(edits), is_sure))
 
 
-def _framed(source: Source) -> Diagnostic | None:
+def _frame_diagnostic(source: Source) -> Diagnostic | None:
     """Return what is told of `void setup() { … }`, in which a sketch has its beginning.
 
     What is in its brackets begins the program; `void loop()` after it is a loop.
@@ -92,62 +102,67 @@ def _framed(source: Source) -> Diagnostic | None:
     head = _FRAME_HEADER.match(source.text)
     if head is None or lexicon_concept(plain(head[2])) != "START":
         return None
-    depth = at = 0
+    depth = line_offset = 0
     for line in source.text[head.end() - 1 :].splitlines(keepends=True):
-        for k, sign in enumerate(without_note(line)[0]):
+        for k, sign in enumerate(split_note(line)[0]):
             depth += (sign == "{") - (sign == "}")
             if not depth:
-                return _unframed(source, head, head.end() - 1 + at + k)
-        at += len(line)
+                return _frame_repair(source, head, head.end() - 1 + line_offset + k)
+        line_offset += len(line)
     return None
 
 
-def _unframed(source: Source, head: re.Match[str], close: int) -> Diagnostic:
-    body = source.text[head.end() : close]
+def _frame_repair(source: Source, head: re.Match[str], close_offset: int) -> Diagnostic:
+    body = source.text[head.end() : close_offset]
     start_match = _SETUP_INSIDE.match(body)
     setup_text = f"{start_match[1].upper()}|" if start_match else "SI|"
     start = head.end() + (start_match.end() if start_match else len(body) - len(body.lstrip()))
-    end = close if start >= close else head.end() + len(body.rstrip(" \t"))
-    name = Span(head.start(1), head.end(1))
-    edits = (Edit(Span(name.start, min(start, close)), setup_text), Edit(Span(end, close + 1), ""))
-    values = {"begun": source[name], "fix": setup_text}
+    end = close_offset if start >= close_offset else head.end() + len(body.rstrip(" \t"))
+    name_span = Span(head.start(1), head.end(1))
+    edits = (
+        Edit(Span(name_span.start, min(start, close_offset)), setup_text),
+        Edit(Span(end, close_offset + 1), ""),
+    )
+    values = {"begun": source[name_span], "fix": setup_text}
     repair = Repair(edits, True)
-    return Diagnostic(codes.SETUP_NEEDS_BAR, name, values, None, repair)
+    return Diagnostic(codes.SETUP_NEEDS_BAR, name_span, values, None, repair)
 
 
-def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
+def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
     """Return what is told of a first line that says how it starts and then orders, all in words.
 
     `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar. `start and go`
     is SI, too, and `when the button is pressed` is SB.
     """
-    row = _ROW.search(source.text)
-    body = without_note(row[0])[0].rstrip(" ;\t\r") if row else ""
-    if row is None or "(" in body or any(it in body for it in COMPARISONS):
+    line_match = _LINE.search(source.text)
+    body = split_note(line_match[0])[0].rstrip(" ;\t\r") if line_match else ""
+    if line_match is None or "(" in body or any(sign in body for sign in COMPARISONS):
         return None
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
     if match := _HEAD_IN_WORDS.match(body):
         head, words = plain(match[1]), lexemes(body[match.end() :])
         start_text, values = match[1], {"found": head}
-        if block([made("IF"), *words], names, goes_on=False):
+        if block([make_token("IF"), *words], names, goes_on=False):
             return None
     else:
         words = lexemes(body)
         head, count = _start_in_words(words, names)
-        start_text = "".join((it.space or "") + (it.source or "") for it in words[:count]).strip()
+        start_text = "".join(
+            (word.space or "") + (word.source or "") for word in words[:count]
+        ).strip()
         values = {"button": "SB|"} if head == "SB" else {"begun": start_text}
         words = words[count:]
     orders_said = orders(words, names) if head else []
     if not orders_said or (head == "SB" and orders_said[0].word in ("S", "STOP")):
         return None
-    fix = f"{head}|{written(orders_said)}"
-    sample = made_up(orders_said)
+    fix = f"{head}|{orders_text(orders_said)}"
+    sample = samples_text(orders_said)
     values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
-    place = Span(row.start(), row.start() + len(body))
-    start = place.start + body.index(start_text)
+    line_span = Span(line_match.start(), line_match.start() + len(body))
+    start = line_span.start + body.index(start_text)
     return Diagnostic(
-        codes.SETUP_NEEDS_BAR, Span(start, start + len(start_text)), values, place,
-        Repair((Edit(place, fix),), False),
+        codes.SETUP_NEEDS_BAR, Span(start, start + len(start_text)), values, line_span,
+        Repair((Edit(line_span, fix),), False),
     )  # fmt: skip
 
 
@@ -157,86 +172,95 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
         return "", 0
     if names.meant(words[0].text) == "START":
         return "SI", 1
-    first = words[:_MOST_START_WORDS]
-    button_positions = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
-    press_positions = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
+    first_words = words[:_MOST_START_WORDS]
+    button_positions = [
+        k for k, it in enumerate(first_words) if lexicon_concept(it.text) == "BUTTON"
+    ]
+    press_positions = [k for k, it in enumerate(first_words) if lexicon_meaning(it.text, "pressed")]
     if not button_positions or not press_positions or "BUTTON" in names.sensors:
         return "", 0
-    end = max(button_positions[0], press_positions[0]) + 1
-    actions = {names.meant(it.text) for it in first[:end]} & {*CALL_WORDS, "UNTIL", "S", "STOP"}
-    return ("SB", end) if actions in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
+    word_count = max(button_positions[0], press_positions[0]) + 1
+    actions = {names.meant(it.text) for it in first_words[:word_count]} & {
+        *CALL_WORDS,
+        "UNTIL",
+        "S",
+        "STOP",
+    }
+    return ("SB", word_count) if actions in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
 
 
-def _begins_instruction(rest: str, sign: str, is_separate: bool) -> bool:
+def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
     """Whether an instruction begins, and no condition; a sign before it says that by itself."""
-    match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
+    match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", text_after)
     if match is None:
         return False
-    word, after = plain(match[1]), match[2]
+    word, sign_after = plain(match[1]), match[2]
     word_row = WORDS.get(word)
     if word_row is None:
-        return bool(sign) and after in ("=", "(")
-    is_separate = is_separate and (after is not None or word_row.is_call or word == "DEF")
-    return word_row.role.begins and (bool(sign) or after == "(" or is_separate)
+        return bool(sign) and sign_after in ("=", "(")
+    is_separate = is_separate and (sign_after is not None or word_row.is_call or word == "DEF")
+    return word_row.role.begins and (bool(sign) or sign_after == "(" or is_separate)
 
 
-def _set_before(source: Source, kit: Kit) -> list[Diagnostic]:
+def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of variables that are set above `SI|`, with a type before them.
 
     `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
     """
-    start_match = _BEGUN.search(source.text)
+    start_match = _SETUP.search(source.text)
     if start_match is None:
         return []
     edits: list[Edit] = []
-    sets: list[str] = []
-    declared = 0
-    for row in _ROW.finditer(source.text[: start_match.start()]):
-        line = without_note(row[0])[0].rstrip(" ;\t\r")
+    assignments: list[str] = []
+    declaring_word_count = 0
+    for line_match in _LINE.finditer(source.text[: start_match.start()]):
+        line = split_note(line_match[0])[0].rstrip(" ;\t\r")
         words = lexemes(line)
         if not words:
             continue
         count = next(
-            (k for k, it in enumerate(words) if not lexicon_meaning(it.text, "declare")), 0
+            (k for k, word in enumerate(words) if not lexicon_meaning(word.text, "declare")), 0
         )
-        size = sum(len((it.space or "") + (it.source or "")) for it in words[:count])
-        assignment = line[size:].lstrip()
+        prefix_length = sum(len((word.space or "") + (word.source or "")) for word in words[:count])
+        assignment = line[prefix_length:].lstrip()
         signs = texts(words[count + 1 : count + 2])
         if signs != ("=",) or not lines.is_right(
             lexemes(assignment), Names([lexemes(assignment)], kit)
         ):
             return []
-        start = row.start() + len(line) - len(assignment)
-        edits.append(Edit(Span(row.start(), start), ""))
-        sets.append(assignment)
-        declared += count
-    if not sets or not declared:
+        start = line_match.start() + len(line) - len(assignment)
+        edits.append(Edit(Span(line_match.start(), start), ""))
+        assignments.append(assignment)
+        declaring_word_count += count
+    if not assignments or not declaring_word_count:
         return []
-    head = Span(
+    setup_span = Span(
         start_match.start() + len(start_match[0]) - len(start_match[0].lstrip()), start_match.end()
     )
-    setup_text = "".join(source[head].split()).upper()
+    setup_text = "".join(source[setup_span].split()).upper()
     edits[0] = edits[0]._replace(text=setup_text)
     edits = [edit for edit in edits if edit.text or edit.span.start < edit.span.end]
-    rest = without_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
-    fix = setup_text + ";".join((*sets, rest))
-    repair = Repair((*edits, Edit(head, "")), True)
-    return [Diagnostic(codes.SETUP_TWICE, head, {"begun": fix, "found": setup_text}, None, repair)]
+    rest = split_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
+    fix = setup_text + ";".join((*assignments, rest))
+    repair = Repair((*edits, Edit(setup_span, "")), True)
+    return [
+        Diagnostic(codes.SETUP_TWICE, setup_span, {"begun": fix, "found": setup_text}, None, repair)
+    ]
 
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return lines before `SI|` that are none of a program: its title, who wrote it."""
-    match = _BEGUN.search(source.text)
+    match = _SETUP.search(source.text)
     diagnostics: list[Diagnostic] = []
-    for row in _ROW.finditer(source.text[: match.start() if match else 0]):
-        title = without_note(row[0])[0].strip()
+    for line_match in _LINE.finditer(source.text[: match.start() if match else 0]):
+        title = split_note(line_match[0])[0].strip()
         words = lexemes(title)
         if not words:
             continue
         is_assignment = lexicon_meaning(words[0].text, "set") or title.lower().startswith("#define")
         if is_assignment or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
-        span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
+        span, fix = Span(line_match.start(), line_match.start() + len(title)), f"// {title}"
         values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
         diagnostics.append(
             Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False))

@@ -14,9 +14,9 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexemes, lexicon_meaning, number_text
-from tiniscript.recovery.trailing_tokens import width
+from tiniscript.recovery.trailing_tokens import token_width
 from tiniscript.recovery.worded import sensors_of
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -24,51 +24,61 @@ _HUNDRED_PERCENT = 100
 _COMPARING_KINDS = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
 
 
-def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
+def find_shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
     """Return what is told of sensors that are compared with a number in percent.
 
     The rest is read with the shares.
     """
-    bodies = [without_note(line)[0] for line in source.text.split("\n")]
+    bodies = [split_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     findings: list[tuple[Diagnostic, Edit]] = []
-    start = 0
+    line_start = 0
     for body, line in zip(bodies, source.text.split("\n"), strict=True):
-        findings += _shares_of(body, start, names)
-        start += len(line) + 1
-    return [each for each, _ in findings], [edit for _, edit in findings]
+        findings += _shares_of(body, line_start, names)
+        line_start += len(line) + 1
+    return [diagnostic for diagnostic, _ in findings], [edit for _, edit in findings]
 
 
-def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic, Edit]]:
+def _shares_of(body: str, line_start: int, names: Names) -> Iterator[tuple[Diagnostic, Edit]]:
     tokens = lexemes(body)
-    ends = [*accumulate(map(width, tokens))]
+    ends = [*accumulate(map(token_width, tokens))]
     for k, token in enumerate(tokens):
-        size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
-        at = _compared(tokens, k) if size and float(token.text) <= _HUNDRED_PERCENT else -1
-        side = "".join(lexicon_meaning(tokens[at].text, "left", "right")) if at > 0 else ""
-        at -= bool(side)  # `luz izquierda`
-        sensor_word = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
-        sensor = _sensor(sensor_word, names) if at >= 0 else None
+        percent_count = _percent_token_count(tokens, k + 1, names) if token.kind is NUMBER else 0
+        sensor_index = (
+            _compared_index(tokens, k)
+            if percent_count and float(token.text) <= _HUNDRED_PERCENT
+            else -1
+        )
+        side = (
+            "".join(lexicon_meaning(tokens[sensor_index].text, "left", "right"))
+            if sensor_index > 0
+            else ""
+        )
+        sensor_index -= bool(side)  # `luz izquierda`
+        sensor_word = "_".join((tokens[sensor_index].text, *([side[0].upper()] if side else [])))
+        sensor = _sensor(sensor_word, names) if sensor_index >= 0 else None
         if sensor is None or sensor.low:
             continue
-        begin, end = ends[k] - len(token.source or ""), ends[k + size]
-        name_start = ends[at] - len(tokens[at].source or "")
-        before = body[name_start:begin] if tokens[at].text in names.asked else ""
+        begin, end = ends[k] - len(token.source or ""), ends[k + percent_count]
+        name_start = ends[sensor_index] - len(tokens[sensor_index].source or "")
+        comparison = (
+            body[name_start:begin] if tokens[sensor_index].text in names.number_readings else ""
+        )
         share = number_text(round(sensor.high * float(token.text) / _HUNDRED_PERCENT, -3) / ONE)
         values = {
-            "sensor": body[name_start : ends[at]],
+            "sensor": body[name_start : ends[sensor_index]],
             "low": "0",
             "high": f"{sensor.high / ONE:g}",
             "found": body[begin:end],
             "number": token.text,
-            "share": before + share,
-            "kept": before + token.text,
+            "share": comparison + share,
+            "kept": comparison + token.text,
         }
-        span = Span(start + begin, start + end)
+        span = Span(line_start + begin, line_start + end)
         yield Diagnostic(codes.UNIT, span, values), Edit(span, share)
 
 
-def _percent(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
+def _percent_token_count(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
     """Return how many tokens say percent, 0 where `%` stands between two values, as in `7 % 2`."""
     text, after = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
     if lexicon_meaning(text, "by") and lexicon_meaning(after, "number") == ("100",):
@@ -79,18 +89,20 @@ def _percent(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
     return int(not is_value)
 
 
-def _compared(tokens: Sequence[Lexeme], k: int) -> int:
+def _compared_index(tokens: Sequence[Lexeme], k: int) -> int:
     """Return the place of the word that is compared with the number at a place, -1 for none."""
-    at = k - 1
-    while at >= 0 and (
-        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING_KINDS)
+    index = k - 1
+    while index >= 0 and (
+        tokens[index].text in COMPARISONS or lexicon_meaning(tokens[index].text, *_COMPARING_KINDS)
     ):
-        at -= 1
-    return at if at < k - 1 and tokens[at].kind is WORD else -1
+        index -= 1
+    return index if index < k - 1 and tokens[index].kind is WORD else -1
 
 
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
     candidates = [word, names.meant(word, NEAR)]
     candidates += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
-    return next((names.asked[name] for name in candidates if name in names.asked), None)
+    return next(
+        (names.number_readings[name] for name in candidates if name in names.number_readings), None
+    )

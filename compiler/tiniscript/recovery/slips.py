@@ -19,7 +19,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    SOME_END,
+    UNNAMED_END,
     WORD_OF_END,
     Lexeme,
     lexemes,
@@ -28,7 +28,7 @@ from tiniscript.recovery.meanings import (
     setup_of,
     texts,
 )
-from tiniscript.recovery.writing import laid_out
+from tiniscript.recovery.writing import format_line
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", *BRACES))
@@ -68,37 +68,38 @@ NAMES_OF_CODE = {code: names for names, its in _CODES_BY_NAMES.items() for code 
 
 
 class Change(NamedTuple):
-    """An instruction, or a line: `place` becomes `after` by these rewrites."""
+    """An instruction, or a line: `span` becomes `new_tokens` by these rewrites."""
 
-    place: Span
+    span: Span
     edit: Edit
     steps: Sequence[Step]
-    before: Sequence[Lexeme]
-    after: Sequence[Lexeme]
+    old_tokens: Sequence[Lexeme]
+    new_tokens: Sequence[Lexeme]
 
 
 class Slip(NamedTuple):
-    """Where a rewrite changes `old` into `new` first: from `start` on, `found` becomes `right`.
+    """Where a rewrite changes `step_tokens` into `step_result` first: from `start` on,
+    `found_tokens` becomes `right_tokens`.
 
-    With all rewrites `was`, of one instruction or several, becomes `now`. `parts` are the
-    instructions to show of the `line` that it becomes, and where there are more than before, the
-    first one ends at `until` in `now`.
+    With all rewrites `old_instructions`, of one instruction or several, becomes `new_instructions`.
+    `shown_instructions` are the instructions to show of the `line_tokens` that it becomes, and
+    where there are more than before, the first one ends at `first_length` in `new_instructions`.
     """
 
     code: Code
-    old: Sequence[Lexeme]
-    new: Sequence[Lexeme]
+    step_tokens: Sequence[Lexeme]
+    step_result: Sequence[Lexeme]
     start: int
-    found: Sequence[Lexeme]
-    right: Sequence[Lexeme]
-    was: Sequence[Lexeme]
-    now: Sequence[Lexeme]
-    line: Sequence[Lexeme]
-    parts: Sequence[Sequence[Lexeme]]
-    until: int | None
+    found_tokens: Sequence[Lexeme]
+    right_tokens: Sequence[Lexeme]
+    old_instructions: Sequence[Lexeme]
+    new_instructions: Sequence[Lexeme]
+    line_tokens: Sequence[Lexeme]
+    shown_instructions: Sequence[Sequence[Lexeme]]
+    first_length: int | None
 
 
-def values_of(slip: Slip, code: Code) -> dict[str, str]:
+def message_values(slip: Slip, code: Code) -> dict[str, str]:
     """Return what a message with this code says of a slip."""
     return {name: _VALUE_GAPS[name](slip) for name in NAMES_OF_CODE.get(code, ())}
 
@@ -106,29 +107,47 @@ def values_of(slip: Slip, code: Code) -> dict[str, str]:
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
     is_of_step = step is not None and code is not codes.OTHER_NOTE
-    old_texts, new = (
-        (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    old_tokens, new_tokens = (
+        (step.old_tokens, step.new_tokens)
+        if step and is_of_step
+        else (change.old_tokens, change.new_tokens)
     )
-    if "WHEN" in texts(change.after):  # what the steps took for an IF
-        old_texts, new = (
-            [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
-            for line in (old_texts, new)
+    if "WHEN" in texts(change.new_tokens):  # what the steps took for an IF
+        old_tokens, new_tokens = (
+            [token._replace(text="WHEN") if token.text == "IF" else token for token in line]
+            for line in (old_tokens, new_tokens)
         )
-    old_lexemes, new_lexemes = without_setup(change.before), without_setup(change.after)
-    is_begun = setup_of(change.after) and not setup_of(change.before)
+    old_lexemes, new_lexemes = without_setup(change.old_tokens), without_setup(change.new_tokens)
+    is_begun = setup_of(change.new_tokens) and not setup_of(change.old_tokens)
     if is_begun and code in (codes.OTHER_SIGN, codes.QUOTE):
-        new_lexemes = instructions(change.after)  # the bar was a word, or in quotation marks, too
-    head, tail = alike([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
+        new_lexemes = instructions(
+            change.new_tokens
+        )  # the bar was a word, or in quotation marks, too
+    head, tail = common_lengths([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
     old_part, new_part = (
-        [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
-        for parts in (old_lexemes, new_lexemes)
+        [
+            lexeme
+            for instruction in instructions_of_line[head : len(instructions_of_line) - tail]
+            for lexeme in instruction
+        ]
+        for instructions_of_line in (old_lexemes, new_lexemes)
     )
-    start, found, right = first_difference(old_texts, new)
+    start, found_tokens, right_tokens = first_difference(old_tokens, new_tokens)
     has_end = bool(head) and any(lexeme.text in WORD_OF_END for lexeme in new_part)
-    parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
-    until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
+    shown_instructions = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
+    first_length = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
     slip = Slip(
-        code, old_texts, new, start, found, right, old_part, new_part, change.after, parts, until
+        code,
+        old_tokens,
+        new_tokens,
+        start,
+        found_tokens,
+        right_tokens,
+        old_part,
+        new_part,
+        change.new_tokens,
+        shown_instructions,
+        first_length,
     )
     return _EXACT_SLIPS[code](slip) if code in _EXACT_SLIPS else slip
 
@@ -138,76 +157,92 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
 
 def code_of(change: Change) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
-    _, _, steps, before, after = change
-    fewer = Counter(texts(before)) - Counter(texts(after))
-    added_words = {*texts(after)} - {*texts(before)}
-    if "SI" in fewer and "IF" in added_words:
+    _, _, steps, old_tokens, new_tokens = change
+    lost_texts = Counter(texts(old_tokens)) - Counter(texts(new_tokens))
+    added_words = {*texts(new_tokens)} - {*texts(old_tokens)}
+    if "SI" in lost_texts and "IF" in added_words:
         return codes.SPANISH_IF, None
-    dropped = {item for item in fewer if {item, meant_by(item)} & {*WORD_OF_END}}
-    if dropped and not added_words and fewer.keys() <= dropped | {";"}:
+    dropped_ends = {text for text in lost_texts if {text, meant_by(text)} & {*WORD_OF_END}}
+    if dropped_ends and not added_words and lost_texts.keys() <= dropped_ends | {";"}:
         return codes.EXTRA_WORD, None
-    code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
+    code, step = _code_of_steps(change) if steps else (_code_of_words(old_tokens, new_tokens), None)
     if (
         code is codes.EXTRA_WORD
         and added_words & {*WORD_OF_END}
-        and any(lexicon_meaning(it, "end") for it in fewer)
+        and any(lexicon_meaning(text, "end") for text in lost_texts)
     ):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
-    if code is codes.MISSING_OPEN and step and _translated(step):
+    if code is codes.MISSING_OPEN and step and _translated_word(step):
         return codes.OTHER_LANGUAGE, step
     return code, step
 
 
-def _translated(step: Step) -> str:
+def _translated_word(step: Step) -> str:
     """Return the word of a block that a rewrite has put for one of another language."""
-    words = {*texts(step.before)}
-    new = next((it for it in texts(step.after) if it in BLOCK_ENDS), "")
-    is_said = new in map(meant_by, words) or any(lexicon_meaning(word, "count") for word in words)
-    return new if new not in words and is_said else ""
+    words = {*texts(step.old_tokens)}
+    new_word = next((text for text in texts(step.new_tokens) if text in BLOCK_ENDS), "")
+    is_said = new_word in map(meant_by, words) or any(
+        lexicon_meaning(word, "count") for word in words
+    )
+    return new_word if new_word not in words and is_said else ""
 
 
 def _code_of_steps(change: Change) -> tuple[Code, Step]:
     """Return the code of the rewrite that says most: rather another word than a sign."""
-    _, _, steps, before, after = change
-    words, new = {*texts(before)}, {*texts(after)}
-    own_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
-    own_steps.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
-    if own_steps and own_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
-        return own_steps[0].code, own_steps[0]
-    lost_words = (
-        lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new
+    _, _, steps, old_tokens, new_tokens = change
+    old_texts, new_texts = {*texts(old_tokens)}, {*texts(new_tokens)}
+    other_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+    other_steps.sort(
+        key=lambda step: (step.code is not codes.ASKED_AFTER, step.code is codes.OTHER_SIGN)
     )
-    foreign = next((item for item in lost_words if meant_by(item) in new - words), "")
-    translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
-    if translated and (foreign or not own_steps):
-        is_foreign_call = foreign or "(" in words or "(" not in new or before[0].text not in new
-        return codes.OTHER_LANGUAGE if is_foreign_call else codes.MISSING_OPEN, translated
-    if foreign:
-        changed_texts = (
-            it for it in own_steps if foreign in {*texts(it.before)} - {*texts(it.after)}
+    if other_steps and other_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
+        return other_steps[0].code, other_steps[0]
+    lost_words = (
+        lexeme.text for lexeme in old_tokens if lexeme.kind is WORD and lexeme.text not in new_texts
+    )
+    foreign_word = next(
+        (word for word in lost_words if meant_by(word) in new_texts - old_texts), ""
+    )
+    translating_step = next((step for step in steps if step.code is codes.OTHER_LANGUAGE), None)
+    if translating_step and (foreign_word or not other_steps):
+        is_foreign_call = (
+            foreign_word
+            or "(" in old_texts
+            or "(" not in new_texts
+            or old_tokens[0].text not in new_texts
         )
-        return codes.OTHER_LANGUAGE, next(changed_texts, own_steps[0])
-    right = first_difference(own_steps[0].before, own_steps[0].after)[2]
-    is_comma = own_steps[0].code is codes.OTHER_CALL and texts(right) == (",",)
-    return codes.MISSING_COMMA if is_comma else own_steps[0].code, own_steps[0]
+        return codes.OTHER_LANGUAGE if is_foreign_call else codes.MISSING_OPEN, translating_step
+    if foreign_word:
+        changing_steps = (
+            step
+            for step in other_steps
+            if foreign_word in {*texts(step.old_tokens)} - {*texts(step.new_tokens)}
+        )
+        return codes.OTHER_LANGUAGE, next(changing_steps, other_steps[0])
+    right_tokens = first_difference(other_steps[0].old_tokens, other_steps[0].new_tokens)[2]
+    is_comma = other_steps[0].code is codes.OTHER_CALL and texts(right_tokens) == (",",)
+    return codes.MISSING_COMMA if is_comma else other_steps[0].code, other_steps[0]
 
 
-def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
+def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> Code:
     """Return the code of what no rewrite made: a brace, an end, a letter with an accent."""
-    if {*texts(before)} & {*BRACES}:
+    if {*texts(old_tokens)} & {*BRACES}:
         return codes.BRACES
-    source = "".join(lexeme.source or "" for lexeme in before)
+    source = "".join(lexeme.source or "" for lexeme in old_tokens)
     if not source.isascii():
         has_word = any(
-            lexeme.kind is WORD and not (lexeme.source or "").isascii() for lexeme in before
+            lexeme.kind is WORD and not (lexeme.source or "").isascii() for lexeme in old_tokens
         )
         return codes.BAD_NAME if has_word else codes.OTHER_SIGN
-    _, found, right = first_difference(before, after)
-    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*WORD_OF_END}:
+    _, found_tokens, right_tokens = first_difference(old_tokens, new_tokens)
+    if len(found_tokens) == len(right_tokens) == 1 and {
+        *texts(found_tokens),
+        *texts(right_tokens),
+    } <= {*WORD_OF_END}:
         return codes.WRONG_END
-    ends = [lexeme.text for lexeme in before if lexicon_meaning(lexeme.text, "end")]
-    if ends and ends[-1] not in texts(after):
-        is_end = bool({*texts(after)} & {*BLOCK_ENDS.values()})
+    ends = [lexeme.text for lexeme in old_tokens if lexicon_meaning(lexeme.text, "end")]
+    if ends and ends[-1] not in texts(new_tokens):
+        is_end = bool({*texts(new_tokens)} & {*BLOCK_ENDS.values()})
         return codes.END_ALONE if is_end else codes.EXTRA_WORD
     return codes.NEVER_ENDS
 
@@ -217,24 +252,37 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 
 def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
-    old_texts, start, result, right = slip.old, slip.start, slip.found, slip.right
-    with_next = old_texts[start : start + len(result) + 1]
-    has_dot = texts(result[-1:]) == (".",)
-    if has_dot and not right:
-        result, right = with_next, slip.new[start : start + 1]
-    elif not right and start and old_texts[start - 1].text != "|":
-        result, right = [old_texts[start - 1], *result], [old_texts[start - 1]]
+    old_tokens, start, found_tokens, right_tokens = (
+        slip.step_tokens,
+        slip.start,
+        slip.found_tokens,
+        slip.right_tokens,
+    )
+    with_next = old_tokens[start : start + len(found_tokens) + 1]
+    has_dot = texts(found_tokens[-1:]) == (".",)
+    if has_dot and not right_tokens:
+        found_tokens, right_tokens = with_next, slip.step_result[start : start + 1]
+    elif not right_tokens and start and old_tokens[start - 1].text != "|":
+        found_tokens, right_tokens = [old_tokens[start - 1], *found_tokens], [old_tokens[start - 1]]
     elif has_dot:
-        result = with_next
-    end = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
-    is_assignment = end < len(result) and result[end].text == "="
-    result = result[: end - is_assignment] or result
-    if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
-        result = [*takewhile(_is_counting, result)] or result
-    if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
-        meant_lexemes = [lexeme for lexeme in old_texts if meant_by(lexeme.text) == right[0].text]
-        result = meant_lexemes[:1] or result  # `oi robô, anda`
-    return slip._replace(found=result, right=right)
+        found_tokens = with_next
+    end = next(
+        (k for k, token in enumerate(found_tokens) if token.text in ("=", "(")), len(found_tokens)
+    )
+    is_assignment = end < len(found_tokens) and found_tokens[end].text == "="
+    found_tokens = found_tokens[: end - is_assignment] or found_tokens
+    if any(lexeme.kind is NUMBER for lexeme in found_tokens):  # PARA of `PARA I DE 1 A 4`
+        found_tokens = [*takewhile(_is_counting, found_tokens)] or found_tokens
+    if (
+        right_tokens
+        and found_tokens
+        and all(lexicon_meaning(lexeme.text, "filler") for lexeme in found_tokens)
+    ):
+        meant_lexemes = [
+            lexeme for lexeme in old_tokens if meant_by(lexeme.text) == right_tokens[0].text
+        ]
+        found_tokens = meant_lexemes[:1] or found_tokens  # `oi robô, anda`
+    return slip._replace(found_tokens=found_tokens, right_tokens=right_tokens)
 
 
 def _is_counting(token: Lexeme) -> bool:
@@ -244,44 +292,63 @@ def _is_counting(token: Lexeme) -> bool:
 
 def _split_number(slip: Slip) -> Slip:
     """A number in two pieces: the sign that goes, and the piece after it."""
-    end = slip.start + len(slip.found)
-    return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
+    end_index = slip.start + len(slip.found_tokens)
+    return (
+        slip
+        if slip.right_tokens
+        else slip._replace(found_tokens=slip.step_tokens[end_index - 1 : end_index + 1])
+    )
 
 
-def _measured(slip: Slip) -> Slip:
+def _number_with_unit(slip: Slip) -> Slip:
     """The first number that has a unit, and is changed."""
-    pairs = pairwise(slip.old[max(0, slip.start - 1) :])
+    pairs = pairwise(slip.step_tokens[max(0, slip.start - 1) :])
     units = (
         [number, unit] for number, unit in pairs
         if number.kind is NUMBER and (lexicon_meaning(unit.text, "unit") or unit.text == "%")
     )  # fmt: skip
-    return slip._replace(found=next(units, slip.found))
+    return slip._replace(found_tokens=next(units, slip.found_tokens))
 
 
-def _header(slip: Slip) -> Slip:
-    headers = [lexeme for lexeme in (*slip.old, *slip.new) if lexeme.text in BLOCK_ENDS]
-    return slip._replace(found=headers[:1] or slip.found)
+def _block_header(slip: Slip) -> Slip:
+    headers = [
+        lexeme for lexeme in (*slip.step_tokens, *slip.step_result) if lexeme.text in BLOCK_ENDS
+    ]
+    return slip._replace(found_tokens=headers[:1] or slip.found_tokens)
 
 
 def _sign_alone(slip: Slip) -> Slip:
     """The sign of `DISTÂNCIA := 5`, without its name."""
-    signs = [lexeme for lexeme in slip.found if lexeme.kind is not WORD]
-    return slip._replace(found=signs or slip.found)
+    signs = [lexeme for lexeme in slip.found_tokens if lexeme.kind is not WORD]
+    return slip._replace(found_tokens=signs or slip.found_tokens)
 
 
 def _whole_sign(slip: Slip) -> Slip:
     """All of a sign whose first part stays: `**` of `X ** 2`."""
-    k, found, right = slip.start, slip.found, slip.right
-    is_part = 0 < k < len(slip.old) and slip.old[k].space == "" and found[:1] == slip.old[k : k + 1]
-    before = slip.old[k - 1] if is_part else None
-    if before is None or {before.kind, found[0].kind} & {WORD, NUMBER} or before.text in "()":
+    k, found_tokens, right_tokens = slip.start, slip.found_tokens, slip.right_tokens
+    is_part = (
+        0 < k < len(slip.step_tokens)
+        and slip.step_tokens[k].space == ""
+        and found_tokens[:1] == slip.step_tokens[k : k + 1]
+    )
+    previous = slip.step_tokens[k - 1] if is_part else None
+    if (
+        previous is None
+        or {previous.kind, found_tokens[0].kind} & {WORD, NUMBER}
+        or previous.text in "()"
+    ):
         return slip
-    return slip._replace(found=[before, *found], right=[slip.new[k - 1], *right], start=k - 1)
+    return slip._replace(
+        found_tokens=[previous, *found_tokens],
+        right_tokens=[slip.step_result[k - 1], *right_tokens],
+        start=k - 1,
+    )
 
 
 _EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
-    codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number, codes.UNIT: _measured,
-    codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
+    codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number,
+    codes.UNIT: _number_with_unit,
+    codes.QUESTION_AFTER: _block_header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
 
@@ -291,13 +358,17 @@ _EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
 
 def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
-    code, found = slip.code, slip.found
-    if _has_gap(slip):
-        return text_of(slip.old[slip.start : slip.start + 1])
+    code, found_tokens = slip.code, slip.found_tokens
+    if _is_between_words(slip):
+        return text_of(slip.step_tokens[slip.start : slip.start + 1])
     is_missing_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
-    is_whole_instruction = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
+    is_whole_instruction = code is codes.REPEATED or (
+        code is codes.OTHER_SIGN and not slip.right_tokens
+    )
     old_text = text_of(
-        slip.was if is_whole_instruction or not (found or is_missing_sign) else found
+        slip.old_instructions
+        if is_whole_instruction or not (found_tokens or is_missing_sign)
+        else found_tokens
     )
     if code is codes.LINE_NUMBER and old_text[:1] == "_":
         return "_"
@@ -308,18 +379,18 @@ def found_in(slip: Slip) -> str:
     return old_text
 
 
-def _has_gap(slip: Slip) -> bool:
+def _is_between_words(slip: Slip) -> bool:
     """Whether something is missing between two words, which are named."""
     is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
-    return is_between and not slip.found and slip.start > 0
+    return is_between and not slip.found_tokens and slip.start > 0
 
 
 def right_of(slip: Slip) -> str:
     """Return how that is written in TiniScript."""
     changed_text = _changed_text(slip)
-    right_text = laid_out(slip.right) or changed_text
+    right_text = format_line(slip.right_tokens) or changed_text
     right_text = (
-        changed_text if right_text == SOME_END and changed_text in WORD_OF_END else right_text
+        changed_text if right_text == UNNAMED_END and changed_text in WORD_OF_END else right_text
     )  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
         right_text = _word_in(right_text)
@@ -338,22 +409,34 @@ def _word_in(text: str) -> str:
     return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
 
 
-def before_it(slip: Slip) -> str:
+def text_before(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
-    if _has_gap(slip):
-        return text_of(slip.old[slip.start - 1 : slip.start])
-    result = text_of(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+    if _is_between_words(slip):
+        return text_of(slip.step_tokens[slip.start - 1 : slip.start])
+    common_text = text_of(
+        slip.old_instructions[
+            : common_lengths(
+                texts(slip.old_instructions), texts(slip.new_instructions[: slip.first_length])
+            )[0]
+        ]
+    )
     if slip.code is codes.HEADER_SEPARATOR and (
-        not result or result[-1] == "(" or lexemes(result)[0].text not in BLOCK_WORDS
+        not common_text or common_text[-1] == "(" or lexemes(common_text)[0].text not in BLOCK_WORDS
     ):
-        block_parts = (part for part in without_setup(slip.line) if part[0].text in BLOCK_WORDS)
-        return laid_out(next(block_parts)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
-    return result
+        block_parts = (
+            part for part in without_setup(slip.line_tokens) if part[0].text in BLOCK_WORDS
+        )
+        return (
+            format_line(next(block_parts)) if common_text else slip.new_instructions[0].text
+        )  # `CADA VEZ QUE … S`
+    return common_text
 
 
 def _changed_text(slip: Slip) -> str:
     """Return the instructions that a change makes."""
-    return ";".join(laid_out(part) for part in slip.parts) or laid_out(slip.line)
+    return ";".join(format_line(part) for part in slip.shown_instructions) or format_line(
+        slip.line_tokens
+    )
 
 
 def fix_of(slip: Slip) -> str:
@@ -365,12 +448,12 @@ def fix_of(slip: Slip) -> str:
 def _word(slip: Slip) -> str:
     """Return the word that is told of: the one before its brackets, else the first one."""
     word = _WORD_GAPS.get(slip.code, _first_word)(slip)
-    is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line)
+    is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line_tokens)
     return f"DEF {word}" if is_def else word
 
 
 def _first_word(slip: Slip) -> str:
-    return _known_word(slip.now)
+    return _known_word(slip.new_instructions)
 
 
 def _known_word(tokens: Sequence[Lexeme]) -> str:
@@ -380,40 +463,47 @@ def _known_word(tokens: Sequence[Lexeme]) -> str:
 
 def _called_word(slip: Slip) -> str:
     """The word before the empty brackets."""
-    after = texts(slip.old[slip.start :])
-    if "(" not in after[slip.start == 0 :]:
+    texts_after = texts(slip.step_tokens[slip.start :])
+    if "(" not in texts_after[slip.start == 0 :]:
         return _first_word(slip)
-    return slip.old[slip.start + after.index("(") - 1].text
+    return slip.step_tokens[slip.start + texts_after.index("(") - 1].text
 
 
-def _grouping(slip: Slip) -> str:
+def _grouping_header(slip: Slip) -> str:
     """The header whose brackets have instructions in them, nothing for brackets of no header."""
-    if slip.start and slip.old[slip.start - 1].text == ";":
+    if slip.start and slip.step_tokens[slip.start - 1].text == ";":
         return ""
-    return next((lexeme.text for lexeme in slip.new if lexeme.text in ("LOOP", "WHILE", "IF")), "")
+    return next(
+        (lexeme.text for lexeme in slip.step_result if lexeme.text in ("LOOP", "WHILE", "IF")), ""
+    )
 
 
 def _accented_word(slip: Slip) -> str:
     """The word of the language that has an accent, nothing for a name."""
-    return next((lexeme.text for lexeme in slip.old[slip.start :][:1] if lexeme.text in WORDS), "")
+    return next(
+        (lexeme.text for lexeme in slip.step_tokens[slip.start :][:1] if lexeme.text in WORDS), ""
+    )
 
 
-def _opened(slip: Slip) -> str:
+def _bracketed_word(slip: Slip) -> str:
     """The word that gets its bracket."""
-    for word, sign in pairwise(slip.new):
+    for word, sign in pairwise(slip.step_result):
         if sign.text == "(" and sign.source is None and word.kind is WORD:
             return word.text
     return _first_word(slip)
 
 
 def _rest_of_line(slip: Slip) -> str:
-    message = slip.old[slip.start :]
-    return _known_word(message[2:] if texts(message[1:2]) == ("=",) else message)  # `Y = SIDE(3)`
+    tokens_after = slip.step_tokens[slip.start :]
+    return _known_word(
+        tokens_after[2:] if texts(tokens_after[1:2]) == ("=",) else tokens_after
+    )  # `Y = SIDE(3)`
 
 
 _WORD_GAPS: dict[Code, Callable[[Slip], str]] = {
-    codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping, codes.BAD_NAME: _accented_word,
-    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _rest_of_line,
+    codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping_header,
+    codes.BAD_NAME: _accented_word,
+    codes.MISSING_OPEN: _bracketed_word, codes.NO_VALUE: _rest_of_line,
     codes.NO_BRACKETS_HERE: _rest_of_line,
 }  # fmt: skip
 
@@ -426,15 +516,20 @@ def _usage(slip: Slip) -> str:
 
 def _letter(slip: Slip) -> str:
     """Return the letter that stands in a number in the place of a digit."""
-    was, now = found_in(slip), right_of(slip)
-    letters = {item for item in was if item.isalpha()} - {*now} if len(was) == len(now) else set()
+    found_text, right_text = found_in(slip), right_of(slip)
+    letters = (
+        {letter for letter in found_text if letter.isalpha()} - {*right_text}
+        if len(found_text) == len(right_text)
+        else set()
+    )
     return letters.pop() if len(letters) == 1 else ""
 
 
 def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
     number_count, needed_count = (
-        sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now)
+        sum(lexeme.kind is NUMBER for lexeme in instructions_tokens)
+        for instructions_tokens in (slip.old_instructions, slip.new_instructions)
     )
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
     usage = word.usage if word and word.arguments else _usage(slip)
@@ -442,7 +537,7 @@ def _usage_if_longer(slip: Slip) -> str:
 
 
 _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
-    "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
+    "found": found_in, "right": right_of, "before": text_before, "word": _word, "usage": _usage,
     "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
 
@@ -450,28 +545,26 @@ _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
 # -- tokens -------------------------------------------------------------------------------------
 
 
-def alike(old_texts: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+def common_lengths(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
     """Return how much two texts, or two lines, have alike at their beginning and at their end."""
-    most_lexemes = min(len(old_texts), len(new))
-    head = next((k for k in range(most_lexemes) if old_texts[k] != new[k]), most_lexemes)
-    most_lexemes -= head
-    return head, next(
-        (k for k in range(most_lexemes) if old_texts[-1 - k] != new[-1 - k]), most_lexemes
-    )
+    most = min(len(old), len(new))
+    head = next((k for k in range(most) if old[k] != new[k]), most)
+    most -= head
+    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
 
 
 def first_difference(
-    before: Sequence[Lexeme], after: Sequence[Lexeme]
+    old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
     """Return where two lines differ first, and what stands there in each of them."""
     old_texts = [
-        lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before
+        lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in old_tokens
     ]
-    matched = SequenceMatcher(None, old_texts, texts(after), autojunk=False)
-    for kind, start, end, begin, stop in matched.get_opcodes():
+    matcher = SequenceMatcher(None, old_texts, texts(new_tokens), autojunk=False)
+    for kind, old_start, old_end, new_start, new_end in matcher.get_opcodes():
         if kind != "equal":
-            return start, before[start:end], after[begin:stop]
-    return 0, before, after
+            return old_start, old_tokens[old_start:old_end], new_tokens[new_start:new_end]
+    return 0, old_tokens, new_tokens
 
 
 def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
@@ -479,15 +572,15 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
     A separator in brackets parts nothing, where all brackets of the line are closed.
     """
-    lexemeses: list[list[Lexeme]] = [[]]
+    instructions_found: list[list[Lexeme]] = [[]]
     depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
         depth += (token.text == "(") - (token.text == ")")
         if token.text == ";" and not (is_closed and depth > 0):
-            lexemeses.append([])
+            instructions_found.append([])
         else:
-            lexemeses[-1].append(token)
-    return lexemeses
+            instructions_found[-1].append(token)
+    return instructions_found
 
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:

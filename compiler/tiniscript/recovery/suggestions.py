@@ -1,7 +1,7 @@
 """Suggestions: what is told of words that no repair reads surely.
 
 Reads each instruction of a line with the words behind it, and words without one, by the rows of
-`suggestion_rows`; `holding` finds them, for `usage`, too. Knows no row and no sentence of any
+`suggestion_rows`; `matching_rows` finds them, for `usage`, too. Knows no row and no sentence of any
 language.
 """
 
@@ -29,20 +29,20 @@ from tiniscript.recovery.meanings import (
     Names,
     lexemes,
     lexicon_meaning,
-    made,
+    make_token,
     plain,
 )
-from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
-from tiniscript.recovery.slots import filled
+from tiniscript.recovery.orders import Order, condition_in, orders, orders_text, samples_text
+from tiniscript.recovery.slots import fill_call
 from tiniscript.recovery.trailing_tokens import (
     LineContext,
     Trailing,
     instruction_length,
-    set_in,
-    width,
+    token_width,
+    words_set,
 )
-from tiniscript.recovery.worded import sensors_of, worded
-from tiniscript.recovery.writing import laid_out, shortened, without_note
+from tiniscript.recovery.worded import condition_values, sensors_of
+from tiniscript.recovery.writing import format_line, shorten, split_note
 from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -77,26 +77,26 @@ class Row(NamedTuple):
     example: tuple[str, str]
 
 
-class Place(Protocol):
-    """What rows speak of: what comes first, and the tokens of the `row` behind it."""
+class Subject(Protocol):
+    """What rows speak of: what comes first, and the tokens of the `row_tokens` behind it."""
 
     text: str
     names: Names
 
     @property
-    def row(self) -> Sequence[Lexeme]: ...
+    def row_tokens(self) -> Sequence[Lexeme]: ...
 
     @property
     def spans(self) -> Sequence[Span]: ...
 
     @property
-    def gaps(self) -> Mapping[str, Callable[[Gaps], str]]: ...
+    def gap_functions(self) -> Mapping[str, Callable[[Gaps], str]]: ...
 
     def labels(self) -> list[str]: ...
 
     def values(self) -> dict[str, str]: ...
 
-    def several(self, name: str, gaps: Gaps) -> Mapping[str, str]: ...
+    def several_values(self, name: str, gaps: Gaps) -> Mapping[str, str]: ...
 
 
 class Suggestion(NamedTuple):
@@ -110,214 +110,259 @@ class Suggestion(NamedTuple):
 def rows() -> tuple[Row, ...]:
     compiled_rows = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
-        named_values = dict(item.split("=", 1) for item in values.split("; ") if item)
+        named_values = dict(
+            assignment.split("=", 1) for assignment in values.split("; ") if assignment
+        )
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
-        compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
-        number, *how = code.split()
-        compiled_rows.append(Row(compiled, CODES.get(number), how, named_values, (wrong, right)))
+        compiled_pattern = rewrites.compile_pattern(pattern, suggestion_rows.PARTS)
+        code_number, *conditions = code.split()
+        compiled_rows.append(
+            Row(compiled_pattern, CODES.get(code_number), conditions, named_values, (wrong, right))
+        )
     return tuple(compiled_rows)
 
 
 @cache
-def _places() -> rewrites.RowIndex:
-    return rewrites.places({k: row.pattern for k, row in enumerate(rows())})
+def _row_index() -> rewrites.RowIndex:
+    return rewrites.index_rows({k: row.pattern for k, row in enumerate(rows())})
 
 
-def suggested(text: str, kit: Kit) -> list[Suggestion]:
+def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
     """Return what is told of words behind each instruction of a text, or in place of one."""
-    bodies = [without_note(line)[0] for line in text.split("\n")]
+    bodies = [split_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
     orders_above: list[str | None] = []
-    start = depth = 0
+    line_start = depth = 0
     instructions_left = MOST_INSTRUCTIONS
     for body, line in zip(bodies, text.split("\n"), strict=True):
         suggestions_of_line: list[Suggestion] = []
-        words = lexemes(body)
-        is_right = lines.is_right(words, names)
+        tokens = lexemes(body)
+        is_right = lines.is_right(tokens, names)
         if "~" not in body and not is_right:
-            for part in islice(
-                _parts(body, start, LineContext(text, names, depth, orders_above)),
+            for trailing in islice(
+                _trailing_words(body, line_start, LineContext(text, names, depth, orders_above)),
                 instructions_left,
             ):
                 instructions_left -= 1
-                each = _suggestion_for(part)
-                if each and not (
+                suggestion = _suggestion_for(trailing)
+                if suggestion and not (
                     suggestions_of_line
-                    and overlap([suggestions_of_line[-1].blanking_edit], [each.blanking_edit])
+                    and overlap([suggestions_of_line[-1].blanking_edit], [suggestion.blanking_edit])
                 ):
-                    suggestions_of_line.append(each)
+                    suggestions_of_line.append(suggestion)
         suggestions += suggestions_of_line
         if body.strip() and not any(
-            each.diagnostic.code is codes.SAME_AGAIN for each in suggestions_of_line
+            suggestion.diagnostic.code is codes.SAME_AGAIN for suggestion in suggestions_of_line
         ):
             uncounted = _LINE_COUNT.sub("", body)  # `2. S`
             is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
             orders_above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
-        depth += sum((word.text in BLOCK_ENDS) - (word.text in WORD_OF_END) for word in words)
-        start += len(line) + 1
+        depth += sum((token.text in BLOCK_ENDS) - (token.text in WORD_OF_END) for token in tokens)
+        line_start += len(line) + 1
     return suggestions
 
 
 def _as_orders(line: str, is_right: bool) -> str | None:
     """Return a line of orders, "" for another one, None for one that begins a block."""
-    heads = [item[0].text for item in map(lexemes, line.split(";")) if item]
-    if heads and heads[-1] in _BODY_STARTS:
+    first_words = [tokens[0].text for tokens in map(lexemes, line.split(";")) if tokens]
+    if first_words and first_words[-1] in _BODY_STARTS:
         return None
-    is_right = is_right and not {*heads} & {*_BODY_STARTS, *WORD_OF_END}
+    is_right = is_right and not {*first_words} & {*_BODY_STARTS, *WORD_OF_END}
     return line.strip().rstrip(" ;") if is_right else ""
 
 
-def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]:
+def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterator[_TrailingWords]:
     """Give each instruction of a line that has words behind it, and words without one."""
     names = line_context.names
-    before: list[str | None] = []
+    instructions_before: list[str | None] = []
     for match in _INSTRUCTION_AND_BAR.finditer(body):
-        tokens, at = lexemes(match[1]), start + match.start()
+        tokens, start_offset = lexemes(match[1]), start + match.start()
         if not tokens or match[2]:
             continue
         is_block = tokens[0].text in (*_BODY_STARTS, *WORD_OF_END)
         while 0 < len(tokens) <= lines.MOST_TOKENS:
-            size = instruction_length(tokens, names)
-            rest = tokens[size:]
-            if not size and (spoken_call := _spoken_call(tokens, names)):
-                yield _Words(line_context, at, tokens, spoken_call[0], before, spoken_call[1])
-                break
-            if not size or not rest:
-                yield _Words(line_context, at, tokens, 0, before)
-                break
-            if any(token.text in ASKING_WORDS for token in tokens[:size]):
-                has_only_then = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
-                yield _Words(
-                    line_context, at, tokens if has_only_then else tokens[:size], 0, before
+            instruction_size = instruction_length(tokens, names)
+            tokens_after = tokens[instruction_size:]
+            if not instruction_size and (spoken_call := _spoken_call(tokens, names)):
+                yield _TrailingWords(
+                    line_context,
+                    start_offset,
+                    tokens,
+                    spoken_call[0],
+                    instructions_before,
+                    spoken_call[1],
                 )
-            if not instruction_length(rest, names) or rest[0].text in ("IF", "WHILE"):
-                yield _Words(line_context, at, tokens, size, before)
                 break
-            at += sum(map(width, tokens[:size]))
-            tokens = rest
-        before = [*before, None if is_block else match[1].strip()]
+            if not instruction_size or not tokens_after:
+                yield _TrailingWords(line_context, start_offset, tokens, 0, instructions_before)
+                break
+            if any(token.text in ASKING_WORDS for token in tokens[:instruction_size]):
+                has_only_then = all(
+                    lexicon_meaning(item.text, "do") for item in tokens_after
+                )  # by a THEN
+                yield _TrailingWords(
+                    line_context,
+                    start_offset,
+                    tokens if has_only_then else tokens[:instruction_size],
+                    0,
+                    instructions_before,
+                )
+            if not instruction_length(tokens_after, names) or tokens_after[0].text in (
+                "IF",
+                "WHILE",
+            ):
+                yield _TrailingWords(
+                    line_context, start_offset, tokens, instruction_size, instructions_before
+                )
+                break
+            start_offset += sum(map(token_width, tokens[:instruction_size]))
+            tokens = tokens_after
+        instructions_before = [*instructions_before, None if is_block else match[1].strip()]
 
 
-def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
+def matching_rows(subject: Subject) -> Iterator[tuple[Row, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
-    line = rewrites.Encoded([made(";"), *place.row], place.names, place.labels())
-    for k in line.candidate_rows(_places()):
+    encoded = rewrites.Encoded(
+        [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
+    )
+    for k in encoded.candidate_rows(_row_index()):
         row = rows()[k]
-        if match := next(line.matches(row.pattern), None):
-            gaps = Gaps(place, line, match)
-            with suppress(NoGap):
+        if match := next(encoded.matches(row.pattern), None):
+            gaps = Gaps(subject, encoded, match)
+            with suppress(UnfillableGap):
                 gaps.fill(row)
                 yield row, gaps
 
 
-def _suggestion_for(part: _Words) -> Suggestion | None:
-    if len(part.row) > MOST_WORDS or not part.is_aside():
+def _suggestion_for(trailing: _TrailingWords) -> Suggestion | None:
+    if len(trailing.row_tokens) > MOST_WORDS or not trailing.may_say_something():
         return None
-    for row, gaps in holding(part):
-        is_aside = row.code in _SECONDARY_CODES and part.tokens and _is_read_surely(part)
+    for row, gaps in matching_rows(trailing):
+        is_aside = row.code in _SECONDARY_CODES and trailing.tokens and _is_read_surely(trailing)
         return None if is_aside else _suggestion(row, gaps)
     return None
 
 
-def _is_read_surely(part: Trailing) -> bool:
+def _is_read_surely(trailing: Trailing) -> bool:
     """Whether a repair of the whole instruction can mean nothing else."""
-    if part.own == "DEF":
+    if trailing.command == "DEF":
         return False  # it may be called by its first word
-    result = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
-    return bool(result) and result[0].is_sure and len(result[0].items or ()) == 1
+    readings = lines.read([*trailing.tokens, *trailing.row_tokens], trailing.names, is_quick=True)
+    return bool(readings) and readings[0].is_sure and len(readings[0].items or ()) == 1
 
 
-class _Words(Trailing):
+class _TrailingWords(Trailing):
     """Words behind an instruction, or without one, as a place of rows."""
 
     def __init__(
-        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str | None], spoken: str = "",
+        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme],
+        instruction_size: int, instructions_before: Sequence[str | None], spoken_call: str = "",
     ) -> None:  # fmt: skip
-        super().__init__(line_context, start, tokens, size, before, spoken)
-        self.gaps = _GAP_FUNCTIONS
+        super().__init__(
+            line_context, start, tokens, instruction_size, instructions_before, spoken_call
+        )
+        self.gap_functions = _GAP_FUNCTIONS
 
     def values(self) -> dict[str, str]:
-        return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
+        return {"before": shorten(self.call_text), "words": shorten(self.words_text), "fix": ""}
 
-    def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
-        return _worded_condition(gaps)
+    def several_values(self, name: str, gaps: Gaps) -> Mapping[str, str]:
+        return _condition_gaps(gaps)
 
 
 def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
-    part, group_names, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
-    place = part.place if values["fix"] else None
-    is_right = lines.is_right(part.tokens, part.names)
-    if place and not is_right and values["fix"].startswith(part.call):
-        place = part.behind  # of a call with a mistake of its own
-        values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
-    start, end = gaps.span("s") if "s" in group_names else (1, len(part.spans))
-    span = Span(part.spans[start].start, part.spans[end - 1].end)
+    trailing, group_names, values = (
+        gaps.trailing,
+        row.pattern.label_pattern.groupindex,
+        gaps.filled_values,
+    )
+    fix_span = trailing.whole_span if values["fix"] else None
+    is_right = lines.is_right(trailing.tokens, trailing.names)
+    if fix_span and not is_right and values["fix"].startswith(trailing.call_text):
+        fix_span = trailing.words_span  # of a call with a mistake of its own
+        values["fix"] = values["fix"][len(trailing.call_text) :].lstrip(" ")
+    start, end = gaps.span("s") if "s" in group_names else (1, len(trailing.spans))
+    span = Span(trailing.spans[start].start, trailing.spans[end - 1].end)
     code = row.code
     assert code is not None
     has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
-    is_noted = "//" in values["fix"] or not has_other_values
-    if code in _NOTE_CODES and part.tokens and not is_noted:
-        values = {**values, **_as_note(part)}  # what changes no movement comes first
+    has_note = "//" in values["fix"] or not has_other_values
+    if code in _NOTE_CODES and trailing.tokens and not has_note:
+        values = {**values, **_note_values(trailing)}  # what changes no movement comes first
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
-    result = Diagnostic(code, span, values, place)
+    diagnostic = Diagnostic(code, span, values, fix_span)
     if "h" in group_names:
-        place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
+        fix_span = Span(trailing.spans[gaps.span("h")[0]].start, trailing.words_span.end)
         condition = values.get("asked") or values.get("question") or "TRUE"
-        return Suggestion(result, Edit(place, f"{gaps['head']}({condition})"))
-    if part.is_said:
-        return Suggestion(result, Edit(part.place, values["fix"] or part.call))
-    fix = "" if part.tokens else values["fix"]
-    return Suggestion(result, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
+        return Suggestion(diagnostic, Edit(fix_span, f"{gaps['head']}({condition})"))
+    if trailing.is_spoken:
+        return Suggestion(
+            diagnostic, Edit(trailing.whole_span, values["fix"] or trailing.call_text)
+        )
+    fix = "" if trailing.tokens else values["fix"]
+    return Suggestion(
+        diagnostic,
+        Edit(
+            trailing.words_span, fix or " " * (trailing.words_span.end - trailing.words_span.start)
+        ),
+    )
 
 
 def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
-    meant = [names.meant(token.text, NEAR) for token in tokens]
-    asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
-    has_until = meant[asks] == "WHILE"
-    call = filled(tokens[:asks], names, has_until, is_order=True) if asks else None
-    return (asks, laid_out(call.tokens)) if call and not call.times else None
+    concepts = [names.meant(token.text, NEAR) for token in tokens]
+    condition_index = next((k for k in range(1, len(tokens)) if concepts[k] in ("IF", "WHILE")), 0)
+    has_until = concepts[condition_index] == "WHILE"
+    call = (
+        fill_call(tokens[:condition_index], names, has_until, is_order=True)
+        if condition_index
+        else None
+    )
+    return (condition_index, format_line(call.tokens)) if call and not call.times else None
 
 
-class NoGap(Exception):
+class UnfillableGap(Exception):
     """A gap of a row cannot be filled."""
 
 
 class Gaps(dict[str, str]):
     """Fills the gaps of a row: captures, and the functions of its place.
 
-    `filled` are the values so far: a gap may speak of those before it.
+    `filled_values` are the values so far: a gap may speak of those before it.
     """
 
-    def __init__(self, place: Place, line: rewrites.Encoded, match: re.Match[str]) -> None:
-        self.place = place
-        self.filled: dict[str, str] = {}
-        self._line = line
+    def __init__(self, subject: Subject, encoded: rewrites.Encoded, match: re.Match[str]) -> None:
+        self.subject = subject
+        self.filled_values: dict[str, str] = {}
+        self._line = encoded
         self._match = match
 
     @property
-    def part(self) -> Trailing:
-        assert isinstance(self.place, Trailing)
-        return self.place
+    def trailing(self) -> Trailing:
+        assert isinstance(self.subject, Trailing)
+        return self.subject
 
     def fill(self, row: Row) -> None:
-        self.filled = self.place.values()
+        self.filled_values = self.subject.values()
         for name, template in row.values.items():
             if name == "*":
-                self.filled |= self.place.several(template, self)
+                self.filled_values |= self.subject.several_values(template, self)
             else:
-                self.filled[name] = template.format_map(self)
-        self.filled.pop("?", None)
+                self.filled_values[name] = template.format_map(self)
+        self.filled_values.pop("?", None)
 
     def __missing__(self, name: str) -> str:
         gap = name.rstrip("?")
-        result = self.place.gaps[gap](self) if gap in self.place.gaps else self.captured(gap)
-        if not result and gap == name:
-            raise NoGap
-        return result
+        text = (
+            self.subject.gap_functions[gap](self)
+            if gap in self.subject.gap_functions
+            else self.captured_text(gap)
+        )
+        if not text and gap == name:
+            raise UnfillableGap
+        return text
 
     def span(self, name: str) -> tuple[int, int]:
         """Return where a capture stands: from which token on, and before which."""
@@ -325,104 +370,119 @@ class Gaps(dict[str, str]):
 
     def tokens(self, name: str) -> Sequence[Lexeme]:
         start, end = self.span(name)
-        return self.part.row[start - 1 : end - 1]
+        return self.trailing.row_tokens[start - 1 : end - 1]
 
-    def from_on(self, name: str) -> Sequence[Lexeme]:
+    def tokens_from(self, name: str) -> Sequence[Lexeme]:
         """Return the words from a capture on."""
-        return self.part.row[self.span(name)[0] - 1 :]
+        return self.trailing.row_tokens[self.span(name)[0] - 1 :]
 
-    def meant(self, name: str) -> str:
+    def meant_word(self, name: str) -> str:
         """Return the word of the language that a capture begins with."""
-        return self.part.means(self.from_on(name)[0].text)
+        return self.trailing.means(self.tokens_from(name)[0].text)
 
-    def captured(self, name: str) -> str:
+    def captured_text(self, name: str) -> str:
         start, end = self.span(name)
         if start == end:
             return ""
         if start == 0:
-            return self.part.call
+            return self.trailing.call_text
         if name == "n":
-            return self.number(start - 1)
-        spans = self.part.spans
-        return self.part.text[spans[start].start : spans[end - 1].end]
+            return self.number_at(start - 1)
+        spans = self.trailing.spans
+        return self.trailing.text[spans[start].start : spans[end - 1].end]
 
-    def number(self, k: int) -> str:
+    def number_at(self, k: int) -> str:
         """Return the number at a place in the unit of an instruction: `0.5` for `500 ms`."""
-        number = self.part.number(k) or ""
-        text = (
-            lexicon_meaning(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
+        number = self.trailing.number(k) or ""
+        unit_meaning = (
+            lexicon_meaning(self.trailing.row_tokens[k + 1].text, "unit")
+            if k + 1 < len(self.trailing.row_tokens)
+            else ()
         )
-        if text[:1] == ("s",) and text[1] != "1000":
-            return f"{float(number) * int(text[1]) / 1000:g}"
+        if unit_meaning[:1] == ("s",) and unit_meaning[1] != "1000":
+            return f"{float(number) * int(unit_meaning[1]) / 1000:g}"
         return number
 
 
 def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
-    part, before = gaps.part, [item for item in gaps.part.before if item]
-    has_all_orders = len(before) == len(part.before) <= _MOST_LINES_BACK
-    if not has_all_orders or part.is_in_block or times in ("", "0", "1"):
+    trailing, lines_before = (
+        gaps.trailing,
+        [line for line in gaps.trailing.instructions_before if line],
+    )
+    has_all_orders = len(lines_before) == len(trailing.instructions_before) <= _MOST_LINES_BACK
+    if not has_all_orders or trailing.is_in_block or times in ("", "0", "1"):
         return ""
-    messages = [item.strip() for line in (*before, part.call) for item in line.split(";")]
-    orders = [item for item in messages if item.upper() not in ("", "START")]
+    instructions = [
+        instruction.strip()
+        for line in (*lines_before, trailing.call_text)
+        for instruction in line.split(";")
+    ]
+    orders = [
+        instruction for instruction in instructions if instruction.upper() not in ("", "START")
+    ]
     text = "".join(f"{order};" for order in orders)
-    if once := _REPEATED_ORDERS.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
-        orders = orders[: once[1].count(";")]
+    if repeated_match := _REPEATED_ORDERS.fullmatch(
+        "".join(text.split()).upper()
+    ):  # F and L of `F; L; F; L`
+        orders = orders[: repeated_match[1].count(";")]
     if not 0 < len(orders) <= _MOST_REPEATED:
         return ""
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
 
-def _worded_condition(gaps: Gaps) -> dict[str, str]:
+def _condition_gaps(gaps: Gaps) -> dict[str, str]:
     """What the words of a condition ask."""
-    row, names = gaps.tokens("s"), gaps.part.names
-    is_bare = [item.text for item in gaps.from_on("s")[len(row) :][:1]] != [")"]
-    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
-    is_for_instruction |= is_bare and any("|@start|" in names.label(item) for item in row)
+    tokens, names = gaps.tokens("s"), gaps.trailing.names
+    is_bare = [token.text for token in gaps.tokens_from("s")[len(tokens) :][:1]] != [")"]
+    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.trailing.tokens
+    is_for_instruction |= is_bare and any("|@start|" in names.label(token) for token in tokens)
     has_other_reader = is_for_instruction or bool(_condition_tokens(gaps, "s"))
-    result = None if has_other_reader else worded(row, names)
-    if result is None:
-        raise NoGap
-    return result
+    values = None if has_other_reader else condition_values(tokens, names)
+    if values is None:
+        raise UnfillableGap
+    return values
 
 
 def _sensor(gaps: Gaps, k: int) -> str:
     """One of the sensors that a word may mean."""
-    return "".join(sensors_of(plain(gaps["l"]), gaps.part.names)[k : k + 1])
+    return "".join(sensors_of(plain(gaps["l"]), gaps.trailing.names)[k : k + 1])
 
 
-def _measured(gaps: Gaps) -> str:
+def _measured_condition(gaps: Gaps) -> str:
     """What words ask with a number of their own: `la pared a 30 cm`."""
     words = gaps.tokens("l")
-    is_said = any(
+    has_word = any(
         word.kind is WORD and not lexicon_meaning(word.text, "unit", "in") for word in words
     )
-    return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
+    return (condition_values(words, gaps.trailing.names) or {}).get("asked", "") if has_word else ""
 
 
 def _reading(gaps: Gaps) -> str:
     """The sensor on the side of an L or R, which is no name."""
-    word, part = gaps["s"].upper(), gaps.part
-    return "" if word in set_in(part.text) else part.names.on_side(word)
+    word, part = gaps["s"].upper(), gaps.trailing
+    return "" if word in words_set(part.text) else part.names.sensor_on_side(word)
 
 
 def _lone_condition(gaps: Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
-    signs = {token.text for token in gaps.tokens("s")}
-    return laid_out(_condition_tokens(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
+    texts = {token.text for token in gaps.tokens("s")}
+    return format_line(_condition_tokens(gaps, "s")) if texts & {*COMPARISONS} - {"="} else ""
 
 
 def _consequence(gaps: Gaps) -> str:
     """What is done: the words from a capture on where they are right, else the orders they say."""
-    words, names = gaps.from_on("w"), gaps.part.names
+    words, names = gaps.tokens_from("w"), gaps.trailing.names
     return (
-        _rest_of_words(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
+        _rest_of_words(gaps, "w")
+        if lines.is_right(words, names)
+        else orders_text(orders(words, names))
     )
 
 
 def _free_name(gaps: Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
-    names, name = gaps.part.names, plain(gaps["x"])
+    names, name = gaps.trailing.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
     return "" if is_name or is_taken else name
@@ -430,137 +490,171 @@ def _free_name(gaps: Gaps) -> str:
 
 def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
-    text = f"{gaps.part.call},{gaps['l']}".lstrip(",")
+    text = f"{gaps.trailing.call_text},{gaps['l']}".lstrip(",")
     orders = []
     for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
-        word_row = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
-        if match is None or word_row is None or not word_row.role.is_instruction:
+        word = WORDS.get(gaps.trailing.means(plain(match[1]))) if match else None
+        if match is None or word is None or not word.role.is_instruction:
             return ""
-        if is_exact and word_row.arguments and not match[2]:
+        if is_exact and word.arguments and not match[2]:
             return ""
-        orders.append(word_row.text + match[2] if match[2] else word_row.example)
-    name, count = free_number_name(gaps.part.text), len(orders)
-    drawn, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
+        orders.append(word.text + match[2] if match[2] else word.example)
+    name, count = free_number_name(gaps.trailing.text), len(orders)
+    draw, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
-        drawn, conditions = "", ["RANDOM(1, 2) = 1"]
-    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(conditions, orders, strict=False)]
-    return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
+        draw, conditions = "", ["RANDOM(1, 2) = 1"]
+    arms = [
+        f"ELSEIF({condition}); {order}; "
+        for condition, order in zip(conditions, orders, strict=False)
+    ]
+    return f"{draw}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 
 def _loop(gaps: Gaps) -> str:
     number = gaps["n"]
     is_often = number.isdecimal() and number not in ("0", "1")
-    return f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}" if is_often else ""
+    return f"LOOP({number});{gaps.trailing.call_text};{BLOCK_ENDS['LOOP']}" if is_often else ""
 
 
-def _with_value(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
+def _with_value(gaps: Gaps, match: re.Match[str] | None, template: str) -> str:
     """The call with another value, of which the old one is a part; nothing where it is the same."""
-    new = value.expand(new) if value else ""
-    if value is None or value[1] == new:
+    template = match.expand(template) if match else ""
+    if match is None or match[1] == template:
         return ""
-    return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
+    call_text = gaps.trailing.call_text
+    return f"{call_text[: match.start(1)]}{template}{call_text[match.end(1) :]}"
 
 
 def _with_power(gaps: Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
-    return _with_value(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
+    return _with_value(gaps, gaps.trailing.power_match, number) if 9 < float(number) <= 100 else ""
 
 
 def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
     """The condition that words ask, in words of the language; nothing where they ask none."""
-    return [] if gaps.part.is_asked else condition_in(gaps.tokens(name), gaps.part.names)
+    return [] if gaps.trailing.has_until else condition_in(gaps.tokens(name), gaps.trailing.names)
 
 
 def _shown_word(gaps: Gaps) -> str:
     """A word to show, which is no letter and like no name of the program."""
     word = gaps["s"]
-    names = gaps.part.names
-    is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), names.known.values)
+    names = gaps.trailing.names
+    is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), names.known_names.values)
     return "" if is_name or plain(word) in names.in_brackets else word
 
 
 def _rest_of_words(gaps: Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
-    return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
+    return (
+        gaps.trailing.text[gaps.trailing.spans[start].start : gaps.trailing.whole_span.end]
+        if start < end
+        else ""
+    )
 
 
-def _calls(part: Trailing) -> list[Order]:
+def _spoken_orders(part: Trailing) -> list[Order]:
     """The orders that the words say, nothing where a turn of them says no way."""
-    result = orders(part.row, part.names)
-    return [] if any(item.is_side_free or item.is_repeated for item in result) else result
+    found_orders = orders(part.row_tokens, part.names)
+    return (
+        []
+        if any(order.is_side_free or order.is_repeated for order in found_orders)
+        else found_orders
+    )
 
 
 def _orders(gaps: Gaps) -> str:
     """The instruction, and those that the words behind it say."""
-    result = _calls(gaps.part)
-    return f"{gaps.part.call};{written(result)}" if result else ""
+    found_orders = _spoken_orders(gaps.trailing)
+    return f"{gaps.trailing.call_text};{orders_text(found_orders)}" if found_orders else ""
 
 
-def _note(gaps: Gaps) -> str:
-    part = gaps.part
-    return f"{part.call} // {part.words.strip(_NEEDLESS_SIGNS)}" if _is_last(part) else ""
+def _call_with_note(gaps: Gaps) -> str:
+    trailing = gaps.trailing
+    return (
+        f"{trailing.call_text} // {trailing.words_text.strip(_NEEDLESS_SIGNS)}"
+        if _is_last(trailing)
+        else ""
+    )
 
 
-def _is_last(part: Trailing) -> bool:
+def _is_last(trailing: Trailing) -> bool:
     """Whether nothing but a note follows the words on their line."""
-    after = part.text[part.place.end :].split("\n")[0].lstrip(" \t;\r")
-    return not after or after.startswith("//")
+    rest = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
+    return not rest or rest.startswith("//")
 
 
-def _as_note(part: Trailing) -> dict[str, str]:
+def _note_values(trailing: Trailing) -> dict[str, str]:
     """Return how words behind a whole instruction are written as a note, where they may be one.
 
     What has a number or a sign of a program, or is joined to the instruction, says more of it.
     """
-    is_joined = lexicon_meaning(part.row[0].text, "then", "and", "or") or part.row[0].text in (
+    is_joined = lexicon_meaning(
+        trailing.row_tokens[0].text, "then", "and", "or"
+    ) or trailing.row_tokens[0].text in (
         "AND",
         "OR",
     )
-    is_prose = all(it.kind is WORD or it.text in _PROSE_SIGNS for it in part.row)
-    words = part.words.strip(_NEEDLESS_SIGNS)
-    if is_joined or not is_prose or not words or not lines.is_right(part.tokens, part.names):
+    is_prose = all(
+        token.kind is WORD or token.text in _PROSE_SIGNS for token in trailing.row_tokens
+    )
+    words = trailing.words_text.strip(_NEEDLESS_SIGNS)
+    if (
+        is_joined
+        or not is_prose
+        or not words
+        or not lines.is_right(trailing.tokens, trailing.names)
+    ):
         return {}
-    is_instruction = any(it.text in WORDS and it.source == it.text for it in part.row)
-    is_instruction |= any(lexicon_meaning(it.text, "unit")[:1] in _UNIT_MEANINGS for it in part.row)
+    is_instruction = any(
+        token.text in WORDS and token.source == token.text for token in trailing.row_tokens
+    )
+    is_instruction |= any(
+        lexicon_meaning(token.text, "unit")[:1] in _UNIT_MEANINGS for token in trailing.row_tokens
+    )
     if is_instruction:
         return {}
     note = f"// {words}"
-    return {"note": f"{part.call} {note}"} if _is_last(part) else {"last_note": note}
+    return {"note": f"{trailing.call_text} {note}"} if _is_last(trailing) else {"last_note": note}
 
 
 _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
-    "above": lambda gaps: ["", *gaps.part.before][-1] or "",
+    "above": lambda gaps: ["", *gaps.trailing.instructions_before][-1] or "",
     "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
     "often": lambda gaps: _loop_over_all(gaps, "4"),
     "endless": lambda gaps: _loop_over_all(gaps, "FOREVER"),
     "more": lambda gaps: _loop_over_all(gaps, str(int(gaps["n"]) + 1)),
-    "said": lambda gaps: gaps.part.words.strip(" ,:"),
-    "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
-    "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
+    "said": lambda gaps: gaps.trailing.words_text.strip(" ,:"),
+    "head": lambda gaps: gaps.meant_word("h"), "called": lambda gaps: gaps.meant_word("w"),
+    "block": lambda gaps: gaps.meant_word("g"),
+    "usage": lambda gaps: WORDS[gaps.meant_word("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
-    "choices": _choice, "number": lambda gaps: free_number_name(gaps.part.text),
+    "choices": _choice, "number": lambda gaps: free_number_name(gaps.trailing.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "reading": _reading,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "measured": _measured, "alone": _lone_condition, "then": _consequence, "free": _free_name,
+    "measured": _measured_condition, "alone": _lone_condition, "then": _consequence,
+    "free": _free_name,
     "loop": _loop,
-    "by_way": lambda gaps: _with_value(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
-    "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
-    "words": lambda gaps: shortened(gaps.part.words),
-    "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
-    "shown": _shown_word, "note": _note,
-    "other": lambda gaps: re.sub(r"^\w+", OPPOSITE_MOVES[gaps.part.own], gaps.part.call),
-    "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
-    "longer": lambda gaps: _with_value(gaps, gaps.part.time, gaps["n"]), "paced": _with_power,
-    "question": lambda gaps: laid_out(_condition_tokens(gaps)),
+    "by_way": lambda gaps:
+        _with_value(gaps, gaps.trailing.time_match, rf"\1 {UNIT_OF[gaps.trailing.command]}"),
+    "text": lambda gaps: shorten(gaps.trailing.text[slice(*gaps.trailing.whole_span)]),
+    "words": lambda gaps: shorten(gaps.trailing.words_text),
+    "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant_word("g")],
+    "shown": _shown_word, "note": _call_with_note,
+    "other": lambda gaps:
+        re.sub(r"^\w+", OPPOSITE_MOVES[gaps.trailing.command], gaps.trailing.call_text),
+    "once": lambda gaps: gaps.trailing.call_text if gaps["n"] == "1" else "",
+    "longer": lambda gaps: _with_value(gaps, gaps.trailing.time_match, gaps["n"]),
+    "paced": _with_power,
+    "question": lambda gaps: format_line(_condition_tokens(gaps)),
     "contrary": lambda gaps:
-        laid_out(rewrites.negated(it)) if (it := _condition_tokens(gaps)) else "",
-    "made_up": lambda gaps: made_up(_calls(gaps.part)),
+        format_line(rewrites.negate(it)) if (it := _condition_tokens(gaps)) else "",
+    "made_up": lambda gaps: samples_text(_spoken_orders(gaps.trailing)),
     "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _orders,
-    "sensors": lambda gaps: ", ".join(gaps.part.names.measuring),
-    "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
+    "sensors": lambda gaps: ", ".join(gaps.trailing.names.sensor_names),
+    "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.trailing.names.sensors else "",
 }  # fmt: skip

@@ -2,7 +2,7 @@
 
 The first of `READERS` that says something is told. The rest of the text is read as if its edits
 were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
-is told in all is held to the laws, each by a function that `told_of` names. Of a given text
+is told in all is held to the laws, each by a function that `diagnose` names. Of a given text
 `python -m tools.readers TEXT` shows all of it.
 """
 
@@ -19,26 +19,26 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
-from tiniscript.recovery.bracketed import answered, bracketed
-from tiniscript.recovery.calls import misplaced_values, run_on
-from tiniscript.recovery.conserved import conserving, with_sample
-from tiniscript.recovery.counters import counters
+from tiniscript.recovery.bracketed import explain_brackets, explain_else_question
+from tiniscript.recovery.calls import misplaced_values, run_on_calls
+from tiniscript.recovery.conserved import name_samples, withhold_lossy_repairs
+from tiniscript.recovery.counters import counter_diagnostics
 from tiniscript.recovery.dedupe import dedupe
-from tiniscript.recovery.given_back import given_back
-from tiniscript.recovery.invisible import invisible
-from tiniscript.recovery.keys import KEYS, asked_keys
-from tiniscript.recovery.labels import labelled
-from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
-from tiniscript.recovery.logo import turtle
+from tiniscript.recovery.given_back import find_returned_values
+from tiniscript.recovery.invisible import name_invisible_sign
+from tiniscript.recovery.keys import KEYS, key_diagnostics
+from tiniscript.recovery.labels import label_diagnostics
+from tiniscript.recovery.leftovers import leftover_diagnostics, setup_and_end_diagnostics
+from tiniscript.recovery.logo import logo_diagnostics
 from tiniscript.recovery.meanings import Names, lexemes
-from tiniscript.recovery.meant import meant_in
-from tiniscript.recovery.motors import one_by_one, switched
-from tiniscript.recovery.notes import noted
-from tiniscript.recovery.pointing import pointed
+from tiniscript.recovery.meant import meant_diagnostics
+from tiniscript.recovery.motors import motor_diagnostics, switch_diagnostics
+from tiniscript.recovery.notes import note_diagnostics
+from tiniscript.recovery.pointing import point_at_found
 from tiniscript.recovery.search import Recovery
-from tiniscript.recovery.setup import SEAL, beginning, other_word
-from tiniscript.recovery.shares import shares
-from tiniscript.recovery.suggestions import suggested
+from tiniscript.recovery.setup import SEAL, beginning_diagnostics, wrong_setup_word
+from tiniscript.recovery.shares import find_shares
+from tiniscript.recovery.suggestions import find_suggestions
 from tiniscript.recovery.usage import with_usage
 
 MOST_ROUNDS = 20  # of reading what follows a mistake from the repaired text
@@ -70,14 +70,18 @@ class WrongText:
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
         if len(text) > MOST_CHARACTERS or SEAL in text:
             return None
-        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own_text=to == text))
+        return Recovery(
+            text,
+            self.kit,
+            lambda text_asked: self._mistakes(text_asked, is_own_text=text_asked == text),
+        )
 
     def _mistakes(self, text: str, is_own_text: bool) -> list[Code]:
         diagnostics = self.diagnostics if is_own_text else self.check(text)
         return [diagnostic.code for diagnostic in diagnostics if diagnostic.is_mistake]
 
 
-def told_of(
+def diagnose(
     source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
     """Return what is told of a wrong text, of which the parser and the checker say `diagnostics`.
@@ -86,34 +90,34 @@ def told_of(
     """
     text = _LONE_CR.sub("\n", source.text)
     source = Source(text, source.name)
-    diagnostics_told = _read(WrongText(source, diagnostics, check, kit), MOST_ROUNDS)
-    if len(diagnostics_told) > MOST_DIAGNOSTICS:
-        diagnostics_told = sorted(diagnostics_told, key=lambda it: it.span)[: MOST_DIAGNOSTICS + 1]
-    diagnostics_told = [bracketed(item, text, kit, is_offered=True) for item in diagnostics_told]
-    diagnostics_told = drop_wrong_offers(diagnostics_told, text, check)  # what is offered is right
-    diagnostics_told = conserving(
-        diagnostics_told, text, kit
-    )  # what is made keeps what was written
-    diagnostics_told = [bracketed(item, text, kit, is_offered=False) for item in diagnostics_told]
-    diagnostics_told = [answered(item, text) for item in diagnostics_told]
-    diagnostics_told = with_sample(
-        diagnostics_told, text, kit
+    results = _read(WrongText(source, diagnostics, check, kit), MOST_ROUNDS)
+    if len(results) > MOST_DIAGNOSTICS:
+        results = sorted(results, key=lambda diagnostic: diagnostic.span)[: MOST_DIAGNOSTICS + 1]
+    results = [explain_brackets(diagnostic, text, kit, is_offered=True) for diagnostic in results]
+    results = drop_wrong_offers(results, text, check)  # what is offered is right
+    results = withhold_lossy_repairs(results, text, kit)  # what is made keeps what was written
+    results = [explain_brackets(diagnostic, text, kit, is_offered=False) for diagnostic in results]
+    results = [explain_else_question(diagnostic, text) for diagnostic in results]
+    results = name_samples(
+        results, text, kit
     )  # of a distance that nobody wrote it says: an example
-    diagnostics_told = [invisible(item, text) for item in diagnostics_told]
-    return codes.in_order([pointed(item, source) for item in diagnostics_told])
+    results = [name_invisible_sign(diagnostic, text) for diagnostic in results]
+    return codes.in_order([point_at_found(diagnostic, source) for diagnostic in results])
 
 
 def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
     """Return what the readers say of a text, and then of what their edits leave wrong."""
     findings = (reader(wrong_text) for reader in READERS if rounds_left)
-    diagnostics, edits = next((each for each in findings if each.diagnostics), Findings([], []))
+    diagnostics, edits = next(
+        (finding for finding in findings if finding.diagnostics), Findings([], [])
+    )
     if not diagnostics:
         diagnostics = with_usage(wrong_text.diagnostics, wrong_text.source, wrong_text.kit)
     elif len(diagnostics) <= MOST_DIAGNOSTICS:
         repaired_text = apply_edits(wrong_text.source.text, edits)
         diagnostics_left = wrong_text.check(repaired_text)
         if any(
-            each.is_mistake for each in diagnostics_left
+            diagnostic.is_mistake for diagnostic in diagnostics_left
         ):  # else its warnings come when it is repaired
             later_diagnostics = _read(
                 WrongText(
@@ -121,14 +125,18 @@ def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
                 ),
                 rounds_left - 1,
             )
-            sure_edits = {it for each in diagnostics for it in _sure_edits(each)}
+            sure_edits = {edit for diagnostic in diagnostics for edit in _sure_edits(diagnostic)}
             later_diagnostics = [
-                moved_back(each, edits, wrong_text.source) for each in later_diagnostics
+                to_original(diagnostic, edits, wrong_text.source)
+                for diagnostic in later_diagnostics
             ]
             guessed_edits = [edit for edit in edits if edit not in sure_edits]
             diagnostics = [
                 *diagnostics,
-                *(_unless_guessed(each, guessed_edits) for each in later_diagnostics),
+                *(
+                    _unsure_if_guessed(diagnostic, guessed_edits)
+                    for diagnostic in later_diagnostics
+                ),
             ]
     return dedupe(diagnostics, wrong_text.source)
 
@@ -138,12 +146,12 @@ def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
 
 def _notes(wrong_text: WrongText) -> Findings:
     """Return notes that begin with another sign: nothing in them is read (`notes`)."""
-    return _with_edits(noted(wrong_text.source))
+    return _with_edits(note_diagnostics(wrong_text.source))
 
 
 def _labels(wrong_text: WrongText) -> Findings:
     """Return what counts the instructions of a text, before each of them (`labels`)."""
-    return _with_edits(labelled(wrong_text.source))
+    return _with_edits(label_diagnostics(wrong_text.source))
 
 
 def _keys(wrong_text: WrongText) -> Findings:
@@ -151,70 +159,76 @@ def _keys(wrong_text: WrongText) -> Findings:
 
     The rest is read with a key that exists.
     """
-    diagnostics = asked_keys(wrong_text.source, wrong_text.kit)
+    diagnostics = key_diagnostics(wrong_text.source, wrong_text.kit)
     edits = _with_edits(diagnostics).edits
     return Findings(
-        diagnostics, edits + [Edit(it.span, KEYS[0]) for it in diagnostics if not it.repair]
+        diagnostics,
+        edits
+        + [Edit(diagnostic.span, KEYS[0]) for diagnostic in diagnostics if not diagnostic.repair],
     )
 
 
 def _shares(wrong_text: WrongText) -> Findings:
     """Return what is wrong with sensors that are asked for a percentage (`shares`)."""
-    return Findings(*shares(wrong_text.source, wrong_text.kit))
+    return Findings(*find_shares(wrong_text.source, wrong_text.kit))
 
 
 def _beginning(wrong_text: WrongText) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
     return _with_edits(
-        beginning(wrong_text.source, wrong_text.diagnostics, wrong_text.check, wrong_text.kit)
+        beginning_diagnostics(
+            wrong_text.source, wrong_text.diagnostics, wrong_text.check, wrong_text.kit
+        )
     )
 
 
 def _calls(wrong_text: WrongText) -> Findings:
     """Return what is wrong with calls that have all their values in another form (`calls`)."""
     names = Names([lexemes(line) for line in wrong_text.source.text.split("\n")], wrong_text.kit)
-    return _with_edits(misplaced_values(wrong_text.source) or run_on(wrong_text.source, names))
+    return _with_edits(
+        misplaced_values(wrong_text.source) or run_on_calls(wrong_text.source, names)
+    )
 
 
 def _motors(wrong_text: WrongText) -> Findings:
     """Return what is wrong with motors that are switched on and off, or one by one (`motors`)."""
-    if moves := switched(wrong_text.source):
+    if moves := switch_diagnostics(wrong_text.source):
         return _with_edits(moves)
-    diagnostics_and_edits = one_by_one(wrong_text.source)
+    diagnostics_and_edits = motor_diagnostics(wrong_text.source)
     return Findings(
-        [message for message, _ in diagnostics_and_edits],
+        [diagnostic for diagnostic, _ in diagnostics_and_edits],
         [edit for _, edit in diagnostics_and_edits],
     )
 
 
 def _turtle(wrong_text: WrongText) -> Findings:
     """Return what is wrong with lines of Logo, whose words have one number each (`logo`)."""
-    return _with_edits(turtle(wrong_text.source, wrong_text.kit))
+    return _with_edits(logo_diagnostics(wrong_text.source, wrong_text.kit))
 
 
 def _given_back(wrong_text: WrongText) -> Findings:
     """Return what is wrong with DEFs that give a value back (`given_back`)."""
-    return Findings(*given_back(wrong_text.source))
+    return Findings(*find_returned_values(wrong_text.source))
 
 
 def _counters(wrong_text: WrongText) -> Findings:
     """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
-    return _with_edits(counters(wrong_text.source))
+    return _with_edits(counter_diagnostics(wrong_text.source))
 
 
 def _frame(wrong_text: WrongText) -> Findings:
     """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
-    return _with_edits(setup_and_end_leftovers(wrong_text.source, wrong_text.kit))
+    return _with_edits(setup_and_end_diagnostics(wrong_text.source, wrong_text.kit))
 
 
 def _leftovers(wrong_text: WrongText) -> Findings:
     """Return words left over in instructions, which are whole without them (`leftovers`)."""
-    return _with_edits(leftovers(wrong_text.source, wrong_text.kit))
+    return _with_edits(leftover_diagnostics(wrong_text.source, wrong_text.kit))
 
 
 def _wrong_start(wrong_text: WrongText) -> Findings:
     """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
-    wrong_start = other_word(wrong_text.source, wrong_text.diagnostics)
+    wrong_start = wrong_setup_word(wrong_text.source, wrong_text.diagnostics)
     if wrong_start is None:
         return Findings([], [])
     diagnostics = with_usage([wrong_start], wrong_text.source, wrong_text.kit)
@@ -226,18 +240,23 @@ def _sure_findings(wrong_text: WrongText) -> Findings:
     recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=True))
+    return _with_edits(
+        meant_diagnostics(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=True)
+    )
 
 
 def _words_after(wrong_text: WrongText) -> Findings:
     """Return what words say after instructions, or in the place of one (`suggestions`)."""
-    suggestions = suggested(wrong_text.source.text, wrong_text.kit)
+    suggestions = find_suggestions(wrong_text.source.text, wrong_text.kit)
     if recovery := wrong_text.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
         suggestions = [
-            item for item in suggestions if not recovery.has_signs(item.blanking_edit.span.start)
+            suggestion
+            for suggestion in suggestions
+            if not recovery.has_signs(suggestion.blanking_edit.span.start)
         ]
     return Findings(
-        [item.diagnostic for item in suggestions], [item.blanking_edit for item in suggestions]
+        [suggestion.diagnostic for suggestion in suggestions],
+        [suggestion.blanking_edit for suggestion in suggestions],
     )
 
 
@@ -246,7 +265,9 @@ def _likely_findings(wrong_text: WrongText) -> Findings:
     recovery = wrong_text.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=False))
+    return _with_edits(
+        meant_diagnostics(wrong_text.source, wrong_text.diagnostics, recovery, is_sure=False)
+    )
 
 
 def _words_of_blocks(wrong_text: WrongText) -> Findings:
@@ -254,9 +275,16 @@ def _words_of_blocks(wrong_text: WrongText) -> Findings:
 
     Else what is inside would be told of as well.
     """
-    diagnostics = [each for each in wrong_text.diagnostics if each.code is codes.UNKNOWN_WORD
-                   and each.values.get("near") in slips.BLOCK_WORDS]  # fmt: skip
-    return Findings(diagnostics, [Edit(each.span, each.values["near"]) for each in diagnostics])
+    diagnostics = [
+        diagnostic
+        for diagnostic in wrong_text.diagnostics
+        if diagnostic.code is codes.UNKNOWN_WORD
+        and diagnostic.values.get("near") in slips.BLOCK_WORDS
+    ]
+    return Findings(
+        diagnostics,
+        [Edit(diagnostic.span, diagnostic.values["near"]) for diagnostic in diagnostics],
+    )
 
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
@@ -269,7 +297,13 @@ READERS: tuple[Callable[[WrongText], Findings], ...] = (
 
 def _with_edits(diagnostics: list[Diagnostic]) -> Findings:
     return Findings(
-        diagnostics, [edit for item in diagnostics if item.repair for edit in item.repair.edits]
+        diagnostics,
+        [
+            edit
+            for diagnostic in diagnostics
+            if diagnostic.repair
+            for edit in diagnostic.repair.edits
+        ],
     )
 
 
@@ -280,18 +314,20 @@ def _sure_edits(diagnostic: Diagnostic) -> Sequence[Edit]:
     return diagnostic.repair.edits if diagnostic.repair and diagnostic.repair.is_sure else ()
 
 
-def _unless_guessed(diagnostic: Diagnostic, guessed: Sequence[Edit]) -> Diagnostic:
+def _unsure_if_guessed(diagnostic: Diagnostic, guessed_edits: Sequence[Edit]) -> Diagnostic:
     """Return a diagnostic whose repair is not sure where it writes what is only shown."""
     repair = diagnostic.repair
     spans = [edit.span for edit in repair.edits] if repair else []
     if repair is None or not any(
-        a.start <= b.start and b.end <= a.end for a in spans for b, _ in guessed
+        own_span.start <= guessed_span.start and guessed_span.end <= own_span.end
+        for own_span in spans
+        for guessed_span, _ in guessed_edits
     ):
         return diagnostic
     return diagnostic._replace(repair=repair._replace(is_sure=False))
 
 
-def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
     A condition that nobody can read is shown as it is written, and not what it was passed over for.
@@ -321,15 +357,15 @@ def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
 
 def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
     """Return where a span of the text with edits stood before them; all of one it begins in."""
-    start = end = shift = 0
+    start_shift = end_shift = shift = 0
     for edit in sorted(edits):
-        begin = edit.span.start + shift
-        edit_end = begin + len(edit.text)
+        edit_start = edit.span.start + shift
+        edit_end = edit_start + len(edit.text)
         shift = edit_end - edit.span.end
         if span.start >= edit_end:
-            start = shift
-        elif span.start > begin:
-            start = span.start - edit.span.start
-        if span.end > begin:
-            end = shift if span.end >= edit_end else span.end - edit.span.end
-    return Span(span.start - start, max(span.start - start, span.end - end))
+            start_shift = shift
+        elif span.start > edit_start:
+            start_shift = span.start - edit.span.start
+        if span.end > edit_start:
+            end_shift = shift if span.end >= edit_end else span.end - edit.span.end
+    return Span(span.start - start_shift, max(span.start - start_shift, span.end - end_shift))

@@ -28,7 +28,7 @@ from tiniscript.recovery.meanings import (
     WORD_OF_END,
     Lexeme,
     Names,
-    closed,
+    brackets_end,
     lexemes,
 )
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
@@ -62,124 +62,137 @@ class LineContext(NamedTuple):
     orders_above: Sequence[str | None]
 
 
-def width(token: Lexeme) -> int:
+def token_width(token: Lexeme) -> int:
     """Return how many characters a token of a text takes, with the space before it."""
     return len(token.space or "") + len(token.source or "")
 
 
 def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
-    first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
-    if first in names.defs or (sign == "=" and first not in WORDS):
-        failure = lines.right(tokens, names)
-        size = failure.at if isinstance(failure, Failure) else 0
-        is_right = lines.is_right(tokens[:size], names)
-        return size if is_right and tokens[size].space else 0
-    word_row = WORDS.get(first)
-    if word_row is None and not names.takes_values(names.meant(first, NEAR)):
+    first_text, second_text = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
+    if first_text in names.defs or (second_text == "=" and first_text not in WORDS):
+        failure = lines.parse_line(tokens, names)
+        failure_index = failure.failed_at if isinstance(failure, Failure) else 0
+        is_right = lines.is_right(tokens[:failure_index], names)
+        return failure_index if is_right and tokens[failure_index].space else 0
+    word_row = WORDS.get(first_text)
+    if word_row is None and not names.takes_values(names.meant(first_text, NEAR)):
         return 0
-    if first == "DEF":
+    if first_text == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
     if word_row is not None and not word_row.arguments:
-        is_done = word_row.role.name in ("stop", "start", "break", "end", "arm")
-        return int(is_done and sign not in ("(", "="))
-    end = closed(tokens, 1)
+        is_whole = word_row.role.name in ("stop", "start", "break", "end", "arm")
+        return int(is_whole and second_text not in ("(", "="))
+    end = brackets_end(tokens, 1)
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
-        return closed(tokens, end + 1) or end
+        return brackets_end(tokens, end + 1) or end
     return end
 
 
 class Trailing:
-    """An instruction of `size` tokens and the words after it; or words without one, where it is 0.
+    """An instruction and the words after it; or words without one, where `instruction_size` is 0.
 
-    `before` are the other instructions of its line, None for one of a block. `own` is the word of
-    the language that it begins with, "" for none. `spoken` is the call where words say it.
+    `instructions_before` are the other instructions of its line, None for one of a block. `command`
+    is the word of the language that it begins with, "" for none. `spoken_call` is the call where
+    words say it.
     """
 
     def __init__(
-        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str | None], spoken: str = "",
+        self, line_context: LineContext, start_offset: int, tokens: Sequence[Lexeme],
+        instruction_size: int, instructions_before: Sequence[str | None], spoken_call: str = "",
     ) -> None:  # fmt: skip
         text, self.names, depth, orders_above = line_context
-        self.is_said = bool(spoken)
-        self.tokens = lexemes(spoken) if spoken else tokens[:size]
-        self.row = tokens[size:]
-        self.before, self.is_more = [*orders_above, *before], bool(before)
-        self.is_later = self.before[-1:] not in ([], [None])
+        self.is_spoken = bool(spoken_call)
+        self.tokens = lexemes(spoken_call) if spoken_call else tokens[:instruction_size]
+        self.row_tokens = tokens[instruction_size:]
+        self.instructions_before, self.has_instruction_before = (
+            [*orders_above, *instructions_before],
+            bool(instructions_before),
+        )
+        self.is_later = self.instructions_before[-1:] not in ([], [None])
         self.is_in_block = depth > 0
-        ends = [*accumulate(map(width, tokens), initial=start)][1:]
+        ends = [*accumulate(map(token_width, tokens), initial=start_offset)][1:]
         spans = [
-            Span(end - len(it.source or ""), end) for it, end in zip(tokens, ends, strict=True)
+            Span(end - len(token.source or ""), end)
+            for token, end in zip(tokens, ends, strict=True)
         ]
-        called = Span(spans[0].start, spans[size - 1].end if size else spans[0].start)
-        self.place = Span(called.start, ends[-1])
-        self.behind = Span(spans[size].start, ends[-1])
-        self.call = spoken or text[slice(*called)]
-        self.words = text[slice(*self.behind)]
-        self.spans = [called, *spans[size:]]
+        call_span = Span(
+            spans[0].start, spans[instruction_size - 1].end if instruction_size else spans[0].start
+        )
+        self.whole_span = Span(call_span.start, ends[-1])
+        self.words_span = Span(spans[instruction_size].start, ends[-1])
+        self.call_text = spoken_call or text[slice(*call_span)]
+        self.words_text = text[slice(*self.words_span)]
+        self.spans = [call_span, *spans[instruction_size:]]
         self.text = text
-        concept = self.names.meant(self.tokens[0].text, NEAR) if size else ""
+        concept = self.names.meant(self.tokens[0].text, NEAR) if instruction_size else ""
         word_row = WORDS.get(concept)
         self.is_arm = word_row is not None and word_row.role.is_of_blocks
-        self.own = WORD_OF_END.get(concept, concept)
-        self.is_asked = any(token.text == "UNTIL" for token in self.tokens)
-        self.time = _TIME_OF_CALL.match(self.call)
-        self.power = _POWER_OF_CALL.search(self.call)
+        self.command = WORD_OF_END.get(concept, concept)
+        self.has_until = any(token.text == "UNTIL" for token in self.tokens)
+        self.time_match = _TIME_OF_CALL.match(self.call_text)
+        self.power_match = _POWER_OF_CALL.search(self.call_text)
         kinds = [
-            lexicon_meaning(it.text, kind)
-            for it in self.row
+            lexicon_meaning(token.text, kind)
+            for token in self.row_tokens
             for kind in ("value", "unit", "number")
         ]
         self.has_percent = any("%" in kind or kind == ("100",) for kind in kinds)  # `por ciento`
-        self.numbers = {token.text for token in self.tokens if token.kind is NUMBER}
+        self.number_texts = {token.text for token in self.tokens if token.kind is NUMBER}
 
-    def is_aside(self) -> bool:
+    def may_say_something(self) -> bool:
         """Whether the words may say something: of no instruction, where they are none."""
         if not self.tokens:
-            return not lines.is_right(self.row, self.names)
+            return not lines.is_right(self.row_tokens, self.names)
         if self._is_factor():
             return False
-        has_dots = self.is_later and all(lexeme.text in DOTS for lexeme in self.row)
-        kinds = {lexeme.kind for lexeme in self.row}
-        has_sign = has_dots or NUMBER in kinds or self.words == "()"
+        has_dots = self.is_later and all(lexeme.text in DOTS for lexeme in self.row_tokens)
+        kinds = {lexeme.kind for lexeme in self.row_tokens}
+        has_sign = has_dots or NUMBER in kinds or self.words_text == "()"
         return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
 
     def _is_factor(self) -> bool:
         """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
-        signs, values = [lexeme.text for lexeme in self.row[:2]], (self.tokens[-1], *self.row[1:2])
+        signs, values = (
+            [lexeme.text for lexeme in self.row_tokens[:2]],
+            (self.tokens[-1], *self.row_tokens[1:2]),
+        )
         is_set = [token.text for token in self.tokens[1:2]] == ["="]
         return (
             is_set
             and signs[0] in ("X", "·")
             and len(values) > 1
-            and all(it.kind is NUMBER or it.text in self.names.known.values for it in values)
+            and all(
+                token.kind is NUMBER or token.text in self.names.known_names.values
+                for token in values
+            )
         )
 
     def labels(self) -> list[str]:
         """Return the classes of the instruction and of each word, as patterns match them."""
-        return [self._label_of_call(), *(self._label_of(k) for k in range(len(self.row)))]
+        return [self._label_of_call(), *(self._label_of(k) for k in range(len(self.row_tokens)))]
 
     def _label_of_call(self) -> str:
-        own_word, word_row = self.own, WORDS.get(self.own)
+        command, word_row = self.command, WORDS.get(self.command)
         is_timed = word_row is not None and word_row.role.lasts
         if self.tokens:
-            is_instruction = word_row is not None and not self.is_arm and own_word != "START"
+            is_instruction = word_row is not None and not self.is_arm and command != "START"
             labels: dict[str, object] = {
-                own_word: True,
+                command: True,
                 "@any": True,
                 "@cmd": is_instruction,
                 "@did": self.tokens[0].text in self.names.defs,
                 "@set": [token.text for token in self.tokens[1:2]] == ["="],
-                "@move": own_word in MOVES,
-                "@clock": (is_timed or own_word == "BEEP") and not self.is_asked,
-                "@asked": self.is_asked,
-                "@unasked": is_timed and not self.is_asked,
+                "@move": command in MOVES,
+                "@clock": (is_timed or command == "BEEP") and not self.has_until,
+                "@asked": self.has_until,
+                "@unasked": is_timed and not self.has_until,
                 "@outer": not self.is_in_block,
-                "@more": is_instruction and self.is_more,
+                "@more": is_instruction and self.has_instruction_before,
                 "@later": self.is_later and not self.is_arm,
             }
         else:
-            is_end = _BLANK_TEXT.match(self.text, self.place.end) and not self.is_in_block
+            is_end = _BLANK_TEXT.match(self.text, self.whole_span.end) and not self.is_in_block
             labels = {
                 "@none": True,
                 "@after": self.is_later,
@@ -187,52 +200,52 @@ class Trailing:
                 "@unbegun": not _SETUP_AT_START.match(self.text),
                 "@opening": not _SETUP_AT_START.match(self.text) and self._is_opening(),
             }
-        return label("\x01", labels)
+        return join_labels("\x01", labels)
 
     def _is_opening(self) -> bool:
         """Whether words are the first line of a text, and others follow."""
-        before, after = self.text[: self.place.start], self.text[self.place.end :]
+        before, after = self.text[: self.whole_span.start], self.text[self.whole_span.end :]
         return not before.strip() and bool(after.strip()) and not after.split("\n")[0].strip()
 
     def _label_of(self, k: int) -> str:
-        token = self.row[k]
-        text, before, after = token.text, self._text(k - 1), self._text(k + 1)
+        token = self.row_tokens[k]
+        text, previous, following = token.text, self._text_at(k - 1), self._text_at(k + 1)
         is_number = self.number(k) is not None
         is_counted = (
-            lexicon_meaning(after, "times")
-            or after == "X"
+            lexicon_meaning(following, "times")
+            or following == "X"
             or lexicon_meaning(text, "often")
             or text[0] == "X"
         )
-        is_multiplied = lexicon_meaning(before, "multiplied", "times") or before in ("X", "*")
-        is_multiplied = is_multiplied or self.means(before) == "LOOP"
+        is_multiplied = lexicon_meaning(previous, "multiplied", "times") or previous in ("X", "*")
+        is_multiplied = is_multiplied or self.means(previous) == "LOOP"
         concept = (
             lexicon_concept(text) if token.kind is WORD and not self.names.is_name(text) else None
         )
-        is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
-        is_own_name = token.source == "l" or text in set_in(self.text)
+        is_of_kit = concept is None or concept in WORDS or self.names.is_device_or_end(concept)
+        is_own_name = token.source == "l" or text in words_set(self.text)
         word_row = None if is_own_name else WORDS.get(text)
         labels = {
             "@number": is_number,
             "@often": is_number
-            and (is_counted or (is_multiplied and not lexicon_meaning(after, "unit"))),
+            and (is_counted or (is_multiplied and not lexicon_meaning(following, "unit"))),
             "@percent": is_number and self.has_percent,
             "@in_s": lexicon_meaning(text, "unit")[:1] == ("s",),
-            "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.own),
+            "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.command),
             "@paced": self._is_paced(k),
-            "@told": self.tokens and self._is_told(k),
+            "@told": self.tokens and self._is_redundant(k),
             f"@no{concept}": not is_of_kit,
             "@call": word_row and word_row.is_call,
             "@order": word_row and word_row.role.is_instruction,
             "@ask": self.means(text) in ASKING_WORDS,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
-            "@dots": text == "…" or (text == "." and "." in (before, after)),
+            "@dots": text == "…" or (text == "." and "." in (previous, following)),
         }
-        return label(self.names.label(token)[:-2], labels)
+        return join_labels(self.names.label(token)[:-2], labels)
 
-    def _text(self, k: int) -> str:
-        return self.row[k].text if 0 <= k < len(self.row) else ""
+    def _text_at(self, k: int) -> str:
+        return self.row_tokens[k].text if 0 <= k < len(self.row_tokens) else ""
 
     def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
@@ -241,43 +254,47 @@ class Trailing:
 
     def number(self, k: int) -> str | None:
         """Return the number at a place in digits, None where there is none."""
-        token = self.row[k]
+        token = self.row_tokens[k]
         if token.kind is NUMBER:
             return token.text
-        if token.text in self.names.known.values:
+        if token.text in self.names.known_names.values:
             return None
-        text = lexicon_meaning(token.text, "number") or lexicon_meaning(token.text, "often")
-        if text:
-            return text[0]
+        meaning = lexicon_meaning(token.text, "number") or lexicon_meaning(token.text, "often")
+        if meaning:
+            return meaning[0]
         return token.text[1:] if re.fullmatch("X[0-9]+", token.text) else None
 
     def _is_paced(self, k: int) -> bool:
-        text = self.row[k].text
-        if self.power is None:
+        text = self.row_tokens[k].text
+        if self.power_match is None:
             return False
-        sentence = lexicon_meaning(text, "power")
-        is_fast = sentence[:1] == ("100",)
-        is_changed = bool(k and lexicon_meaning(self.row[k - 1].text, "extra"))
-        is_other = (int(self.power[1]) >= _MIDDLE_POWER) is not is_fast
-        return lexicon_meaning(text, "pace") != () or bool(sentence and (is_changed or is_other))
+        power_meaning = lexicon_meaning(text, "power")
+        is_fast = power_meaning[:1] == ("100",)
+        is_changed = bool(k and lexicon_meaning(self.row_tokens[k - 1].text, "extra"))
+        is_other = (int(self.power_match[1]) >= _MIDDLE_POWER) is not is_fast
+        return lexicon_meaning(text, "pace") != () or bool(
+            power_meaning and (is_changed or is_other)
+        )
 
-    def _is_told(self, k: int) -> bool:
+    def _is_redundant(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""
-        token, text = self.row[k], self.row[k].text
-        is_first = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[:k])
+        token, text = self.row_tokens[k], self.row_tokens[k].text
+        is_first = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[:k])
         if token.kind is WORD and self.number(k) is None:
             return not self._is_order(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
-            unit = lexicon_meaning(self._text(k + 1), "unit")
-            if self.number(k) in self.numbers or (unit and unit[0] in ("cm", "°", "steps")):
+            unit = lexicon_meaning(self._text_at(k + 1), "unit")
+            if self.number(k) in self.number_texts or (unit and unit[0] in ("cm", "°", "steps")):
                 return True
             return token.kind is WORD and unit[:1] != ("s",) if is_first or unit else True
-        is_number = self._text(k + 1)[:1].isdigit() and not self._is_told(k + 1)
-        is_bracket = text == "(" and (is_number or (bool(k) and self.row[k - 1].kind is WORD))
+        is_number = self._text_at(k + 1)[:1].isdigit() and not self._is_redundant(k + 1)
+        is_bracket = text == "(" and (
+            is_number or (bool(k) and self.row_tokens[k - 1].kind is WORD)
+        )
         if not k:
             is_note_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
             return is_note_sign and not is_bracket and not self.is_arm
-        is_list_of_words = text == "," and self.row[k - 1].kind is NUMBER
+        is_list_of_words = text == "," and self.row_tokens[k - 1].kind is NUMBER
         return (
             not is_bracket
             and not is_list_of_words
@@ -286,14 +303,16 @@ class Trailing:
 
     def _is_alone(self, k: int) -> bool:
         """Whether a single word is rather a misspelt one, or the name of a DEF."""
-        token = self.row[k]
-        words = [lexeme for lexeme in self.row if lexeme.kind is WORD]
+        token = self.row_tokens[k]
+        words = [lexeme for lexeme in self.row_tokens if lexeme.kind is WORD]
         if self.names.is_name(token.text):
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and not lexicon_meaning(token.text, "note"):
             return True
         is_explained = (
-            self.means(token.text) or lexicon_meaning(token.text, "power") or self.own == "START"
+            self.means(token.text)
+            or lexicon_meaning(token.text, "power")
+            or self.command == "START"
         )
         if is_explained or len(words) > 1:
             return False
@@ -303,35 +322,37 @@ class Trailing:
 
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
-        text, own_word = self.row[k].text, self.own
-        is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[k + 1 :])
+        text, command = self.row_tokens[k].text, self.command
+        is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[k + 1 :])
         is_after_word = k or len(text) == 1 or lexicon_meaning(text, "count")
         is_small_word = lexicon_meaning(text, "small") and not is_last and is_after_word
-        if is_small_word or (own_word == "BEEP" and lexicon_meaning(text, "note")):
+        if is_small_word or (command == "BEEP" and lexicon_meaning(text, "note")):
             return False
         if lexicon_meaning(text, "lap", "turn"):
-            return own_word not in ("L", "R", "M") and not (
-                own_word == "B" and lexicon_meaning(text, "lap")
+            return command not in ("L", "R", "M") and not (
+                command == "B" and lexicon_meaning(text, "lap")
             )
         if lexicon_meaning(text, "on", "off", "act"):
             return True
         if lexicon_meaning(text, "end") or text in WORD_OF_END:
             return self.is_in_block and not self.is_arm
         if lexicon_meaning(text, "until"):
-            return own_word != "SHOW" and self.row[0].text != "(" and not self.is_asked
+            return command != "SHOW" and self.row_tokens[0].text != "(" and not self.has_until
         concept = self.means(text)
         word_row = WORDS.get(concept)
-        is_repetition = concept == own_word or (concept == "S" and self.is_asked)
+        is_repetition = concept == command or (concept == "S" and self.has_until)
         if is_repetition or word_row is None or word_row.role.is_of_values or concept == "START":
             return False
-        return own_word not in ("LOOP", "DEF", "S", "STOP") or concept not in ("S", "LOOP", "DEF")
+        return command not in ("LOOP", "DEF", "S", "STOP") or concept not in ("S", "LOOP", "DEF")
 
 
 @lru_cache(maxsize=1)
-def set_in(text: str) -> frozenset[str]:
+def words_set(text: str) -> frozenset[str]:
     """Return the words that a text sets, which is told at their own lines."""
     return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 
 
-def label(first: str, labels: Mapping[str, object]) -> str:
-    return "|".join((first, *(label for label, is_so in labels.items() if is_so), "\x02"))
+def join_labels(first: str, labels: Mapping[str, object]) -> str:
+    return "|".join(
+        (first, *(join_labels for join_labels, is_so in labels.items() if is_so), "\x02")
+    )

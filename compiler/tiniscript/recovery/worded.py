@@ -11,67 +11,85 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexicon_concept, lexicon_meaning, made
+from tiniscript.recovery.meanings import (
+    NEAR,
+    Lexeme,
+    Names,
+    lexicon_concept,
+    lexicon_meaning,
+    make_token,
+)
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-_EMPTY_WORD = made("THE")  # a word that asks nothing: one alone may be a name
+_EMPTY_WORD = make_token("THE")  # a word that asks nothing: one alone may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
-_FAR_CM = 10  # centimetres, as in every example
-_MANY_UNITS = 50  # of what a variable holds
+_SAMPLE_CM = 10  # centimetres, as in every example
+_SAMPLE_NUMBER = 50  # of what a variable holds
 _ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 
 
-def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
+def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     """Return what a condition in words asks, None where it is none or cannot be understood.
 
     It is `question` where it has its number, a `question` where a word says what, and else an
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
     and `aside` is what looks ahead alone.
     """
-    is_compared = any(lexeme.text == "=" for lexeme in row)  # `DISTANCE = NEAR`
-    row = [lexeme for lexeme in row if lexeme.text != "="]
-    texts = [lexeme.text for lexeme in row]
-    if both := _mixed_condition(row, names):
-        return both
+    is_compared = any(lexeme.text == "=" for lexeme in tokens)  # `DISTANCE = NEAR`
+    tokens = [lexeme for lexeme in tokens if lexeme.text != "="]
+    texts = [lexeme.text for lexeme in tokens]
+    if mixed_values := _mixed_condition(tokens, names):
+        return mixed_values
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
-    has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
+    has_number = any(lexeme.kind is NUMBER for lexeme in tokens)  # `COLOR = 3` is no `> 3`
     if is_condition or (
         is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED_KINDS)
     ):
         return None
     if joint := _joining_word(texts, names):
         return {"question": "", "joint": joint}
-    texts, number = _measured(row, names)
-    sentence = _mentioned_words(texts, names)
+    texts, number = _split_number(tokens, names)
+    kinds_mentioned = _mentioned_words(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own_names = [text for text in texts if names.is_name(text) and text != number]
-    if [number] == texts != [row[-1].text] or (number and not own_names and sentence == {"little"}):
-        sentence.add("ahead")  # `20 cm`, `less than 10`
+    if [number] == texts != [tokens[-1].text] or (
+        number and not own_names and kinds_mentioned == {"little"}
+    ):
+        kinds_mentioned.add("ahead")  # `20 cm`, `less than 10`
     if any(names.is_yes_no(text) for text in own_names):
         return None  # which nothing is compared with
     is_bare_name = len(texts) == 1 and not (
-        sentence & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
+        kinds_mentioned & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
     )
     is_button = any(lexicon_concept(text) == "BUTTON" for text in texts)
-    if is_bare_name or is_button or (numbers and not sentence & {"ahead", "light", "none"}):
+    if is_bare_name or is_button or (numbers and not kinds_mentioned & {"ahead", "light", "none"}):
         return None
     question = [
-        f"{name} {_sign(name, sentence)} {number or _example(names.asked.get(name), name)}"
-        for name in _subjects(own_names, texts, sentence, names)
+        f"{name} {_sign(name, kinds_mentioned)} "
+        f"{number or _example(names.number_readings.get(name), name)}"
+        for name in _subjects(own_names, texts, kinds_mentioned, names)
     ]
-    if "ahead" in sentence and sentence & {"left", "right"} and question[0].startswith("DISTANCE"):
+    if (
+        "ahead" in kinds_mentioned
+        and kinds_mentioned & {"left", "right"}
+        and question[0].startswith("DISTANCE")
+    ):
         return {"question": "", "aside": "DISTANCE"}  # it looks ahead
-    is_asking = bool(own_names or sentence & _ASKED_KINDS)
-    kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
-    return {"question": "", **dict(zip(kinds, question, strict=False))}
+    is_asking = bool(own_names or kinds_mentioned & _ASKED_KINDS)
+    gap_names = (
+        ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
+    )
+    return {"question": "", **dict(zip(gap_names, question, strict=False))}
 
 
 def sensors_of(word: str, names: Names) -> list[str]:
     """Return the sensors that a word for what they see may mean: both lights for `luz`."""
-    result = _lights(names) if lexicon_meaning(word, "light") else ["DISTANCE"]
-    return [] if names.is_name(word) else [name for name in result if name in names.asked]
+    sensors = _lights(names) if lexicon_meaning(word, "light") else ["DISTANCE"]
+    return (
+        [] if names.is_name(word) else [name for name in sensors if name in names.number_readings]
+    )
 
 
 def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
@@ -82,56 +100,58 @@ def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
 def _joining_word(texts: Sequence[str], names: Names) -> str:
     """Return AND or OR, if two conditions are joined and each is in words."""
     joints = [lexicon_meaning(text, "and") or lexicon_meaning(text, "or") for text in texts]
-    places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
-    pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
+    joint_indexes = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
+    pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *joint_indexes, len(texts)))]
     are_asking = all(
         _mentioned_words(piece, names) & {"ahead", "light", "none"} for piece in pieces
     )
-    return joints[places[0]][0].upper() if places and are_asking else ""
+    return joints[joint_indexes[0]][0].upper() if joint_indexes and are_asking else ""
 
 
-def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
+def _mixed_condition(tokens: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
-    places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
-    pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
+    joint_indexes = [k for k, lexeme in enumerate(tokens) if _joining_word_of(lexeme.text, names)]
+    pieces = [tokens[a + 1 : b] for a, b in pairwise((-1, *joint_indexes, len(tokens)))]
     are_comparisons = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
     if not any(are_comparisons) or all(are_comparisons):
         return {}
-    joint = _joint_of(row[places[0]].text, names)
-    messages = []
+    joint = _joining_word_of(tokens[joint_indexes[0]].text, names)
+    questions = []
     for piece, is_compared in zip(pieces, are_comparisons, strict=True):
         text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
-        result = {"asked": text} if is_compared else worded([_EMPTY_WORD, *piece], names) or {}
-        messages.append(result.get("asked") or result.get("question", ""))
-    if not all(messages):
+        values = (
+            {"asked": text} if is_compared else condition_values([_EMPTY_WORD, *piece], names) or {}
+        )
+        questions.append(values.get("asked") or values.get("question", ""))
+    if not all(questions):
         return {"question": "", "joint": joint}
-    return {"question": f" {joint} ".join(messages)}
+    return {"question": f" {joint} ".join(questions)}
 
 
-def _joint_of(text: str, names: Names) -> str:
+def _joining_word_of(text: str, names: Names) -> str:
     """Return AND or OR, where a word joins two questions."""
-    sentence = lexicon_meaning(text, "and") or lexicon_meaning(text, "or")
-    return "" if not sentence or names.is_name(text) else sentence[0].upper()
+    meaning = lexicon_meaning(text, "and") or lexicon_meaning(text, "or")
+    return "" if not meaning or names.is_name(text) else meaning[0].upper()
 
 
-def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
+def _split_number(tokens: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     """Return the words without units, and their number in centimetres or of light, "" for none."""
-    texts = [lexeme.text for lexeme in row]
+    texts = [lexeme.text for lexeme in tokens]
     is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = lexicon_meaning(texts[k + 1], "unit") if k + 1 < len(texts) else ()
         texts_without_unit = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
-        if row[k].kind is NUMBER:
+        if tokens[k].kind is NUMBER:
             is_length = not unit or unit[0] == "cm"
             return texts_without_unit, _in_centimetres(text, unit) if is_length else ""
         if unit[:1] == ("cm",) and is_near:
-            sentence = lexicon_meaning(text, "number") or (
+            number_meaning = lexicon_meaning(text, "number") or (
                 ("0.5",) if lexicon_meaning(text, "half") else ()
             )
-            if sentence:
-                return [*texts[:k], *texts[k + 2 :]], _in_centimetres(sentence[0], unit)
-        is_last = k == len(texts) - 1 and k > 1 and lexicon_meaning(texts[k - 1], "than")
-        if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
+            if number_meaning:
+                return [*texts[:k], *texts[k + 2 :]], _in_centimetres(number_meaning[0], unit)
+        ends_comparison = k == len(texts) - 1 and k > 1 and lexicon_meaning(texts[k - 1], "than")
+        if is_near and text in names.variables and (ends_comparison or unit == ("cm", "1000")):
             return texts_without_unit, text
     return texts, ""
 
@@ -144,22 +164,33 @@ def _subjects(
     own_names: Sequence[str], texts: Sequence[str], kinds_said: set[str], names: Names
 ) -> list[str]:
     """Return the sensors that are asked, or the variable."""
-    sensors = [text for text in own_names if text in names.asked]
-    sensors += [concept for text in texts if (concept := names.meant(text, NEAR)) in names.asked]
-    result = sensors[:1] or list(own_names[:1])
-    if not result and "light" in kinds_said and "ahead" not in kinds_said:
-        result = _lights(names)[:2]
+    sensors = [text for text in own_names if text in names.number_readings]
+    sensors += [
+        concept for text in texts if (concept := names.meant(text, NEAR)) in names.number_readings
+    ]
+    subjects = sensors[:1] or list(own_names[:1])
+    if not subjects and "light" in kinds_said and "ahead" not in kinds_said:
+        subjects = _lights(names)[:2]
         sided_sensors = [
-            f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in kinds_said
+            f"LIGHT_{side[0].upper()}" for side in ("left", "right") if side in kinds_said
         ]
-        result = [
-            name for name in sided_sensors if name in result and len(sided_sensors) == 1
-        ] or result
-    return result or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
+        subjects = [
+            name for name in sided_sensors if name in subjects and len(sided_sensors) == 1
+        ] or subjects
+    return (
+        subjects
+        or [
+            *(name for name in names.number_readings if name == "DISTANCE"),
+            *names.number_readings,
+            "X",
+        ][:1]
+    )
 
 
 def _lights(names: Names) -> list[str]:
-    return sorted(name for name in names.asked if name.partition("_")[0] in ("LIGHT", "LINE"))
+    return sorted(
+        name for name in names.number_readings if name.partition("_")[0] in ("LIGHT", "LINE")
+    )
 
 
 def _sign(name: str, kinds_said: set[str]) -> str:
@@ -169,10 +200,10 @@ def _sign(name: str, kinds_said: set[str]) -> str:
 
 def _example(device: Device | None, name: str) -> int:
     if device is None:
-        return _MANY_UNITS
+        return _SAMPLE_NUMBER
     middle = (device.low + device.high) // (2 * ONE)
     return (
-        _FAR_CM
+        _SAMPLE_CM
         if name == "DISTANCE"
         else round(middle, -2)
         if middle > _ROUND_NUMBERS_FROM

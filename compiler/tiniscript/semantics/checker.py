@@ -31,30 +31,32 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.parser import parse
 
 if TYPE_CHECKING:
-    from tiniscript.semantics.parameters import Kinds
+    from tiniscript.semantics.parameters import ParameterKinds
     from tiniscript.semantics.wrong_calls import WrongCalls
 
 
-class Checked(NamedTuple):
+class CheckedProgram(NamedTuple):
     """`program` is a whole program only where no diagnostic is a mistake."""
 
     program: ir.Program
     diagnostics: list[Diagnostic]
 
 
-def check(source: Source, parsed_program: ast.Program, kit: Kit) -> Checked:
+def check(source: Source, parsed_program: ast.Program, kit: Kit) -> CheckedProgram:
     """Return the IR of a program for a robot with this kit, and all its diagnostics."""
     checker = _Checker(source, kit, parsed_program)
     body = checker.body(parsed_program.body)
     variables, procedures = tuple(checker.variables), tuple(checker.procedures)
-    meaning = ir.Program(parsed_program.start, variables, procedures, body, tuple(checker.tasks))
+    checked_program = ir.Program(
+        parsed_program.start, variables, procedures, body, tuple(checker.tasks)
+    )
     if (
-        meaning.tasks
+        checked_program.tasks
         and any(procedure.values for procedure in procedures)
         and not checker.diagnostics
     ):
-        checker.check_copies_fit(meaning)
-    return Checked(meaning, checker.diagnostics)
+        checker.check_copies_fit(checked_program)
+    return CheckedProgram(checked_program, checker.diagnostics)
 
 
 class _Procedure(NamedTuple):
@@ -71,8 +73,8 @@ class _Outside(NamedTuple):
     definitely_read_mask: int
     block_depth: int
     call_depth: int
-    beside_blocks: int
-    beside_calls: int
+    blocks_in_other_tasks: int
+    calls_in_other_tasks: int
 
 
 class _Checker(Scope):
@@ -81,31 +83,31 @@ class _Checker(Scope):
         self.types = Types(self)
         self.variables: list[str] = []
         self.procedures: list[ir.Procedure] = []
-        self.facts: list[_Procedure] = []
+        self.def_facts: list[_Procedure] = []
         self.tasks: list[ir.Task] = []
-        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed_program.body)
-        self.beside_blocks = 0  # open at once in the other tasks, all of them together,
-        self.beside_calls = 0  # and their calls
-        self.inside: str | None = None  # the DEF whose body is being checked
+        self.has_tasks = any(isinstance(node, ast.Task) for node in parsed_program.body)
+        self.blocks_in_other_tasks = 0  # open at once in the other tasks, all of them together,
+        self.calls_in_other_tasks = 0  # and their calls
+        self.current_def: str | None = None  # the DEF whose body is being checked
         self.definitely_read_mask = 0  # a bit for each sensor
-        self.loops = 0
-        self.depth = 0
-        self.deepest = 0  # blocks open at once in the routine that is being checked
-        self.calls = 0  # calls open at once in it
+        self.loop_depth = 0
+        self.block_depth = 0
+        self.deepest_block = 0  # blocks open at once in the routine that is being checked
+        self.call_depth = 0  # calls open at once in it
 
     @cached_property
-    def kinds(self) -> Kinds:
-        from tiniscript.semantics.parameters import Kinds
+    def kinds(self) -> ParameterKinds:
+        from tiniscript.semantics.parameters import ParameterKinds
 
-        return Kinds(self.parsed, self.yes_no_sensors)
+        return ParameterKinds(self.parsed_program, self.yes_no_sensors)
 
     @cached_property
     def taken_names(self) -> frozenset[str]:
         """The names that a program gives to anything but the values of its DEFs."""
-        return frozenset((*self.set_somewhere, *self.def_names))
+        return frozenset((*self.assigned_names, *self.def_names))
 
     @cached_property
-    def wrong(self) -> WrongCalls:
+    def wrong_calls(self) -> WrongCalls:
         """What there is to say of wrong instructions. A right program never loads it."""
         from tiniscript.semantics.wrong_calls import WrongCalls
 
@@ -121,19 +123,19 @@ class _Checker(Scope):
 
     def add_readings(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
-        result = 0
+        read_mask = 0
         for sensor in self.unread_sensors(values, self.definitely_read_mask):
             output.append(ir.Read(sensor, span))
-            result |= 1 << sensor
-        return result
+            read_mask |= 1 << sensor
+        return read_mask
 
     @staticmethod
-    def unread_sensors(values: Sequence[Value], sensors_read: int) -> tuple[int, ...]:
-        """Return the sensors in `values`, each once, in order, that are not in `sensors_read`."""
+    def unread_sensors(values: Sequence[Value], read_mask: int) -> tuple[int, ...]:
+        """Return the sensors in `values`, each once, in order, that are not in `read_mask`."""
         unread: list[int] = []
         for value in values:
             for sensor in value.sensors:
-                if not sensors_read >> sensor & 1 and sensor not in unread:
+                if not read_mask >> sensor & 1 and sensor not in unread:
                     unread.append(sensor)
         return tuple(unread)
 
@@ -142,28 +144,28 @@ class _Checker(Scope):
     def assign(self, node: ast.Assign, output: list[Statement]) -> None:
         name = self.names.get(node.name)
         if name is not None and name.kind in ("sensor", "actuator"):
-            self.wrong.report_device_set(node, name)
+            self.wrong_calls.report_device_set(node, name)
             return
         if node.name in self.def_names:
-            self.wrong.report_def_set(node, self.procedures)
+            self.wrong_calls.report_def_set(node, self.procedures)
             return
         if node.value is None:
             if name is None:
-                self.variable(node, self.types.nothing)
+                self.make_variable(node, self.types.no_value)
             return
         value = self.types.value(node.value, node.name if name is None else None)
         self.check_stack_fits([value], node.span)
-        number = self.variable(node, value) if name is None else name.number
-        known_type = self.types.variable_names[number]
+        number = self.make_variable(node, value) if name is None else name.number
+        known_type = self.types.variable_types[number]
         if ANY not in (known_type, value.type) and known_type != value.type:
-            free = self.wrong.free_name(node.name, self.procedures)
-            other = f"{free} = {self.source[node.value.span]}"
+            unused_name = self.wrong_calls.free_name(node.name, self.procedures)
+            other = f"{unused_name} = {self.source[node.value.span]}"
             self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
                         old="@" + known_type, new="@" + value.type)  # fmt: skip
         self.add_readings([value], node.span, output)
         output.append(ir.Assign(number, value.terms, node.span))
 
-    def variable(self, node: ast.Assign, value: Value) -> int:
+    def make_variable(self, node: ast.Assign, value: Value) -> int:
         """Make a new variable; its type is that of its first assignment."""
         number = self.new_variable(node.name, node.name_span, value.type)
         self.names[node.name] = Name("variable", number)
@@ -174,13 +176,13 @@ class _Checker(Scope):
         if number == VARIABLES:
             self.report(codes.TOO_MANY_VARIABLES, span, limit=str(VARIABLES))
         self.variables.append(name)
-        self.types.variable_names.append(kind)
+        self.types.variable_types.append(kind)
         return number
 
     def command(self, node: ast.Command, output: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or not word.role.lasts):
-            self.wrong.report_until_not_here(node, node.until, word)
+            self.wrong_calls.report_until_not_here(node, node.until, word)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, output)
@@ -188,41 +190,43 @@ class _Checker(Scope):
         arguments = node.arguments or ()
         span = node.span
         if len(arguments) != len(word.arguments):
-            self.wrong.report_count(word, arguments, span)
+            self.wrong_calls.report_count(word, arguments, span)
             return
-        forever = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
-        if forever and node.until is None and not self.has_tasks:
-            self.wrong.report_forever(arguments[0].span, word, node)
-        expected, way = word.arguments, arguments[0].unit if word.role.is_move else None
-        if way is not None:
-            self.way(node, way)
+        is_endless = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
+        if is_endless and node.until is None and not self.has_tasks:
+            self.wrong_calls.report_forever(arguments[0].span, word, node)
+        argument_specs, unit_part = word.arguments, arguments[0].unit if word.role.is_move else None
+        if unit_part is not None:
+            self.check_unit(node, unit_part)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
-            expected = (WAYS[UNIT_OF[word.text]], *expected[1:])
+            argument_specs = (WAYS[UNIT_OF[word.text]], *argument_specs[1:])
         diagnostic_count = len(self.diagnostics)
         values = [
             self.types.value(argument)
             if spec is VALUE
-            else self.number(argument, spec, word.text, (node, word))
-            for argument, spec in zip(arguments[forever:], expected[forever:], strict=True)
+            else self.number_value(argument, spec, word.text, (node, word))
+            for argument, spec in zip(
+                arguments[is_endless:], argument_specs[is_endless:], strict=True
+            )
         ]
         if len(self.diagnostics) > diagnostic_count:
-            self.wrong.report_values(node, word, diagnostic_count)
+            self.wrong_calls.report_values(node, word, diagnostic_count)
         if word.stands_for:
             if len(self.diagnostics) == diagnostic_count:
-                self.spell_out(word, arguments, span, output)
+                self.add_expansion(word, arguments, span, output)
             return
         self.check_stack_fits(values, span)
         self.add_readings(values, span, output)
         terms = [value.terms for value in values]
         if word.role.lasts:
             until = None if node.until is None else self.until(node.until)
-            time, power = None if forever else terms[0], terms[-1] if word.role.is_move else None
-            unit = "" if way is None else way.op
+            time, power = None if is_endless else terms[0], terms[-1] if word.role.is_move else None
+            unit = "" if unit_part is None else unit_part.op
             output.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.is_instruction:  # START does nothing
             output.append(_STATEMENT_MAKERS[word.role.name](values, span))
 
-    def spell_out(
+    def add_expansion(
         self, word: Word, arguments: Sequence[ast.Argument], span: Span, output: list[Statement]
     ) -> None:
         """Make what the instructions make that a word stands for, with these values."""
@@ -231,30 +235,32 @@ class _Checker(Scope):
         for instruction in parse(Source(word.stands_for)).program.body:
             _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, argument_of), output)
 
-    def way(self, node: ast.Command, unit: ast.Part) -> None:
+    def check_unit(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
         if unit.op != UNIT_OF[node.word]:
-            self.wrong.report_unit_pair(node, unit)
+            self.wrong_calls.report_unit_pair(node, unit)
         elif not (self.kit.speed if unit.op == "CM" else self.kit.turn):
             line = "speed = 45" if unit.op == "CM" else "turn = 360"
             self.report(codes.NO_SPEED, Span(unit.start, unit.end), unit=unit.op, line=line)
 
-    def number(
+    def number_value(
         self,
         argument: ast.Argument,
         spec: Argument,
         word: str,
-        called: tuple[ast.Command, Word] | None = None,
+        command_and_word: tuple[ast.Command, Word] | None = None,
     ) -> Value:
-        """Check a number argument, `called` a command; a plain one must be in range."""
+        """Check a number argument, `command_and_word` a command; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not spec.low <= part.value <= spec.high:
-                self.wrong.report_out_of_range(argument.span, part.value, spec, word, called)
+                self.wrong_calls.report_out_of_range(
+                    argument.span, part.value, spec, word, command_and_word
+                )
         value = self.types.value(argument)
         if value.type == "yes_no":
-            self.wrong.report_not_number(argument.span, word)
+            self.wrong_calls.report_not_number(argument.span, word)
         return value
 
     def until(self, argument: ast.Argument, word: str = "UNTIL") -> ir.Until:
@@ -270,9 +276,11 @@ class _Checker(Scope):
         return value
 
     def report_not_condition(self, argument: ast.Argument, asker: str) -> None:
-        result = self.source[argument.span]
-        values = self.types.wrong.condition(argument.span)
-        self.report(codes.WANTS_CONDITION, argument.span, None, by=asker, found=result, **values)
+        argument_text = self.source[argument.span]
+        values = self.types.wrong_values.condition(argument.span)
+        self.report(
+            codes.WANTS_CONDITION, argument.span, None, by=asker, found=argument_text, **values
+        )
 
     def check_stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
@@ -283,17 +291,19 @@ class _Checker(Scope):
     def kit_or_def(self, node: ast.Command, output: list[Statement]) -> None:
         name = self.names.get(node.word)
         if name is None:
-            self.wrong.report_unknown(node, self.inside)
+            self.wrong_calls.report_unknown(node, self.current_def)
         elif node.arguments is not None and name.kind not in _KINDS_WITH_VALUES:
-            self.wrong.report_not_callable(node)
+            self.wrong_calls.report_not_callable(node)
         else:
             _BY_NAME_KIND[name.kind](self, node, name.number, output)
 
-    def reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
+    def add_reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         output.append(ir.Read(number, node.span))
         self.definitely_read_mask |= 1 << number
 
-    def variable_alone(self, node: ast.Command, number: int, output: list[Statement]) -> None:
+    def report_variable_alone(
+        self, node: ast.Command, number: int, output: list[Statement]
+    ) -> None:
         self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
 
     def actuator(self, node: ast.Command, number: int, output: list[Statement]) -> None:
@@ -304,7 +314,7 @@ class _Checker(Scope):
                         fix=word.example)  # fmt: skip
             return
         if len(node.arguments) != 1:
-            self.wrong.report_count(word, node.arguments, node.span)
+            self.wrong_calls.report_count(word, node.arguments, node.span)
             return
         argument = node.arguments[0]
         if device.is_yes_no:
@@ -312,20 +322,20 @@ class _Checker(Scope):
             if value.type == "number":
                 self.report_not_condition(argument, device.name)
         else:
-            value = self.number(argument, word.arguments[0], device.name)
+            value = self.number_value(argument, word.arguments[0], device.name)
         self.check_stack_fits([value], node.span)
         self.add_readings([value], node.span, output)
         output.append(ir.Set(number, value.terms, node.span))
 
     def call(self, node: ast.Command, number: int, output: list[Statement]) -> None:
-        facts = self.facts[number]
-        if facts.call_depth + 1 + self.beside_calls > CALLS:
+        facts = self.def_facts[number]
+        if facts.call_depth + 1 + self.calls_in_other_tasks > CALLS:
             self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
-        self.calls = max(self.calls, facts.call_depth + 1)
-        depth = self.depth + facts.block_depth
-        if depth + self.beside_blocks > BLOCKS:
+        self.call_depth = max(self.call_depth, facts.call_depth + 1)
+        deepest_depth = self.block_depth + facts.block_depth
+        if deepest_depth + self.blocks_in_other_tasks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
-        self.deepest = max(self.deepest, depth)
+        self.deepest_block = max(self.deepest_block, deepest_depth)
         self.set_values(node, self.procedures[number], output)
         self.definitely_read_mask |= facts.definitely_read_mask
         output.append(ir.Call(number, node.span))
@@ -336,19 +346,19 @@ class _Checker(Scope):
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
-            self.wrong.report_call_values(
+            self.wrong_calls.report_call_values(
                 node, procedure, [self.variables[k] for k in procedure.values]
             )
             return
         if arguments:
-            from tiniscript.semantics.parameters import names_one  # loaded for its DEF
+            from tiniscript.semantics.parameters import names_a_value  # loaded for its DEF
 
             names = [self.variables[k] for k in procedure.values]
-            if names_one(node, names) and self.wrong.report_named_values(node, names):
+            if names_a_value(node, names) and self.wrong_calls.report_named_values(node, names):
                 return
-        values = [self.types.value(item) for item in arguments]
+        values = [self.types.value(argument) for argument in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
-            expected = self.types.variable_names[number]
+            expected = self.types.variable_types[number]
             if ANY not in (expected, value.type) and expected != value.type:
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
                             word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
@@ -362,58 +372,60 @@ class _Checker(Scope):
     def nested_body(
         self, instructions: Sequence[ast.Instruction], is_loop: bool, span: Span
     ) -> ir.Body:
-        self.depth += 1
-        self.loops += is_loop
-        self.deepest = max(self.deepest, self.depth)
-        if self.depth + self.beside_blocks == BLOCKS + 1:  # what is alone too deep is not here
+        self.block_depth += 1
+        self.loop_depth += is_loop
+        self.deepest_block = max(self.deepest_block, self.block_depth)
+        if (
+            self.block_depth + self.blocks_in_other_tasks == BLOCKS + 1
+        ):  # what is alone too deep is not here
             self.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         body = self.body(instructions)
-        self.depth -= 1
-        self.loops -= is_loop
+        self.block_depth -= 1
+        self.loop_depth -= is_loop
         return body
 
     def loop_body(self, node: ast.Loop | ast.While) -> ir.Body:
         """Check a body in which no turn surely finds what was read before it."""
-        before, self.definitely_read_mask = self.definitely_read_mask, 0
+        mask_before, self.definitely_read_mask = self.definitely_read_mask, 0
         body = self.nested_body(node.body, True, node.span)
-        self.definitely_read_mask = before
+        self.definitely_read_mask = mask_before
         return body
 
     def if_(self, node: ast.If, output: list[Statement]) -> None:
-        before, chain = self.definitely_read_mask, 0
-        after = -1  # what all arms make surely read
+        mask_before, chain_mask = self.definitely_read_mask, 0
+        mask_after = -1  # what all arms make surely read
         arms: list[ir.Arm] = []
         for arm in node.arms:
-            value = self.types.nothing
+            value = self.types.no_value
             if arm.condition is not None:
                 value = self.condition(arm.condition, "ELSEIF" if arms else "IF")
             reads: tuple[int, ...] = ()
             if arms:
-                reads = self.unread_sensors([value], before | chain)
+                reads = self.unread_sensors([value], mask_before | chain_mask)
                 for sensor in reads:
-                    chain |= 1 << sensor
+                    chain_mask |= 1 << sensor
             else:
-                chain = self.add_readings([value], arm.span, output)
+                chain_mask = self.add_readings([value], arm.span, output)
             body = self.nested_body(arm.body, False, arm.span)
-            after &= self.definitely_read_mask
-            self.definitely_read_mask = before
+            mask_after &= self.definitely_read_mask
+            self.definitely_read_mask = mask_before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
-        else_body = self.nested_body(node.otherwise, False, node.span)
-        self.definitely_read_mask &= after
+        else_body = self.nested_body(node.else_body, False, node.span)
+        self.definitely_read_mask &= mask_after
         output.append(ir.If(tuple(arms), else_body, node.span, node.has_else))
 
     def loop(self, node: ast.Loop, output: list[Statement]) -> None:
-        count = None
+        times = None
         if node.times is not None:
-            value = self.number(node.times, Argument("n", ""), "LOOP")
+            value = self.number_value(node.times, Argument("n", ""), "LOOP")
             self.check_stack_fits([value], node.times.span)
             self.add_readings([value], node.span, output)
-            count = value.terms
+            times = value.terms
         body = self.loop_body(node)
-        output.append(ir.Loop(count, body, node.span))
+        output.append(ir.Loop(times, body, node.span))
 
     def while_(self, node: ast.While, output: list[Statement]) -> None:
-        value = self.types.nothing
+        value = self.types.no_value
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
         body = self.loop_body(node)
@@ -421,28 +433,30 @@ class _Checker(Scope):
         output.append(ir.While(reads, value.terms, body, node.span))
 
     def break_(self, node: ast.Break, output: list[Statement]) -> None:
-        if not self.loops:
-            self.wrong.report_break_outside(node)
+        if not self.loop_depth:
+            self.wrong_calls.report_break_outside(node)
         output.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, output: list[Statement]) -> None:
         known_name = self.names.get(node.name)
         if known_name is not None:
             code = codes.DEF_TWICE if known_name.kind == "def" else codes.NAME_TAKEN
-            other = self.wrong.free_name(node.name, self.procedures)
+            other = self.wrong_calls.free_name(node.name, self.procedures)
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
         outer_scope = self.enter_scope()
-        self.beside_blocks = self.beside_calls = 0
-        self.inside = node.name
+        self.blocks_in_other_tasks = self.calls_in_other_tasks = 0
+        self.current_def = node.name
         values = self.parameters(node) if node.parameters else []
         body = self.body(node.body)
         for number in values:
             if self.names.get(self.variables[number]) == Name("variable", number):
                 del self.names[self.variables[number]]
-        self.inside = None
-        self.facts.append(_Procedure(self.definitely_read_mask, self.deepest, self.calls))
+        self.current_def = None
+        self.def_facts.append(
+            _Procedure(self.definitely_read_mask, self.deepest_block, self.call_depth)
+        )
         self.restore_scope(outer_scope)
         if known_name is None:
             self.names[node.name] = Name("def", len(self.procedures))
@@ -454,68 +468,70 @@ class _Checker(Scope):
         if len(node.parameters) > PARAMETERS:
             self.report(codes.TOO_MANY_PARAMETERS, node.parameters[PARAMETERS].span,
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
-        parameters: list[int] = []
-        for each, kind in zip(node.parameters, self.kinds.kinds_of(node), strict=True):
-            known_name = self.names.get(each.name)
-            is_new_name = known_name is None and each.name not in self.taken_names
-            parameters.append(self.new_variable(each.name, each.span, kind if is_new_name else ANY))
+        variable_numbers: list[int] = []
+        for parameter, kind in zip(node.parameters, self.kinds.kinds_of(node), strict=True):
+            known_name = self.names.get(parameter.name)
+            is_new_name = known_name is None and parameter.name not in self.taken_names
+            variable_numbers.append(
+                self.new_variable(parameter.name, parameter.span, kind if is_new_name else ANY)
+            )
             if known_name is None:  # even if it is taken below: that is said once
-                self.names[each.name] = Name("variable", parameters[-1])
+                self.names[parameter.name] = Name("variable", variable_numbers[-1])
             if is_new_name:
                 continue
             if (
                 known_name is not None
                 and known_name.kind == "variable"
-                and known_name.number in parameters
+                and known_name.number in variable_numbers
             ):
-                self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
+                self.report(codes.PARAMETER_TWICE, parameter.span, name=parameter.name)
             else:
-                other = self.wrong.free_name(each.name, self.procedures)
-                self.report(codes.PARAMETER_TAKEN, each.span, name=each.name, other=other)
-        return parameters
+                other = self.wrong_calls.free_name(parameter.name, self.procedures)
+                self.report(codes.PARAMETER_TAKEN, parameter.span, name=parameter.name, other=other)
+        return variable_numbers
 
     def task(self, node: ast.Task, output: list[Statement]) -> None:
         outer_scope = self.enter_scope()
-        self.beside_blocks += outer_scope.block_depth
-        self.beside_calls += outer_scope.call_depth
+        self.blocks_in_other_tasks += outer_scope.block_depth
+        self.calls_in_other_tasks += outer_scope.call_depth
         until = None
         if node.is_when:
-            nothing = ir.Until((), self.types.nothing.terms)
+            nothing = ir.Until((), self.types.no_value.terms)
             until = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
-        blocks, calls = self.deepest, self.calls
+        blocks, calls = self.deepest_block, self.call_depth
         self.restore_scope(outer_scope)
-        self.beside_blocks += blocks
-        self.beside_calls += calls
+        self.blocks_in_other_tasks += blocks
+        self.calls_in_other_tasks += calls
         self.tasks.append(ir.Task(until, body, node.span))
 
     def check_copies_fit(self, program: ir.Program) -> None:
         """Check that a machine has room for what each task has of its own."""
         from tiniscript.semantics.task_copies import find_excess
 
-        result = find_excess(program)
-        if result is not None:
-            self.wrong.report_too_many_copies(program, result)
+        excess = find_excess(program)
+        if excess is not None:
+            self.wrong_calls.report_too_many_copies(program, excess)
 
     def enter_scope(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
         outer_scope = _Outside(
             self.definitely_read_mask,
-            self.deepest,
-            self.calls,
-            self.beside_blocks,
-            self.beside_calls,
+            self.deepest_block,
+            self.call_depth,
+            self.blocks_in_other_tasks,
+            self.calls_in_other_tasks,
         )
-        self.definitely_read_mask = self.deepest = self.calls = 0
+        self.definitely_read_mask = self.deepest_block = self.call_depth = 0
         return outer_scope
 
     def restore_scope(self, outer_scope: _Outside) -> None:
         (
             self.definitely_read_mask,
-            self.deepest,
-            self.calls,
-            self.beside_blocks,
-            self.beside_calls,
+            self.deepest_block,
+            self.call_depth,
+            self.blocks_in_other_tasks,
+            self.calls_in_other_tasks,
         ) = outer_scope
 
 
@@ -545,8 +561,8 @@ _KINDS_WITH_VALUES = frozenset(("actuator", "def"))
 _BY_NAME_KIND: dict[str, Callable[[_Checker, ast.Command, int, list[Statement]], None]] = {
     "actuator": _Checker.actuator,
     "def": _Checker.call,
-    "sensor": _Checker.reading,
-    "variable": _Checker.variable_alone,
+    "sensor": _Checker.add_reading,
+    "variable": _Checker.report_variable_alone,
 }
 _NODE_CHECKS: dict[type, Callable[..., None]] = {
     ast.Command: _Checker.command,

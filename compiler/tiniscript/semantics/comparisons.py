@@ -32,17 +32,17 @@ class Comparison(NamedTuple):
         return f"{self.device.name} {SIGN_OF[self.op]} {as_text(self.number)}"
 
 
-def comparison(condition: Expression, kit: Kit) -> Comparison | None:
+def comparison_of(condition: Expression, kit: Kit) -> Comparison | None:
     """Return `DISTANCE < 10` for a condition that is just that, whichever side is first."""
     if len(condition) != 3 or condition[2].op not in _MIRRORED:
         return None
-    first, second, sign = condition[0], condition[1], condition[2].op
-    if first.op == "NUMBER":
-        first, second, sign = second, first, _MIRRORED[sign]
-    if first.op not in ("SENSOR", "TIME") or second.op != "NUMBER":
+    left, right, op = condition[0], condition[1], condition[2].op
+    if left.op == "NUMBER":
+        left, right, op = right, left, _MIRRORED[op]
+    if left.op not in ("SENSOR", "TIME") or right.op != "NUMBER":
         return None
-    device = TIME if first.op == "TIME" else kit.readings[first.value]
-    return Comparison(device, sign, second.value)
+    device = TIME if left.op == "TIME" else kit.readings[left.value]
+    return Comparison(device, op, right.value)
 
 
 def is_distance(device: Device) -> bool:
@@ -54,24 +54,24 @@ def looks_ahead(device: Device) -> bool:
 
     Its name says so: `DISTANCE`, `DISTANCE_FRONT`, but not `TRAVEL` or `DISTANCE_BACK`.
     """
-    kind, _, way = device.name.partition("_")
-    return is_distance(device) and kind == "DISTANCE" and not is_aside(way)
+    kind, _, suffix = device.name.partition("_")
+    return is_distance(device) and kind == "DISTANCE" and not is_aside(suffix)
 
 
-def is_aside(way: str) -> bool:
+def is_aside(suffix: str) -> bool:
     """Whether a word is no way ahead: R, LEFT, ATRAS."""
-    words = (way, lexicon_concept(way)) if way else ()
+    words = (suffix, lexicon_concept(suffix)) if suffix else ()
     return not OPPOSITE_MOVES.keys().isdisjoint({*words} - {"F", None})
 
 
-def is_between(device: Device, number: int) -> bool:
+def is_one_of_many(device: Device, number: int) -> bool:
     """Whether a number is one of very many that a sensor may read, and not the last.
 
     A stick that nobody holds reads 0.
     """
-    is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
-    is_rest = number == 0 and device in REMOTE
-    return is_fine and device.low < number < device.high and not is_rest
+    has_many_values = not device.is_yes_no and device.high - device.low >= MANY_VALUES
+    is_at_rest = number == 0 and device in REMOTE
+    return has_many_values and device.low < number < device.high and not is_at_rest
 
 
 def answer_of(comparison: Comparison) -> str:
@@ -102,21 +102,21 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
 
     Nothing, twice, where no two comparisons of a sensor exclude each other or leave nothing out.
     """
-    sign = condition[-1].op if len(condition) == 8 else ""
-    one, other = (comparison(condition[k : k + 3], kit) for k in (0, 4))
-    if sign not in ("AND", "OR") or not one or not other or one.device is not other.device:
+    op = condition[-1].op if len(condition) == 8 else ""
+    first, second = (comparison_of(condition[k : k + 3], kit) for k in (0, 4))
+    if op not in ("AND", "OR") or not first or not second or first.device is not second.device:
         return "", ""
-    below, above = (one, other) if one.op in _LESS else (other, one)
+    below, above = (first, second) if first.op in _LESS else (second, first)
     if below.op not in _LESS or above.op not in _MORE:
         return "", ""
     is_exact = below.op == "LE" and above.op == "GE"
-    if sign == "AND":
+    if op == "AND":
         is_constant = below.number < above.number or (below.number == above.number and not is_exact)
-        return ("answer_no", f"{one} OR {other}") if is_constant else ("", "")
+        return ("answer_no", f"{first} OR {second}") if is_constant else ("", "")
     is_constant = above.number < below.number or (
         above.number == below.number and "E" in below.op + above.op
     )
-    return ("answer_yes", f"{one} AND {other}") if is_constant else ("", "")
+    return ("answer_yes", f"{first} AND {second}") if is_constant else ("", "")
 
 
 def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
@@ -125,38 +125,41 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
     It is none where a distance changes the other way, where it asks for exactly one of very many
     numbers, and where its answer is always the same.
     """
-    left = sum(term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition)
+    distances_left = sum(
+        term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition
+    )
     is_sure = all(term.op != "NOT" for term in condition)
-    for part in comparisons_in(condition, kit):
-        if answer_of(part) or (part.op == "EQ" and is_between(*part[::2])):
+    for compared in comparisons_in(condition, kit):
+        if answer_of(compared) or (compared.op == "EQ" and is_one_of_many(*compared[::2])):
             return False
-        if is_distance(part.device):
-            left -= looks_ahead(part.device)
-            if is_sure and looks_ahead(part.device):
-                if part.op not in _OUTCOMES_BY_MOVE.get(direction, (part.op,)):
+        if is_distance(compared.device):
+            distances_left -= looks_ahead(compared.device)
+            if is_sure and looks_ahead(compared.device):
+                if compared.op not in _OUTCOMES_BY_MOVE.get(direction, (compared.op,)):
                     return False
-    return True if is_sure and (not left or direction not in _OUTCOMES_BY_MOVE) else None
+    return True if is_sure and (not distances_left or direction not in _OUTCOMES_BY_MOVE) else None
 
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Whether a part of a condition is `DISTANCE < 20`, of a sensor that looks ahead."""
     return any(
-        looks_ahead(part.device) and part.op in _LESS for part in comparisons_in(condition, kit)
+        looks_ahead(compared.device) and compared.op in _LESS
+        for compared in comparisons_in(condition, kit)
     )
 
 
 def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
     """Yield the comparisons within a condition; a variable is taken for a number amid the range."""
     for k in range(len(condition) - 2):
-        part = condition[k : k + 3]
-        middle = next(((device.low + device.high) // 2 for device in _devices(part, kit)), 0)
-        likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in part)
-        compared = comparison(likely, kit)
+        terms = condition[k : k + 3]
+        middle = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
+        likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms)
+        compared = comparison_of(likely, kit)
         if compared is not None:
             yield compared
 
 
-def _devices(part: Expression, kit: Kit) -> Iterator[Device]:
-    for term in part:
+def _devices(terms: Expression, kit: Kit) -> Iterator[Device]:
+    for term in terms:
         if term.op in ("SENSOR", "TIME"):
             yield TIME if term.op == "TIME" else kit.readings[term.value]

@@ -24,22 +24,24 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     power = source[move.arguments[1].span]
     if not power.isdecimal():
         return {}
-    after = _instructions_after(program.body, move)
-    first, second = (*after[:2], None, None)[:2]
+    following = _instructions_after(program.body, move)
+    first, second = (*following[:2], None, None)[:2]
     if isinstance(first, ast.Command) and first.word == "W" and _is_stop(second):
         time = source[first.arguments[0].span] if first.arguments else ""
         until_text = f" UNTIL({source[first.until.span]})" if first.until else ""
         if time and (until_text or time.upper() != "FOREVER"):
-            instructions_text = "; ".join(source[it.span] for it in (move, *after[:2]))
+            instructions_text = "; ".join(source[node.span] for node in (move, *following[:2]))
             return {
                 "used": instructions_text,
                 "fix": "",
                 "whole": f"{move.word}({time}, {power}){until_text}",
             }
-    for item in after:
-        if _is_stop(item):
+    for instruction in following:
+        if _is_stop(instruction):
             return {"used": source[move.span], "running": _MOTORS[move.word].format(power)}
-        if not isinstance(item, (ast.Command, ast.Assign, ast.Loop)) or _ends_a_move(item):
+        if not isinstance(instruction, (ast.Command, ast.Assign, ast.Loop)) or _ends_a_move(
+            instruction
+        ):
             break
     return {}
 
@@ -48,17 +50,19 @@ def _instructions_after(body: Body, node: ast.Command) -> Body:
     """Return what comes after an instruction in its own block."""
     start = node.span.start
     while body:
-        k = bisect_right(body, start, key=lambda it: it.span.start) - 1
+        k = bisect_right(body, start, key=lambda instruction: instruction.span.start) - 1
         if k < 0 or body[k].span.start == start:
             return body[k + 1 :]
-        inside = [inner for inner in _bodies(body[k]) if inner and inner[0].span.start <= start]
-        body = inside[-1] if inside else ()
+        inner_bodies = [
+            inner for inner in _bodies(body[k]) if inner and inner[0].span.start <= start
+        ]
+        body = inner_bodies[-1] if inner_bodies else ()
     return ()
 
 
 def _bodies(node: ast.Instruction) -> list[Body]:
     if isinstance(node, ast.If):
-        return [*(arm.body for arm in node.arms), node.otherwise]
+        return [*(arm.body for arm in node.arms), node.else_body]
     return [node.body] if isinstance(node, (ast.Loop, ast.While, ast.Def, ast.Task)) else []
 
 

@@ -12,7 +12,7 @@ from tiniscript.base.fixed_point import Fault, whole
 from tiniscript.base.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import known_value
-from tiniscript.semantics.ways import way_ms
+from tiniscript.semantics.ways import extent_move_ms
 
 
 class Duration(NamedTuple):
@@ -30,23 +30,25 @@ _NONE = Duration(0, 0)
 _UNKNOWN = Duration(0, None)
 
 
-def duration(program: ir.Program, kit: Kit) -> Duration:
+def duration_of_program(program: ir.Program, kit: Kit) -> Duration:
     """Return how long `program`, best an optimised one, runs.
 
     Of several tasks it is known how long they run where no more than one moves: a move waits for
     the motors, and S ends one.
     """
-    result = _Durations(program, kit)
+    calculator = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
-    durations = [result.duration_of(body) for body in bodies]
-    least_ms = max(one.least_ms for one in durations)
+    durations = [calculator.duration_of(body) for body in bodies]
+    least_ms = max(body_duration.least_ms for body_duration in durations)
     if any(task.until is not None for task in program.tasks):
         return Duration(least_ms, None, True)
-    if sum(result.drives(body) for body in bodies) > 1:
+    if sum(calculator.drives(body) for body in bodies) > 1:
         return Duration(0, None)
-    bounds = [one.most_ms for one in durations if one.most_ms is not None]
+    bounds = [
+        body_duration.most_ms for body_duration in durations if body_duration.most_ms is not None
+    ]
     most_ms = max(bounds) if len(bounds) == len(durations) else None
-    return Duration(least_ms, most_ms, any(one.never_ends for one in durations))
+    return Duration(least_ms, most_ms, any(body_duration.never_ends for body_duration in durations))
 
 
 class _Durations:
@@ -55,10 +57,10 @@ class _Durations:
     def __init__(self, program: ir.Program, kit: Kit) -> None:
         self.kit = kit
         self.turn_ms = 1 if program.tasks else 0  # what a turn of a loop takes that has no wait
-        self.known: list[Duration] = []
+        self.def_durations: list[Duration] = []
         self.procedures = program.procedures
         for procedure in program.procedures:
-            self.known.append(self.duration_of(procedure.body))
+            self.def_durations.append(self.duration_of(procedure.body))
 
     def drives(self, body: ir.Body) -> bool:
         """Whether a body has a move or an S, or calls something that has one."""
@@ -70,26 +72,28 @@ class _Durations:
     def duration_of(self, body: ir.Body) -> Duration:
         least_ms, most_ms = 0, 0
         for statement in body:
-            part = self.statement(statement)
-            least_ms += part.least_ms
-            if part.never_ends:
+            statement_duration = self.duration_of_statement(statement)
+            least_ms += statement_duration.least_ms
+            if statement_duration.never_ends:
                 return Duration(least_ms, None, True)
-            if part.most_ms is None:
+            if statement_duration.most_ms is None:
                 most_ms = -1
             elif most_ms >= 0:
-                most_ms += part.most_ms
+                most_ms += statement_duration.most_ms
         return Duration(least_ms, None if most_ms < 0 else most_ms)
 
-    def statement(self, statement: ir.Statement) -> Duration:
+    def duration_of_statement(self, statement: ir.Statement) -> Duration:
         if isinstance(statement, ir.Move):
             if statement.time is None and statement.until is None:
                 return Duration(0, None, True)
-            longest = self.way(statement) if statement.unit else _time(statement.time)
-            return longest if statement.until is None else Duration(0, longest.most_ms)
+            move_duration = (
+                self.duration_of_extent(statement) if statement.unit else _time(statement.time)
+            )
+            return move_duration if statement.until is None else Duration(0, move_duration.most_ms)
         if isinstance(statement, ir.Beep):
             return _time(statement.time)
         if isinstance(statement, ir.Call):
-            return self.known[statement.procedure]
+            return self.def_durations[statement.procedure]
         if isinstance(statement, ir.If):
             arms = [self.duration_of(body) for body in ir.bodies(statement)]
             bounds = [arm.most_ms for arm in arms if arm.most_ms is not None]
@@ -97,31 +101,31 @@ class _Durations:
             never_ends = all(arm.never_ends for arm in arms)
             return Duration(min(arm.least_ms for arm in arms), most_ms, never_ends)
         if isinstance(statement, (ir.Loop, ir.While)):
-            return self.loop(statement)
+            return self.duration_of_loop(statement)
         return _NONE
 
-    def way(self, move: ir.Move) -> Duration:
+    def duration_of_extent(self, move: ir.Move) -> Duration:
         """How long a move takes by its way; one that faults ends the program."""
         try:
-            time_ms = way_ms(move, self.kit)
+            time_ms = extent_move_ms(move, self.kit)
         except Fault:
             time_ms = None
         return _UNKNOWN if time_ms is None else Duration(time_ms, time_ms)
 
-    def loop(self, loop: ir.Loop | ir.While) -> Duration:
-        body = self.duration_of(loop.body)
+    def duration_of_loop(self, loop: ir.Loop | ir.While) -> Duration:
+        body_duration = self.duration_of(loop.body)
         if isinstance(loop, ir.Loop) and loop.times is None:
             return _UNKNOWN if ir.breaks_out(loop.body) else Duration(0, None, True)
-        count = known_value(loop.times) if isinstance(loop, ir.Loop) else None
-        if body.least_ms == 0 and body.most_ms is not None:
-            body = body._replace(most_ms=body.most_ms + self.turn_ms)
-        if count is None:
-            return _UNKNOWN if isinstance(loop, ir.While) or body.most_ms != 0 else _NONE
-        times = max(whole(count), 0)
-        if body.never_ends and times and not ir.breaks_out(loop.body):
-            return Duration(body.least_ms, None, True)
-        most_ms = None if body.most_ms is None else times * body.most_ms
-        return Duration(0 if ir.breaks_out(loop.body) else times * body.least_ms, most_ms)
+        times_value = known_value(loop.times) if isinstance(loop, ir.Loop) else None
+        if body_duration.least_ms == 0 and body_duration.most_ms is not None:
+            body_duration = body_duration._replace(most_ms=body_duration.most_ms + self.turn_ms)
+        if times_value is None:
+            return _UNKNOWN if isinstance(loop, ir.While) or body_duration.most_ms != 0 else _NONE
+        times = max(whole(times_value), 0)
+        if body_duration.never_ends and times and not ir.breaks_out(loop.body):
+            return Duration(body_duration.least_ms, None, True)
+        most_ms = None if body_duration.most_ms is None else times * body_duration.most_ms
+        return Duration(0 if ir.breaks_out(loop.body) else times * body_duration.least_ms, most_ms)
 
 
 def _time(time: ir.Expression | None) -> Duration:

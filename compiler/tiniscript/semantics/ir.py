@@ -96,7 +96,7 @@ class If(NamedTuple):
     """`has_else`: the text has an ELSE, perhaps with nothing after it."""
 
     arms: tuple[Arm, ...]
-    otherwise: "tuple[Statement, ...]"
+    else_body: "tuple[Statement, ...]"
     span: Span
     has_else: bool = False
 
@@ -173,7 +173,7 @@ class Program(NamedTuple):
 def bodies(statement: Statement) -> tuple[Body, ...]:
     """Return the blocks that a statement holds."""
     if isinstance(statement, If):
-        return (*(arm.body for arm in statement.arms), statement.otherwise)
+        return (*(arm.body for arm in statement.arms), statement.else_body)
     if isinstance(statement, (Loop, While)):
         return (statement.body,)
     return ()
@@ -205,7 +205,7 @@ def all_statements(program: Program) -> Iterator[Statement]:
         yield from walk(body)
 
 
-def first_way(program: Program) -> Span | None:
+def first_extent_move(program: Program) -> Span | None:
     """Return where the first move is that goes by centimetres or degrees."""
     moves = (move for move in all_statements(program) if isinstance(move, Move) and move.unit)
     return min((move.span for move in moves), default=None)
@@ -222,24 +222,24 @@ _YES_NO_OPS = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "
 
 def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
     """Return for each variable of a program whether it is a yes/no."""
-    result = [False] * len(program.variables)
+    are_yes_no = [False] * len(program.variables)
     copies: list[Assign] = []  # the value is another variable
     for statement in all_statements(program):
         if not isinstance(statement, Assign):
             continue
-        last = statement.value[-1]
-        if last.op == "VARIABLE":
+        last_term = statement.value[-1]
+        if last_term.op == "VARIABLE":
             copies.append(statement)
-        elif last.op == "SENSOR":
-            result[statement.variable] = kit.readings[last.value].is_yes_no
+        elif last_term.op == "SENSOR":
+            are_yes_no[statement.variable] = kit.readings[last_term.value].is_yes_no
         else:
-            result[statement.variable] = last.op in _YES_NO_OPS
+            are_yes_no[statement.variable] = last_term.op in _YES_NO_OPS
     known_count = -1
-    while known_count < sum(result):  # a DEF may copy a variable that is set below it
-        known_count = sum(result)
+    while known_count < sum(are_yes_no):  # a DEF may copy a variable that is set below it
+        known_count = sum(are_yes_no)
         for copy in copies:
-            result[copy.variable] |= result[copy.value[-1].value]
-    return result
+            are_yes_no[copy.variable] |= are_yes_no[copy.value[-1].value]
+    return are_yes_no
 
 
 # The fields of statements that are expressions: whoever adds a statement names them so.

@@ -17,7 +17,7 @@ _END = re.compile(r"(?i)\bEND_?IF\Z")
 _MOST_CHARACTERS = 180  # characters that a message can show
 
 
-class LeftOut(NamedTuple):
+class RewrittenIf(NamedTuple):
     """The IF with the rest in its other branch: in one line, and as edits of the text."""
 
     text: str
@@ -26,44 +26,52 @@ class LeftOut(NamedTuple):
 
 def rewrite_without_break(
     source: Source, parsed_program: ast.Program, break_node: ast.Break
-) -> LeftOut | None:
+) -> RewrittenIf | None:
     """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
     """
     bodies = [
         parsed_program.body,
-        *(item.body for item in parsed_program.body if isinstance(item, (ast.Def, ast.Task))),
+        *(node.body for node in parsed_program.body if isinstance(node, (ast.Def, ast.Task))),
     ]
     for body in bodies:
         for k, statement in enumerate(body):
-            rest = [item for item in body[k + 1 :] if not isinstance(item, (ast.Def, ast.Task))]
-            if isinstance(statement, ast.If) and len(statement.arms) == 1 and rest:
-                if len(rest) != len(body) - k - 1:
+            later_instructions = [
+                node for node in body[k + 1 :] if not isinstance(node, (ast.Def, ast.Task))
+            ]
+            if isinstance(statement, ast.If) and len(statement.arms) == 1 and later_instructions:
+                if len(later_instructions) != len(body) - k - 1:
                     continue  # a DEF among them goes into no block
-                if left_out := _rewrite_if(source, statement, rest, break_node):
-                    return left_out
+                if rewritten_if := _rewrite_if(source, statement, later_instructions, break_node):
+                    return rewritten_if
     return None
 
 
 def _rewrite_if(
-    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], break_node: ast.Break
-) -> LeftOut | None:
-    whole_span = Span(if_node.span.start, rest[-1].span.end)
+    source: Source,
+    if_node: ast.If,
+    later_instructions: Sequence[ast.Instruction],
+    break_node: ast.Break,
+) -> RewrittenIf | None:
+    whole_span = Span(if_node.span.start, later_instructions[-1].span.end)
     arm = if_node.arms[0]
-    branches = [[*arm.body], [*if_node.otherwise]]
+    branches = [[*arm.body], [*if_node.else_body]]
     last_instructions = [branch[-1] if branch else None for branch in branches]
     if break_node not in last_instructions or arm.condition is None:
         return None
     ended_branch = last_instructions.index(break_node)
     branch_texts = [
-        [source[each.span] for each in branch if each is not break_node] for branch in branches
+        [source[instruction.span] for instruction in branch if instruction is not break_node]
+        for branch in branches
     ]
-    branch_texts[1 - ended_branch] += [source[each.span] for each in rest]
+    branch_texts[1 - ended_branch] += [
+        source[instruction.span] for instruction in later_instructions
+    ]
     branch_texts[0] = branch_texts[0] or ["S"]  # it stands still there
-    head = f"IF({source[arm.condition.span]})"
+    header = f"IF({source[arm.condition.span]})"
     parts = [
-        head,
+        header,
         *branch_texts[0],
         *(["ELSE", *branch_texts[1]] if branch_texts[1] else []),
         "ENDIF",
@@ -72,29 +80,29 @@ def _rewrite_if(
     if len(text) > _MOST_CHARACTERS or any("\n" in part or "//" in part for part in parts):
         return None
     if "//" in source[whole_span]:
-        return _with_notes(source, if_node, rest, break_node, text)
+        return _with_notes(source, if_node, later_instructions, break_node, text)
     separator = "\n" if "\n" in source[whole_span] else "; " if "; " in source[whole_span] else ";"
-    return LeftOut(text, (Edit(whole_span, separator.join(parts)),))
+    return RewrittenIf(text, (Edit(whole_span, separator.join(parts)),))
 
 
 def _with_notes(
     source: Source,
     if_node: ast.If,
-    rest: Sequence[ast.Instruction],
+    later_instructions: Sequence[ast.Instruction],
     break_node: ast.Break,
     text: str,
-) -> LeftOut | None:
+) -> RewrittenIf | None:
     """Return the same where lines have notes: each stays where it is, and ENDIF comes last."""
-    body, else_body = if_node.arms[0].body, if_node.otherwise
-    end = _END.search(source[if_node.span])
-    if break_node is not body[-1] or else_body or end is None:
+    body, else_body = if_node.arms[0].body, if_node.else_body
+    end_match = _END.search(source[if_node.span])
+    if break_node is not body[-1] or else_body or end_match is None:
         return None
     start = if_node.span.start
-    last = source.text.find("\n", rest[-1].span.end)
-    last = last if last >= 0 else len(source.text)
+    line_end = source.text.find("\n", later_instructions[-1].span.end)
+    line_end = line_end if line_end >= 0 else len(source.text)
     edits = (
         Edit(break_node.span, "S" if len(body) == 1 else ""),
-        Edit(Span(start + end.start(), start + end.end()), "ELSE"),
-        Edit(Span(last, last), "\nENDIF"),
+        Edit(Span(start + end_match.start(), start + end_match.end()), "ELSE"),
+        Edit(Span(line_end, line_end), "\nENDIF"),
     )
-    return LeftOut(text, edits)
+    return RewrittenIf(text, edits)

@@ -43,9 +43,9 @@ def optimize_program(program: ir.Program) -> ir.Program:
         procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
     ]
     statements_left = ir.walk_with_calls(sum((task.body for task in tasks), body), procedures)
-    called = {call.procedure for call in statements_left if isinstance(call, ir.Call)}
+    called_numbers = {call.procedure for call in statements_left if isinstance(call, ir.Call)}
     procedures_left = tuple(
-        procedure._replace(is_called=k in called) for k, procedure in enumerate(procedures)
+        procedure._replace(is_called=k in called_numbers) for k, procedure in enumerate(procedures)
     )
     return program._replace(procedures=procedures_left, tasks=tasks, body=body)
 
@@ -142,12 +142,12 @@ def _calculate(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> lis
 
 def _simplify(op: str, left: _Operand, right: _Operand) -> _Operand:
     """Return `left op right`, without the side that a constant makes needless."""
-    decides = 0 if op == "AND" else 1
+    deciding_value = 0 if op == "AND" else 1
     (terms, left_safe), (right_terms, right_safe) = left, right
     if _is_constant(terms):
-        return left if terms[0].value == decides else right
+        return left if terms[0].value == deciding_value else right
     if _is_constant(right_terms):
-        if right_terms[0].value != decides:
+        if right_terms[0].value != deciding_value:
             return left
         if left_safe:
             return right
@@ -190,7 +190,7 @@ def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
 
 def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
     arms: list[ir.Arm] = []
-    else_body = _body(statement.otherwise)
+    else_body = _body(statement.else_body)
     for arm in statement.arms:
         condition = fold(arm.condition)
         value = constant(condition)
@@ -208,8 +208,8 @@ def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
         return else_body
     if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
         reads = tuple(ir.Read(sensor, arms[0].span) for sensor in arms[0].reads)
-        rest = ir.If((arms[0]._replace(reads=()), *arms[1:]), else_body, statement.span)
-        return (*reads, *_optimize_if(rest))
+        rest_of_if = ir.If((arms[0]._replace(reads=()), *arms[1:]), else_body, statement.span)
+        return (*reads, *_optimize_if(rest_of_if))
     if not else_body and not any(arm.body or arm.reads for arm in arms):
         if all(is_safe(arm.condition) for arm in arms):
             return ()

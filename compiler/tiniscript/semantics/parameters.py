@@ -13,66 +13,73 @@ from tiniscript.semantics.symbols import NUMBER, YES_NO, YES_NO_OPS
 from tiniscript.syntax import ast
 
 
-class _Place(NamedTuple):
+class _ScopedExpression(NamedTuple):
     """An expression, and the DEF around it, where there is one."""
 
     expression: ast.Expression
     enclosing_def: ast.Def | None
 
 
-class Kinds:
+class ParameterKinds:
     """The kinds of the values of all DEFs of a program."""
 
     def __init__(self, parsed_program: ast.Program, yes_no_sensors: frozenset[str]) -> None:
         self._sensors = yes_no_sensors
-        self._calls: dict[str, tuple[ast.Command, ast.Def | None]] = {}  # the first of each name
-        self._set: dict[str, _Place] = {}  # what each variable gets first
-        defs = (each for each in parsed_program.body if isinstance(each, ast.Def))
-        names = {each.name: [item.name for item in each.parameters] for each in defs}
+        self._first_calls: dict[
+            str, tuple[ast.Command, ast.Def | None]
+        ] = {}  # the first of each name
+        self._first_values: dict[str, _ScopedExpression] = {}  # what each variable gets first
+        defs = (node for node in parsed_program.body if isinstance(node, ast.Def))
+        names = {node.name: [parameter.name for parameter in node.parameters] for node in defs}
         for node, enclosing_def in _instructions(parsed_program.body, None):
             if isinstance(node, ast.Command):
-                if not names_one(node, names.get(node.word, ())):  # which is told of
-                    self._calls.setdefault(node.word, (node, enclosing_def))
+                if not names_a_value(node, names.get(node.word, ())):  # which is told of
+                    self._first_calls.setdefault(node.word, (node, enclosing_def))
             elif node.value is not None and _parameter(node.name, enclosing_def) is None:
-                self._set.setdefault(node.name, _Place(node.value.expression, enclosing_def))
+                self._first_values.setdefault(
+                    node.name, _ScopedExpression(node.value.expression, enclosing_def)
+                )
 
     def kinds_of(self, node: ast.Def) -> list[str]:
         """Return NUMBER or YES_NO for each value of a DEF."""
-        return [self._kind_of(self._parameter_place(node, k)) for k in range(len(node.parameters))]
+        return [self._kind_of(self._first_argument(node, k)) for k in range(len(node.parameters))]
 
-    def _kind_of(self, place: _Place | None) -> str:
+    def _kind_of(self, scoped: _ScopedExpression | None) -> str:
         """Follow a name to what it gets its kind from; in a circle it is a number."""
         names_followed: set[tuple[str, str]] = set()
-        while place is not None:
-            last, enclosing_def = place.expression[-1], place.enclosing_def
-            if last.op != "NAME":
-                return YES_NO if last.op in YES_NO_OPS else NUMBER
-            name = str(last.value)
+        while scoped is not None:
+            last_part, enclosing_def = scoped.expression[-1], scoped.enclosing_def
+            if last_part.op != "NAME":
+                return YES_NO if last_part.op in YES_NO_OPS else NUMBER
+            name = str(last_part.value)
             k = _parameter(name, enclosing_def)
             key = (name, "" if enclosing_def is None or k is None else enclosing_def.name)
             if key in names_followed:
                 break
             names_followed.add(key)
             if enclosing_def is not None and k is not None:
-                place = self._parameter_place(enclosing_def, k)
+                scoped = self._first_argument(enclosing_def, k)
             elif name in self._sensors:
                 return YES_NO
             else:
-                place = self._set.get(name)
+                scoped = self._first_values.get(name)
         return NUMBER
 
-    def _parameter_place(self, node: ast.Def, k: int) -> _Place | None:
+    def _first_argument(self, node: ast.Def, k: int) -> _ScopedExpression | None:
         """Return what the first call gives to a value of a DEF."""
-        call, around = self._calls.get(node.name, (None, None))
+        call, calling_def = self._first_calls.get(node.name, (None, None))
         arguments = () if call is None else call.arguments or ()
-        return _Place(arguments[k].expression, around) if k < len(arguments) else None
+        return (
+            _ScopedExpression(arguments[k].expression, calling_def) if k < len(arguments) else None
+        )
 
 
-def names_one(call: ast.Command, names: Sequence[str]) -> bool:
+def names_a_value(call: ast.Command, names: Sequence[str]) -> bool:
     """Whether a call names a value of its DEF: `SIDE(size=20)`."""
-    asked = (argument.expression for argument in call.arguments or ())
+    expressions = (argument.expression for argument in call.arguments or ())
     return any(
-        item[0].op == "NAME" and item[0].value in names and item[-1].op == "EQ" for item in asked
+        expression[0].op == "NAME" and expression[0].value in names and expression[-1].op == "EQ"
+        for expression in expressions
     )
 
 
@@ -93,7 +100,7 @@ def _instructions(
         elif isinstance(node, ast.If):
             for arm in node.arms:
                 yield from _instructions(arm.body, enclosing_def)
-            yield from _instructions(node.otherwise, enclosing_def)
+            yield from _instructions(node.else_body, enclosing_def)
         elif isinstance(node, ast.Def):
             yield from _instructions(node.body, node)
         elif not isinstance(node, ast.Break):

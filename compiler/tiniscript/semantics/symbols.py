@@ -49,30 +49,35 @@ class Scope:
         )
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
-        self._first = {
+        self._first_assignments = {
             assignment.name: assignment
             for assignment in reversed(_assignments(parsed_program.body))
         }
-        self.set_somewhere = self._first.keys()
-        self.parsed = parsed_program
-        self.def_names = {item.name for item in parsed_program.body if isinstance(item, ast.Def)}
-        self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
+        self.assigned_names = self._first_assignments.keys()
+        self.parsed_program = parsed_program
+        self.def_names = {node.name for node in parsed_program.body if isinstance(node, ast.Def)}
+        self.unset_names_of_def: dict[
+            str, list[str]
+        ] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def report_used(self, name: str, use_span: Span, suggestion: str) -> None:
+    def report_used_before_set(self, name: str, use_span: Span, suggestion: str) -> None:
         """Say that `name` is used before it has a value, and how it gets one first."""
         hints = self._line_to_move_up(name, use_span)
-        body = self.parsed.body
-        enclosing = next((item for item in body if item.span.end > use_span.start), body[0])
-        row = self.source.position(enclosing.span.start)[0]
-        if hints["line"] and row < self.source.position(use_span.start)[0]:
-            hints = {**hints, "row": str(row)}  # inside a block it would be done again and again
-        begin = (enclosing if hints["line"] else body[0]).span.start
+        body = self.parsed_program.body
+        enclosing = next((node for node in body if node.span.end > use_span.start), body[0])
+        line_number = self.source.position(enclosing.span.start)[0]
+        if hints["line"] and line_number < self.source.position(use_span.start)[0]:
+            hints = {
+                **hints,
+                "row": str(line_number),
+            }  # inside a block it would be done again and again
+        insert_offset = (enclosing if hints["line"] else body[0]).span.start
         value = hints["first"] or hints["before"] or f"{name} = {hints['zero']}"
-        between = "\n" if "\n" in self.source.text else "; "
-        edits = [Edit(Span(begin, begin), value + between)]
+        separator = "\n" if "\n" in self.source.text else "; "
+        edits = [Edit(Span(insert_offset, insert_offset), value + separator)]
         if hints["line"]:
             edits.append(Edit(self.source.line_span(int(hints["line"])), ""))
         values = {"name": name, "near": suggestion, **hints}
@@ -82,7 +87,7 @@ class Scope:
     def _line_to_move_up(self, name: str, use_span: Span) -> dict[str, str]:
         """Return the number and the text of the later line that only gives `name` a number."""
         use_line = self.source.position(use_span.start)[0]
-        for node in self.parsed.body:
+        for node in self.parsed_program.body:
             if isinstance(node, ast.Assign) and node.name == name and node.value is not None:
                 line = self.source.position(node.span.start)[0]
                 text = self.source.line_text(line).strip()
@@ -95,17 +100,17 @@ class Scope:
 
     def _first_number(self, name: str) -> str:
         """Return `V = 80`, what gives `name` its first value, where that is a plain number."""
-        node = self._first.get(name)
+        node = self._first_assignments.get(name)
         return self.source[node.span] if node and node.value and node.value.is_plain else ""
 
     def _is_yes_no(self, name: str) -> bool:
         """Whether the first value that the text gives to `name` looks like a yes or no."""
-        node = self._first.get(name)
+        node = self._first_assignments.get(name)
         if node is None or node.value is None or not node.value.expression:
             return False
-        last = node.value.expression[-1]
-        is_sensor = last.op == "NAME" and last.value in self.yes_no_sensors
-        return last.op in YES_NO_OPS or is_sensor
+        last_part = node.value.expression[-1]
+        is_sensor = last_part.op == "NAME" and last_part.value in self.yes_no_sensors
+        return last_part.op in YES_NO_OPS or is_sensor
 
     def is_yes_no_sensor(self, name: str) -> bool:
         return name in self.yes_no_sensors
@@ -131,7 +136,7 @@ def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
         elif isinstance(node, ast.If):
             for arm in node.arms:
                 assignments += _assignments(arm.body)
-            assignments += _assignments(node.otherwise)
+            assignments += _assignments(node.else_body)
         elif isinstance(node, ast.Def):
             parameter_names = {parameter.name for parameter in node.parameters}
             assignments += (

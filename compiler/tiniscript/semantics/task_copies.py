@@ -17,40 +17,42 @@ from tiniscript.semantics import ir
 def copy_defs_per_task(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
     reachable_defs = _reachable_defs(program)
-    owns = _owns_values(program)
+    has_own_values = _owns_values(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
-    maps = [_Numbers({}, {}) for _ in reachable_defs]
+    numbers_by_task = [_Numbers({}, {}) for _ in reachable_defs]
     for k, procedure in enumerate(program.procedures):
         tasks_reaching = [
             task for task, defs_reached in enumerate(reachable_defs) if k in defs_reached
         ]
-        if not owns[k] or len(tasks_reaching) < 2:
-            for numbers in maps:
+        if not has_own_values[k] or len(tasks_reaching) < 2:
+            for numbers in numbers_by_task:
                 numbers.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
             procedures.append(
-                _copy_procedure(procedure, maps[tasks_reaching[0] if tasks_reaching else 0])
+                _copy_procedure(
+                    procedure, numbers_by_task[tasks_reaching[0] if tasks_reaching else 0]
+                )
             )
             continue
         for task in tasks_reaching:
-            numbers = maps[task]
+            numbers = numbers_by_task[task]
             if task != tasks_reaching[0]:
                 for variable in procedure.values:
                     numbers.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
             numbers.calls[k] = len(procedures)
             procedures.append(_copy_procedure(procedure, numbers))
-        for numbers in maps:  # of a DEF that nobody calls: it calls the first copy
-            numbers.calls.setdefault(k, maps[tasks_reaching[0]].calls[k])
-    main, *others = maps
+        for numbers in numbers_by_task:  # of a DEF that nobody calls: it calls the first copy
+            numbers.calls.setdefault(k, numbers_by_task[tasks_reaching[0]].calls[k])
+    main_numbers, *other_numbers = numbers_by_task
     tasks = tuple(
         task._replace(body=_body(task.body, numbers))
-        for task, numbers in zip(program.tasks, others, strict=True)
+        for task, numbers in zip(program.tasks, other_numbers, strict=True)
     )
     return program._replace(
         variables=tuple(variables), procedures=tuple(procedures),
-        body=_body(program.body, main), tasks=tasks,
+        body=_body(program.body, main_numbers), tasks=tasks,
     )  # fmt: skip
 
 
@@ -66,13 +68,13 @@ class Excess(NamedTuple):
 
 def find_excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, reachable_defs = _owns_values(program), _reachable_defs(program)
+    has_own_values, reachable_defs = _owns_values(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
     for k, procedure in enumerate(program.procedures):
         tasks_reaching = tuple(
             task for task, defs_reached in enumerate(reachable_defs) if k in defs_reached
         )
-        if owns[k] and len(tasks_reaching) > 1:
+        if has_own_values[k] and len(tasks_reaching) > 1:
             variables += (len(tasks_reaching) - 1) * len(procedure.values)
             defs += len(tasks_reaching) - 1
             if variables > VARIABLES:
@@ -84,8 +86,11 @@ def find_excess(program: ir.Program) -> Excess | None:
 
 def count_tasks_by_def(program: ir.Program) -> list[int]:
     """Return how many tasks reach each DEF."""
-    reached = _reachable_defs(program)
-    return [sum(k in item for item in reached) for k in range(len(program.procedures))]
+    reachable_defs = _reachable_defs(program)
+    return [
+        sum(k in defs_reached for defs_reached in reachable_defs)
+        for k in range(len(program.procedures))
+    ]
 
 
 class _Numbers(NamedTuple):
@@ -97,22 +102,22 @@ class _Numbers(NamedTuple):
 
 def _reachable_defs(program: ir.Program) -> list[set[int]]:
     """Return the DEFs that each task reaches, the main task first."""
-    result = []
+    defs_by_task = []
     for body in (program.body, *(task.body for task in program.tasks)):
-        called: set[int] = set()
-        for _ in ir.walk_with_calls(body, program.procedures, called):
+        defs_reached: set[int] = set()
+        for _ in ir.walk_with_calls(body, program.procedures, defs_reached):
             pass
-        result.append(called)
-    return result
+        defs_by_task.append(defs_reached)
+    return defs_by_task
 
 
 def _owns_values(program: ir.Program) -> list[bool]:
     """Return for each DEF whether it has values, or calls one that has."""
-    result: list[bool] = []
+    has_own_values: list[bool] = []
     for procedure in program.procedures:
         calls = [call.procedure for call in ir.walk(procedure.body) if isinstance(call, ir.Call)]
-        result.append(bool(procedure.values) or any(result[k] for k in calls))
-    return result
+        has_own_values.append(bool(procedure.values) or any(has_own_values[k] for k in calls))
+    return has_own_values
 
 
 def _copy_procedure(procedure: ir.Procedure, numbers: _Numbers) -> ir.Procedure:
@@ -125,29 +130,29 @@ def _body(body: ir.Body, numbers: _Numbers) -> ir.Body:
 
 
 def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
-    new: dict[str, Any] = {
+    new_fields: dict[str, Any] = {
         name: _expression(value, numbers.variables)
         for name, value in ir.values_of(statement).items()
     }
     if isinstance(statement, ir.Call):
-        new["procedure"] = numbers.calls[statement.procedure]
+        new_fields["procedure"] = numbers.calls[statement.procedure]
     elif isinstance(statement, ir.Assign):
-        new["variable"] = numbers.variables.get(statement.variable, statement.variable)
+        new_fields["variable"] = numbers.variables.get(statement.variable, statement.variable)
     elif isinstance(statement, ir.If):
-        new["arms"] = tuple(
+        new_fields["arms"] = tuple(
             arm._replace(
                 condition=_expression(arm.condition, numbers.variables),
                 body=_body(arm.body, numbers),
             )
             for arm in statement.arms
         )
-        new["otherwise"] = _body(statement.otherwise, numbers)
+        new_fields["else_body"] = _body(statement.else_body, numbers)
     elif isinstance(statement, (ir.Loop, ir.While)):
-        new["body"] = _body(statement.body, numbers)
+        new_fields["body"] = _body(statement.body, numbers)
     elif isinstance(statement, ir.Move) and statement.until is not None:
         condition = _expression(statement.until.condition, numbers.variables)
-        new["until"] = statement.until._replace(condition=condition)
-    return statement._replace(**new)
+        new_fields["until"] = statement.until._replace(condition=condition)
+    return statement._replace(**new_fields)
 
 
 def _expression(terms: ir.Expression, variables: Mapping[int, int]) -> ir.Expression:

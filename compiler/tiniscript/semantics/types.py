@@ -38,11 +38,11 @@ class Types:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self.readings = scope.kit.readings
-        self.variable_names: list[str] = []
-        self.nothing = Value((Term("YES_NO", 0),), ANY, 1, ())
+        self.variable_types: list[str] = []
+        self.no_value = Value((Term("YES_NO", 0),), ANY, 1, ())
 
     @cached_property
-    def wrong(self) -> WrongValues:
+    def wrong_values(self) -> WrongValues:
         """What there is to say of wrong values. A right program never loads it."""
         from tiniscript.semantics.wrong_values import WrongValues
 
@@ -67,13 +67,13 @@ class Types:
                 stack.append(Operand(leaf_type, 1, part.start, part.end))
             elif op == "FOREVER":
                 self.scope.report(codes.FOREVER_NOT_HERE, Span(part.start, part.end))
-                return self.nothing
+                return self.no_value
             else:
                 terms.append(Term(op))
                 if not op.endswith("_LEFT"):
                     self._apply(part, stack)
-        result = stack[-1]
-        return Value(tuple(terms), result.type, result.depth, tuple(sensors))
+        operand = stack[-1]
+        return Value(tuple(terms), operand.type, operand.depth, tuple(sensors))
 
     def _name(
         self, part: Part, target: str | None, stack: list[Operand], sensors: list[int]
@@ -83,17 +83,17 @@ class Types:
         value_type, term = ANY, Term("NUMBER", 0)
         name = scope.names.get(part.value)
         if name is None:
-            self.wrong.report_unknown(part, part.value, target)
+            self.wrong_values.report_unknown(part, part.value, target)
         elif name.kind == "variable":
-            value_type, term = self.variable_names[name.number], Term("VARIABLE", name.number)
+            value_type, term = self.variable_types[name.number], Term("VARIABLE", name.number)
         elif name.kind == "sensor":
             sensors.append(name.number)
             value_type = YES_NO if self.readings[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
-            text = {"device": part.value} if name.kind == "actuator" else {}
+            values = {"device": part.value} if name.kind == "actuator" else {}
             span = Span(part.start, part.end)
-            scope.report(codes.NO_VALUE, span, None, word=part.value, **text)
+            scope.report(codes.NO_VALUE, span, None, word=part.value, **values)
         stack.append(Operand(value_type, 1, part.start, part.end))
         return term
 
@@ -123,16 +123,16 @@ class Types:
             self._require_yes_no(op, right, left)
         elif left.type != right.type:
             if ANY not in (left.type, right.type):
-                self.wrong.report_mixed(op, left, right, Span(start, end))
+                self.wrong_values.report_mixed(op, left, right, Span(start, end))
         elif left.type == YES_NO and op in _ORDER_COMPARATORS:
-            self.wrong.report_yes_no_order(op, Span(start, end))
+            self.wrong_values.report_yes_no_order(op, Span(start, end))
         stack.append(Operand(result_type, depth, start, end))
 
     def _require_number(self, op: str, operand: Operand) -> None:
         if operand.type == YES_NO:
-            self.wrong.report_not_number(op, operand)
+            self.wrong_values.report_not_number(op, operand)
 
     def _require_yes_no(self, asker: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
         if operand.type == NUMBER:
-            self.wrong.report_not_yes_no(asker, operand, other)
+            self.wrong_values.report_not_yes_no(asker, operand, other)

@@ -40,7 +40,7 @@ def report_unknown(scope: Scope, node: ast.Command, def_name: str | None) -> Non
         scope.report(codes.CALLS_ITSELF, span, name=word)
     elif word in scope.def_names:
         scope.report(codes.CALL_BEFORE_DEF, span, name=word)
-    elif word in scope.set_somewhere:
+    elif word in scope.assigned_names:
         scope.report(codes.VARIABLE_ALONE, span, name=word)
     elif not _report_lamp(scope, node):
         _report_unknown_word(scope, node)
@@ -54,7 +54,7 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
     """
     word, arguments = node.word, node.arguments or ()
     value_texts = [scope.source[argument.span].upper() for argument in arguments]
-    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in value_texts]
+    answers = [yes_no_of(text) or _TRUTH_BY_VALUE.get(text, "") for text in value_texts]
     is_light = (
         lexicon_meaning(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
     )
@@ -70,21 +70,27 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
 
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
-    begins = (word for word in WORDS.values() if word.role.begins)
-    commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
+    starting_words = (
+        starting_word for starting_word in WORDS.values() if starting_word.role.begins
+    )
+    commands = [
+        starting_word.text
+        for starting_word in starting_words
+        if starting_word.text not in ("FOREVER", "SEND")
+    ]
     suggestion = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
     suggestion = suggestion or scope.nearest_word(
         word, chain(commands, scope.names, scope.def_names)
     )
-    is_own_name = suggestion in scope.set_somewhere or suggestion in scope.def_names
+    is_own_name = suggestion in scope.assigned_names or suggestion in scope.def_names
     if is_own_name and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
     letters = letters or _initial(word, scope.source.text)
-    count = len(node.arguments or ())
+    argument_count = len(node.arguments or ())
     suggestion = next(
-        (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
+        (letter for letter in letters if len(WORDS[letter].arguments) == argument_count), suggestion
     )
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=suggestion)
 
@@ -101,26 +107,33 @@ def _initial(word: str, text: str) -> list[str]:
     return [*commands] if is_other and not calls.intersection(commands) else []
 
 
-def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int) -> None:
-    """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `count`."""
-    texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
-    if len(texts) == len(word.arguments) and all(map(names_argument, texts, word.arguments)):
-        del scope.diagnostics[count:]
+def report_placeholders(scope: Scope, node: ast.Command, word: Word, diagnostic_count: int) -> None:
+    """`F(tiempo, potencia)`: these names stand for numbers.
+
+    Drops the diagnostics since `diagnostic_count`.
+    """
+    argument_texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
+    if len(argument_texts) == len(word.arguments) and all(
+        map(names_argument, argument_texts, word.arguments)
+    ):
+        del scope.diagnostics[diagnostic_count:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
 
-def report_words_shown(scope: Scope, count: int) -> None:
-    """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `count`."""
+def report_words_shown(scope: Scope, diagnostic_count: int) -> None:
+    """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `diagnostic_count`."""
     words_shown = dict.fromkeys(
         diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_DIAGNOSTICS]
     )
-    for k, each in enumerate(scope.diagnostics[count:], count):
-        if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
-            name = each.values["found"]
+    for k, diagnostic in enumerate(scope.diagnostics[diagnostic_count:], diagnostic_count):
+        if diagnostic.code is codes.UNKNOWN_NAME and not diagnostic.values.get("near"):
+            name = diagnostic.values["found"]
             number = str(len([*takewhile(name.__ne__, filter(None, words_shown))]) + 1)
             is_word = len(name) > 2 and name.isalpha() and not value_of(name)
-            said_as = {"meaning": name, "number": number} if is_word else {}
-            scope.diagnostics[k] = each._replace(values={**each.values, "shown": name, **said_as})
+            word_values = {"meaning": name, "number": number} if is_word else {}
+            scope.diagnostics[k] = diagnostic._replace(
+                values={**diagnostic.values, "shown": name, **word_values}
+            )
 
 
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
@@ -130,42 +143,50 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= MOST_DIAGNOSTICS:
         return ""
-    whole_names = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
+    whole_names = [
+        name for name in names if part in name.split("_") or _is_one_short_for_other(part, name)
+    ]
     return whole_names[0] if len(whole_names) == 1 else ""
 
 
-def _is_shortened(one: str, other: str) -> bool:
-    short, long = sorted((one, other), key=len)
-    return len(short) > 2 and long.isalpha() and long.startswith(short)
+def _is_one_short_for_other(name: str, other_name: str) -> bool:
+    shorter, longer = sorted((name, other_name), key=len)
+    return len(shorter) > 2 and longer.isalpha() and longer.startswith(shorter)
 
 
 def _unset_names(scope: Scope, name: str) -> list[str]:
     """Return the names in the body of a DEF that nothing gives a value: of each DEF, once."""
-    if name in scope.wanted:
-        return scope.wanted[name]
-    body = re.search(rf"(?is)\bDEF\s+{name}\b(.*?)\bEND_?DEF\b", scope.source.text)
-    words = [token.text for token in scan(body[1]).tokens if token.kind is WORD] if body else []
-    known = {*WORDS, *scope.names, *scope.set_somewhere, *scope.def_names}
-    scope.wanted[name] = [*dict.fromkeys(word for word in words if word not in known)]
-    return scope.wanted[name]
+    if name in scope.unset_names_of_def:
+        return scope.unset_names_of_def[name]
+    body_match = re.search(rf"(?is)\bDEF\s+{name}\b(.*?)\bEND_?DEF\b", scope.source.text)
+    words = (
+        [token.text for token in scan(body_match[1]).tokens if token.kind is WORD]
+        if body_match
+        else []
+    )
+    known_words = {*WORDS, *scope.names, *scope.assigned_names, *scope.def_names}
+    scope.unset_names_of_def[name] = [
+        *dict.fromkeys(word for word in words if word not in known_words)
+    ]
+    return scope.unset_names_of_def[name]
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:
     """`SQUARE(3)`, where SQUARE has no values: its DEF may name one, or it is done 3 times."""
     if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
         return  # what is wrong in the brackets of the DEF has been said
-    texts = [scope.source[argument.span] for argument in node.arguments or ()]
-    text = {"named": node.word} if node.word in scope.def_names else {}
+    argument_texts = [scope.source[argument.span] for argument in node.arguments or ()]
+    values = {"named": node.word} if node.word in scope.def_names else {}
     fix, names = "", _unset_names(scope, node.word)
-    if text and texts and len(names) == len(texts):
-        text["head"] = f"DEF {node.word}({', '.join(names)})"
+    if values and argument_texts and len(names) == len(argument_texts):
+        values["head"] = f"DEF {node.word}({', '.join(names)})"
     elif (
-        text
-        and len(texts) == 1
-        and texts[0].isdecimal()
-        and 1 < int(texts[0][:9]) <= MOST_REPETITIONS
+        values
+        and len(argument_texts) == 1
+        and argument_texts[0].isdecimal()
+        and 1 < int(argument_texts[0][:9]) <= MOST_REPETITIONS
     ):
-        text["times"] = texts[0]
-        fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
-    place = node.span if "times" in text else None
-    scope.report(codes.NOT_CALLABLE, node.span, place, name=node.word, fix=fix, **text)
+        values["times"] = argument_texts[0]
+        fix = f"LOOP({argument_texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
+    fix_span = node.span if "times" in values else None
+    scope.report(codes.NOT_CALLABLE, node.span, fix_span, name=node.word, fix=fix, **values)

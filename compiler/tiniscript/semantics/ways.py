@@ -11,19 +11,19 @@ from tiniscript.semantics.ir import Move, Statement, Term
 from tiniscript.semantics.optimizer import known_value
 
 
-def way_ms(move: Move, kit: Kit) -> int | None:
+def extent_move_ms(move: Move, kit: Kit) -> int | None:
     """Return how long a move takes whose way and power are fixed; None where they are not.
 
     Raises Fault, as the robot does.
     """
-    way = known_value(move.time)
+    extent = known_value(move.time)
     power = known_value(move.power)
-    if way is None or power is None:
+    if extent is None or power is None:
         return None
-    return kit.go_ms(way, clamp(whole(power), 0, 100), move.unit == "DEG")
+    return kit.go_ms(extent, clamp(whole(power), 0, 100), move.unit == "DEG")
 
 
-def is_open_way(statement: Statement) -> bool:
+def has_unknown_extent(statement: Statement) -> bool:
     """Whether it is a move by its way that only the robot can tell the time of."""
     if not isinstance(statement, Move) or not statement.unit:
         return False
@@ -37,7 +37,7 @@ def to_timed(move: Move, kit: Kit) -> Move:
     Where the robot would fault it never ends.
     """
     try:
-        time_ms = way_ms(move, kit) or 0
+        time_ms = extent_move_ms(move, kit) or 0
     except Fault:
         time_ms = HIGHEST
     return move._replace(time=(Term("NUMBER", time_ms),), unit="")

@@ -39,7 +39,7 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_shown,
 )
-from tiniscript.semantics.wrong_values import value_of_def
+from tiniscript.semantics.wrong_values import hints_of_def
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered_names
 
@@ -63,7 +63,7 @@ _MOST_CHARACTERS_BEFORE = 200
 _FEW_TIMES = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
 _NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
-_WAY_BY_UNIT = {
+_MOVE_UNIT_BY_SENSOR_UNIT = {
     "cm": ("CM", Fraction(1)),
     "mm": ("CM", Fraction(1, 10)),
     "m": ("CM", Fraction(100)),
@@ -75,7 +75,7 @@ _WAY_BY_UNIT = {
 class WrongCalls:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
-        self._free: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
+        self._free_names: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
 
     def report_unknown(self, node: ast.Command, def_name: str | None) -> None:
         report_unknown(self.scope, node, def_name)
@@ -113,23 +113,23 @@ class WrongCalls:
         self, node: ast.Command, until: ast.Argument, word: Word | None
     ) -> None:
         source = self.scope.source
-        start = _start_of_until(source, node, until)
+        start = _until_offset(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
         own_name = self.scope.names.get(node.word)
         role = word.role.name if word else own_name.kind if own_name else "def"
-        text = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
-        example = text.format(call=call, c=source[until.span])
-        place = Span(start, node.span.end)
-        self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
+        template = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
+        example = template.format(call=call, c=source[until.span])
+        until_span = Span(start, node.span.end)
+        self.scope.report(codes.UNTIL_NOT_HERE, until_span, word=node.word, example=example)
 
     def report_break_outside(self, node: ast.Break) -> None:
         """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
-        left_out = rewrite_without_break(self.scope.source, self.scope.parsed, node)
-        if left_out is None:
+        rewritten_if = rewrite_without_break(self.scope.source, self.scope.parsed_program, node)
+        if rewritten_if is None:
             self.scope.report(codes.BREAK_OUTSIDE, node.span)
             return
-        values = {"fix": left_out.text}
-        repair = Repair(left_out.edits, False)
+        values = {"fix": rewritten_if.text}
+        repair = Repair(rewritten_if.edits, False)
         self.scope.diagnostics.append(
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )
@@ -138,7 +138,7 @@ class WrongCalls:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
         fix = f"{source[node.span]} UNTIL({next_condition(source, node.span)})"
-        values = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
+        values = {"fix": fix, **find_move_end(source, self.scope.parsed_program, node)}
         self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **values)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
@@ -147,40 +147,50 @@ class WrongCalls:
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
-            **_count_values(texts, word, _until_of(source, span)),
-            **self._as_way(texts, word),
+            **_count_values(texts, word, _until_match(source, span)),
+            **self._extent_values(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
         }
         self.scope.report(codes.ARGUMENT_COUNT, span, None, word=word.text, **values)
 
-    def _as_way(self, texts: Sequence[str], word: Word) -> dict[str, str]:
+    def _extent_values(self, texts: Sequence[str], word: Word) -> dict[str, str]:
         """`R(90)`, `F(30)`: what the one value is, if it is no power."""
         unit = UNIT_OF.get(word.text, "")
-        is_one = len(texts) == 1 and _NUMBER.fullmatch(texts[0]) and float(texts[0]) >= _LONG_TIME_S
-        if not (unit and self._has_way(unit) and is_one):
+        is_one_number = (
+            len(texts) == 1 and _NUMBER.fullmatch(texts[0]) and float(texts[0]) >= _LONG_TIME_S
+        )
+        if not (unit and self._knows_speed(unit) and is_one_number):
             return {}
-        way = f"{word.text}({texts[0]} {unit}, {POWER.sample})"
-        return {"number": texts[0], "turn" if unit == "DEG" else "way": way}
+        extent_call = f"{word.text}({texts[0]} {unit}, {POWER.sample})"
+        return {"number": texts[0], "turn" if unit == "DEG" else "way": extent_call}
 
     def report_unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
         """`F(20 DEG, 60)`: forward goes centimetres."""
-        right, place = UNIT_OF[node.word], Span(unit.start, unit.end)
+        right_unit, unit_span = UNIT_OF[node.word], Span(unit.start, unit.end)
         start = node.span.start
-        before, after = Span(start, unit.start), Span(unit.end, node.span.end)
-        fix = f"{self.scope.source[before]}{right}{self.scope.source[after]}"
-        values = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
-        called = "R" if right == "CM" else "F"
-        values["other"] = called + self.scope.source[node.span][len(node.word) :]
+        span_before, span_after = Span(start, unit.start), Span(unit.end, node.span.end)
+        fix = f"{self.scope.source[span_before]}{right_unit}{self.scope.source[span_after]}"
+        values = {
+            "found": unit.op,
+            "right": right_unit,
+            "cm": right_unit if right_unit == "CM" else "",
+        }
+        other_word = "R" if right_unit == "CM" else "F"
+        values["other"] = other_word + self.scope.source[node.span][len(node.word) :]
         is_among_first = len(self.scope.diagnostics) < MOST_DIAGNOSTICS
         pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_among_first else ()
-        wrong_pairs = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
-        for one, other in (wrong_pairs, wrong_pairs[::-1]) if len(wrong_pairs) == 2 else ():
-            if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
+        wrong_pairs = [match for match in pairs if UNIT_OF[match[1].upper()] != match[3].upper()]
+        for pair, other_pair in (wrong_pairs, wrong_pairs[::-1]) if len(wrong_pairs) == 2 else ():
+            if (
+                pair.start() == start
+                and pair[2] != other_pair[2]
+                and pair[3].upper() != other_pair[3].upper()
+            ):
                 rest = self.scope.source[Span(unit.end, node.span.end)]
-                values["swapped"] = f"{node.word}({other[2]} {right}{rest}"
-                values["line"] = str(self.scope.source.position(other.start())[0])
-        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **values)
+                values["swapped"] = f"{node.word}({other_pair[2]} {right_unit}{rest}"
+                values["line"] = str(self.scope.source.position(other_pair.start())[0])
+        self.scope.report(codes.UNIT_PAIR, unit_span, node.span, word=node.word, fix=fix, **values)
 
     def report_values(self, node: ast.Command, word: Word, diagnostic_count: int) -> None:
         """Say more of values that have had diagnostics since there were `diagnostic_count`."""
@@ -190,15 +200,21 @@ class WrongCalls:
 
     def report_out_of_range(
         self, span: Span, number: int, spec: Argument, word: str,
-        called: tuple[ast.Command, Word] | None,
+        command_and_word: tuple[ast.Command, Word] | None,
     ) -> None:  # fmt: skip
-        """`number`, in thousandths, is a value of the command `called`, if of one."""
+        """`number`, in thousandths, is a value of the command `command_and_word`, if of one."""
         low, high = as_text(spec.low), "" if spec.high == HIGHEST else as_text(spec.high)
-        text = {} if called is None else repair_values(self.scope.source, *called)
-        text |= {"low": low, "high": high, "found": as_text(number)}
-        place = None if called is None else _without_until(self.scope.source, called[0])
-        self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=spec.name,
-                          unit=spec.unit, **text)  # fmt: skip
+        values = (
+            {} if command_and_word is None else repair_values(self.scope.source, *command_and_word)
+        )
+        values |= {"low": low, "high": high, "found": as_text(number)}
+        whole_span = (
+            None
+            if command_and_word is None
+            else _span_without_until(self.scope.source, command_and_word[0])
+        )
+        self.scope.report(codes.OUT_OF_RANGE, span, whole_span, word=word, name=spec.name,
+                          unit=spec.unit, **values)  # fmt: skip
 
     def report_not_number(self, span: Span, word: str) -> None:
         """A yes or no where `word` takes a number."""
@@ -206,8 +222,8 @@ class WrongCalls:
         fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
         if word == "LOOP":
             fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
-        own = value_of_def(self.scope, span)
-        self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **own)
+        def_hints = hints_of_def(self.scope, span)
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **def_hints)
 
     def report_device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
@@ -219,70 +235,74 @@ class WrongCalls:
             self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **values)
             return
         sensor = self.scope.kit.readings[device.number]
-        if _NUMBER.fullmatch(value) and (travel := self._travel(node, sensor, value)):
-            self.scope.diagnostics.append(travel)
+        if _NUMBER.fullmatch(value) and (
+            diagnostic := self._travel_diagnostic(node, sensor, value)
+        ):
+            self.scope.diagnostics.append(diagnostic)
             return
         if value.isdecimal() and looks_ahead(sensor):
             until = f"UNTIL({node.name} < {value})"
             values |= {"until": until, "example": f"F(5, 60) {until}"}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **values)
 
-    def _travel(self, node: ast.Assign, sensor: Device, value: str) -> Diagnostic | None:
+    def _travel_diagnostic(self, node: ast.Assign, sensor: Device, value: str) -> Diagnostic | None:
         """`DISTANCE = 90;F(DISTANCE, 80)`: so many centimetres are driven, F(90 CM, 80).
 
         A move that goes by another unit, or a robot that knows none, gets its own number.
         """
         text, end = self.scope.source.text, node.span.end
         next_match = re.compile(rf"(?i)(?:^|[;|\n])[ \t]*{node.name}[ \t]*=").search(text, end)
-        last = next_match.start() if next_match else len(text)
+        end_offset = next_match.start() if next_match else len(text)
         pattern = re.compile(
             rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name}(?:[ \t]+(?:CM|DEG))?)[ \t]*,[^()\n]*\)"
         )
-        uses = [*pattern.finditer(text, end, last)]
-        unit, factor = _WAY_BY_UNIT.get(sensor.unit.lower(), ("", Fraction()))
+        uses = [*pattern.finditer(text, end, end_offset)]
+        unit, factor = _MOVE_UNIT_BY_SENSOR_UNIT.get(sensor.unit.lower(), ("", Fraction()))
         if not uses or not unit:
             return None
         values = {"name": node.name, "value": value, "used": uses[0][0]}
         words = {call_match[1].upper() for call_match in uses}
-        other = min((word for word in words if UNIT_OF[word] != unit), default="")
-        if other or not self._has_way(unit):
-            values |= {"word": other or min(words), "unit": unit}
-            if other and self._has_way(UNIT_OF[other]):
+        other_word = min((word for word in words if UNIT_OF[word] != unit), default="")
+        if other_word or not self._knows_speed(unit):
+            values |= {"word": other_word or min(words), "unit": unit}
+            if other_word and self._knows_speed(UNIT_OF[other_word]):
                 call_match = next(
-                    call_match for call_match in uses if call_match[1].upper() == other
+                    call_match for call_match in uses if call_match[1].upper() == other_word
                 )
                 values |= {
                     "used": call_match[0],
-                    "other": _with_first(call_match, f"{value} {UNIT_OF[other]}"),
+                    "other": _with_first_value(call_match, f"{value} {UNIT_OF[other_word]}"),
                 }
             return Diagnostic(codes.SENSOR_SET, node.name_span, values)
-        way = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
+        extent = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
         if len({call_match[0] for call_match in uses}) > 1:
             values["ways"] = "; ".join(
-                dict.fromkeys(_with_first(call_match, way) for call_match in uses)
+                dict.fromkeys(_with_first_value(call_match, extent) for call_match in uses)
             )
-        edits = [Edit(_with_separator(self.scope.source, node.span), "")]
-        edits += [Edit(Span(*call_match.span(2)), way) for call_match in uses]
-        values["way"] = _with_first(uses[0], way)
+        edits = [Edit(_span_with_separator(self.scope.source, node.span), "")]
+        edits += [Edit(Span(*call_match.span(2)), extent) for call_match in uses]
+        values["way"] = _with_first_value(uses[0], extent)
         return Diagnostic(codes.SENSOR_SET, node.name_span, values, None, Repair((*edits,), False))
 
-    def _has_way(self, unit: str) -> bool:
+    def _knows_speed(self, unit: str) -> bool:
         return bool(self.scope.kit.speed if unit == "CM" else self.scope.kit.turn)
 
     def report_named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
         texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
         named_matches = [_NAMED_VALUE.fullmatch(text) for text in texts]
-        value_of = {it[1].upper(): it[2] for it in named_matches if it}
-        rest = [text for text, it in zip(texts, named_matches, strict=True) if it is None]
+        value_of = {match[1].upper(): match[2] for match in named_matches if match}
+        unnamed_texts = [
+            text for text, match in zip(texts, named_matches, strict=True) if match is None
+        ]
         free_names = [name for name in names if name not in value_of]
         if (
             not value_of
             or not value_of.keys() <= {*names} - {*self.scope.names}
-            or len(free_names) != len(rest)
+            or len(free_names) != len(unnamed_texts)
         ):
             return False
-        value_of |= dict(zip(free_names, rest, strict=True))
+        value_of |= dict(zip(free_names, unnamed_texts, strict=True))
         fix = f"{node.word}({', '.join(value_of[name] for name in names)})"
         self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
         return True
@@ -293,9 +313,9 @@ class WrongCalls:
         called_def = next(
             (procedure for procedure in procedures if procedure.name == node.name), None
         )
-        as_value = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
-        is_value = re.search(as_value, self.scope.source.text)
-        if called_def is None or len(called_def.values) != 1 or node.value is None or is_value:
+        value_pattern = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
+        value_match = re.search(value_pattern, self.scope.source.text)
+        if called_def is None or len(called_def.values) != 1 or node.value is None or value_match:
             self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
             return
         fix = f"{node.name}({self.scope.source[node.value.span]})"
@@ -303,9 +323,9 @@ class WrongCalls:
 
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
-        if name not in self._free:
-            self._free[name] = (numbered_names(self.scope.source.text, name), [])
-        candidates, free_names = self._free[name]
+        if name not in self._free_names:
+            self._free_names[name] = (numbered_names(self.scope.source.text, name), [])
+        candidates, free_names = self._free_names[name]
         k = max(
             0, sum(procedure.name == name for procedure in procedures) - 1
         )  # these got one already
@@ -313,28 +333,28 @@ class WrongCalls:
         return free_names[k]
 
 
-def _with_first(call_match: re.Match[str], value: str) -> str:
+def _with_first_value(call_match: re.Match[str], value: str) -> str:
     """Return a call with this value in place of the group 2."""
-    start, end = (place - call_match.start() for place in call_match.span(2))
+    start, end = (offset - call_match.start() for offset in call_match.span(2))
     return call_match[0][:start] + value + call_match[0][end:]
 
 
-def _with_separator(source: Source, span: Span) -> Span:
+def _span_with_separator(source: Source, span: Span) -> Span:
     """Return where an instruction is, with the `;` or the line end after it."""
     match = re.compile(r"[ \t]*(?:;[ \t]*|\r?\n|$)").match(source.text, span.end)
     return Span(span.start, match.end()) if match else span
 
 
-def _start_of_until(source: Source, node: ast.Command, until: ast.Argument) -> int:
-    before = source[Span(node.span.start, until.span.start)]
-    return node.span.start + before.upper().rfind("UNTIL")
+def _until_offset(source: Source, node: ast.Command, until: ast.Argument) -> int:
+    text_before = source[Span(node.span.start, until.span.start)]
+    return node.span.start + text_before.upper().rfind("UNTIL")
 
 
-def _without_until(source: Source, node: ast.Command) -> Span:
+def _span_without_until(source: Source, node: ast.Command) -> Span:
     """Return where an instruction is, without the question that may end it."""
     if node.until is None:
         return node.span
-    call = source[Span(node.span.start, _start_of_until(source, node, node.until))]
+    call = source[Span(node.span.start, _until_offset(source, node, node.until))]
     return Span(node.span.start, node.span.start + len(call.rstrip()))
 
 
@@ -358,10 +378,10 @@ def next_condition(source: Source, span: Span) -> str:
     return " ".join(question_match.groups()) if question_match else "DISTANCE < 10"
 
 
-def _until_of(source: Source, span: Span) -> re.Match[str] | None:
+def _until_match(source: Source, span: Span) -> re.Match[str] | None:
     """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
-    before = source.text[max(0, span.start - _MOST_CHARACTERS_BEFORE) : span.start]
-    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_BEFORE.search(before)
+    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BEFORE) : span.start]
+    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_BEFORE.search(text_before)
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
@@ -391,7 +411,7 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
         if sum(text.startswith("-") for text in texts) == 1:
             values_text = ", ".join(text.lstrip("- ") for text in texts)
             values["fix"] = f"{OPPOSITE_MOVES[word.text]}({values_text})"
-        elif word.text == "B" and is_short and _is_note(second):
+        elif word.text == "B" and is_short and _is_tone(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:
             values["most"] = f"{word.text}({first}, {as_text(word.arguments[1].high)})"
@@ -403,7 +423,7 @@ def _whole_number(text: str) -> int:
     return int(text[:9]) if text.isdecimal() else 0
 
 
-def _is_note(text: str) -> bool:
+def _is_tone(text: str) -> bool:
     """Whether a number is rather a tone than a power: 440, but not 200."""
     return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 
@@ -417,30 +437,30 @@ def _count_values(
     `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
-    result = {"power": "", "spare": "", "kept": ""}
+    values = {"power": "", "spare": "", "kept": ""}
     if word.role.name == "beep" and len(texts) == 1 and texts[0] in _FEW_TIMES:
-        result["number"] = texts[0]
-        result["often"] = f"LOOP({texts[0]});{word.example};W(0.5);END_LOOP"
-        result["long"] = _call(word, [texts[0], word.arguments[1].sample])
+        values["number"] = texts[0]
+        values["often"] = f"LOOP({texts[0]});{word.example};W(0.5);END_LOOP"
+        values["long"] = _call_text(word, [texts[0], word.arguments[1].sample])
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _HIGHEST_POWER:
-        result["power"] = _call(word, [TIME.sample, texts[0]])
+        values["power"] = _call_text(word, [TIME.sample, texts[0]])
         if until_match is not None:
-            result["endless"] = (
+            values["endless"] = (
                 f"{word.text}(FOREVER, {texts[0]}) {until_match[0].strip().rstrip(';')}"
             )
-        result["number"] = texts[0]
+        values["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
-            result["spare"] = _call(word, texts[: len(word.arguments)])
+            values["spare"] = _call_text(word, texts[: len(word.arguments)])
         if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _HIGHEST_POWER:
-            result["spare"] = _call(word, texts[:2])
+            values["spare"] = _call_text(word, texts[:2])
         is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
         for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
             if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _HIGHEST_POWER:
-                result["kept"] = _call(word, [texts[first]])
-    return result
+                values["kept"] = _call_text(word, [texts[first]])
+    return values
 
 
-def _call(word: Word, texts: Sequence[str]) -> str:
+def _call_text(word: Word, texts: Sequence[str]) -> str:
     return f"{word.text}({', '.join(texts)})"

@@ -12,7 +12,7 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import OPPOSITE_MOVES, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
-from tiniscript.recovery.amounts import is_amount, with_number
+from tiniscript.recovery.amounts import amount_values, is_amount
 from tiniscript.recovery.meanings import lexicon_meaning, meant_by
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
@@ -43,90 +43,106 @@ class WrongValues:
         if name in scope.def_names:
             scope.report(codes.NO_VALUE, span, word=name)
             return
-        meant = meant_by(name) or ""
-        before = scope.source.text[max(0, span.start - _CHARACTERS_BEFORE) : span.start]
-        is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
-        if meant == "BUTTON" or name == "BUTTON":
+        concept = meant_by(name) or ""
+        text_before = scope.source.text[max(0, span.start - _CHARACTERS_BEFORE) : span.start]
+        is_variable = concept == "TIME" and _TIME_BEFORE.search(text_before) is not None
+        if concept == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        is_free = name != target and name not in scope.set_somewhere
-        amount = self._amount(span, name) if is_free else {}
-        if amount:
-            if not self._is_said(span):
-                scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
+        is_free = name != target and name not in scope.assigned_names
+        amount_values = self._amount_values(span, name) if is_free else {}
+        if amount_values:
+            if not self._has_example(span):
+                scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount_values)
             return
         names = scope.names.items() if len(scope.diagnostics) < MOST_DIAGNOSTICS else ()
-        known_names = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
-        is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
+        known_names = [
+            known_name for known_name, meaning in names if meaning.kind in ("sensor", "variable")
+        ]
+        is_forever = _TIME_BEFORE.search(text_before) or _TIMES_BEFORE.search(text_before)
         known_names += ["FOREVER"] if is_forever else []
         suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(
             name, known_names
         )
         suggestion = suggestion or (
-            "".join(lexicon_meaning(name, "power")) if before.rstrip().endswith("=") else ""
+            "".join(lexicon_meaning(name, "power")) if text_before.rstrip().endswith("=") else ""
         )
-        suggestion = suggestion or whole_name(scope, name, scope.set_somewhere)
-        if (match := _EQUALITY_BEFORE.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
+        suggestion = suggestion or whole_name(scope, name, scope.assigned_names)
+        if (match := _EQUALITY_BEFORE.search(text_before)) and scope.is_yes_no_sensor(
+            match[1].upper()
+        ):
             suggestion = yes_no_of(name) or suggestion
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = (
             "".join(lexicon_meaning(base, "stem")) or base
         ) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
-        similar_names = [each for each in known_names if each.startswith(stem)]
+        similar_names = [known_name for known_name in known_names if known_name.startswith(stem)]
         pair_hints = (
             {}
             if len(similar_names) != 2
             else {"first": similar_names[0], "second": similar_names[1]}
         )
-        sensors = [each for each, meaning in names if meaning.kind == "sensor"]
-        if name == target or name in scope.set_somewhere:
+        sensors = [known_name for known_name, meaning in names if meaning.kind == "sensor"]
+        if name == target or name in scope.assigned_names:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-MOST_DIAGNOSTICS:]):  # fmt: skip
                 return  # said once
-            scope.report_used(name, span, suggestion)
+            scope.report_used_before_set(name, span, suggestion)
         else:
             suggestion = "" if pair_hints or is_variable else suggestion
-            only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
-            aside = only if is_aside(name.rpartition("_")[2]) else ""
-            alike = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
-            suggestion = "" if aside or alike else only or suggestion
-            hints = {"alike": alike} if alike and not pair_hints else {}
-            is_said = not (suggestion or hints or pair_hints or only or is_variable)
-            if is_said and self._is_compared(span) and (seen := self._on_side(meant)):
-                suggestion = seen
-            elif is_said and meant in OPPOSITE_MOVES:
-                hints = {"way": meant, "call": WORDS[meant].example}
-            elif is_said and lexicon_meaning(name + "4", "note") and _TONE_BEFORE.search(before):
+            owner_sensor = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
+            aside_sensor = owner_sensor if is_aside(name.rpartition("_")[2]) else ""
+            alike_name = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
+            suggestion = "" if aside_sensor or alike_name else owner_sensor or suggestion
+            hints = {"alike": alike_name} if alike_name and not pair_hints else {}
+            has_no_hint = not (suggestion or hints or pair_hints or owner_sensor or is_variable)
+            if (
+                has_no_hint
+                and self._is_compared(span)
+                and (side_sensor := self._sensor_on_side(concept))
+            ):
+                suggestion = side_sensor
+            elif has_no_hint and concept in OPPOSITE_MOVES:
+                hints = {"way": concept, "call": WORDS[concept].example}
+            elif (
+                has_no_hint
+                and lexicon_meaning(name + "4", "note")
+                and _TONE_BEFORE.search(text_before)
+            ):
                 hints = {"pitch": lexicon_meaning(name + "4", "note")[0]}
             elif not pair_hints and not is_variable and lexicon_meaning(name, "unsensed"):
                 sensor_names = ", ".join(sensor.name for sensor in scope.kit.sensors)
                 hints, suggestion = {"unsensed": name, "sensors": sensor_names}, ""
-            elif is_said and lexicon_meaning(name, "colour"):
+            elif has_no_hint and lexicon_meaning(name, "colour"):
                 hints = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
-                         value=value_of(name), only=only, aside=aside, **hints,
+                         value=value_of(name), only=owner_sensor, aside=aside_sensor, **hints,
                          **pair_hints)  # fmt: skip
 
     def _is_compared(self, span: Span) -> bool:
         """Whether a name stands beside `<` or `>`."""
         text = self.scope.source.text
-        around = text[: span.start].rstrip()[-2:], text[span.end :].lstrip()[:2]
-        return any(it in "".join(around) for it in "<>")
+        texts_around = text[: span.start].rstrip()[-2:], text[span.end :].lstrip()[:2]
+        return any(it in "".join(texts_around) for it in "<>")
 
-    def _on_side(self, way: str) -> str:
+    def _sensor_on_side(self, direction: str) -> str:
         """Return the one sensor of the robot on L or R, which measures, "" for none."""
-        sensors = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
-        return sensors[0] if len(sensors) == 1 and way in OPPOSITE_MOVES else ""
+        sensors = [
+            sensor.name
+            for sensor in self.scope.kit.sensors
+            if sensor.name.endswith(f"_{direction}")
+        ]
+        return sensors[0] if len(sensors) == 1 and direction in OPPOSITE_MOVES else ""
 
-    def _amount(self, span: Span, name: str) -> dict[str, str]:
+    def _amount_values(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
         scope = self.scope
         if not is_amount(name) and not lexicon_meaning(name, "power"):
             return {}
-        text = with_number(scope.source.text, span, scope.set_somewhere)
-        return text if is_amount(name) or "(" in text.get("example", "") else {}
+        values = amount_values(scope.source.text, span, scope.assigned_names)
+        return values if is_amount(name) or "(" in values.get("example", "") else {}
 
-    def _is_said(self, span: Span) -> bool:
+    def _has_example(self, span: Span) -> bool:
         """Whether the example for a value of the same call has a number for this one, too."""
         diagnostics = self.scope.diagnostics[-1:]
         if (
@@ -149,10 +165,12 @@ class WrongValues:
 
     def report_not_number(self, op: str, operand: Operand) -> None:
         span = Span(operand.start, operand.end)
-        by = "-" if op == "NEG" else SIGN_OF.get(op, op)
-        own = value_of_def(self.scope, span)
+        operator_text = "-" if op == "NEG" else SIGN_OF.get(op, op)
+        def_hints = hints_of_def(self.scope, span)
         operand_text = self.scope.source[span]
-        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=operand_text, **own)
+        self.scope.report(
+            codes.WANTS_NUMBER, span, None, by=operator_text, found=operand_text, **def_hints
+        )
 
     def report_not_yes_no(self, asker: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
@@ -160,22 +178,24 @@ class WrongValues:
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
         """
         span = Span(operand.start, operand.end)
-        result = self.scope.source[span]
+        operand_text = self.scope.source[span]
         values = self.condition(span)
         if asker == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
-            values = {**values, "example": f"{result.upper()} > 0"}
+            values = {**values, "example": f"{operand_text.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             compared_text = self.scope.source[Span(other.start, other.end)]
-            before, after = (
+            comparison_before, comparison_after = (
                 _COMPARISON_BEFORE.match(compared_text),
                 _COMPARISON.fullmatch(compared_text),
             )
-            is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
-            if other.start < operand.start and before and not is_sensor:
-                values = {"fix": f"{before[0]} {result}"}
-            elif after and result.isidentifier():
-                values = {"fix": f"{result} {after[1]}"}
-        self.scope.report(codes.WANTS_CONDITION, span, None, by=asker, found=result, **values)
+            is_sensor = operand_text.upper() in (
+                reading.name for reading in self.scope.kit.readings
+            )
+            if other.start < operand.start and comparison_before and not is_sensor:
+                values = {"fix": f"{comparison_before[0]} {operand_text}"}
+            elif comparison_after and operand_text.isidentifier():
+                values = {"fix": f"{operand_text} {comparison_after[1]}"}
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=asker, found=operand_text, **values)
 
     def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
@@ -183,7 +203,7 @@ class WrongValues:
         name = self.scope.names.get(word)
         if name is not None:
             example = f"{word} < 10" if name.kind == "sensor" else f"{word} > 0"
-            return {"example": example, **value_of_def(self.scope, span)}
+            return {"example": example, **hints_of_def(self.scope, span)}
         truth_word = {"0": "FALSE", "1": "TRUE"}.get(word)
         if truth_word or not word.isdecimal():
             return {"fix": truth_word} if truth_word else {}
@@ -195,16 +215,18 @@ class WrongValues:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
         number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
-        result = self.scope.source[Span(answer.start, answer.end)]
-        if digit not in ("0", "1") or op not in _EQUALITY_OPS or not result.isidentifier():
+        answer_text = self.scope.source[Span(answer.start, answer.end)]
+        if digit not in ("0", "1") or op not in _EQUALITY_OPS or not answer_text.isidentifier():
             return ""
-        return result.upper() if (digit == "1") == (op == "EQ") else f"NOT {result.upper()}"
+        return (
+            answer_text.upper() if (digit == "1") == (op == "EQ") else f"NOT {answer_text.upper()}"
+        )
 
 
-def value_of_def(scope: Scope, span: Span) -> dict[str, str]:
+def hints_of_def(scope: Scope, span: Span) -> dict[str, str]:
     """Return the value at `span` and its DEF, whose first call says what it is; or nothing."""
     name = scope.source[span].upper()
-    for node in scope.parsed.body:
+    for node in scope.parsed_program.body:
         if isinstance(node, Def) and node.span.start < span.start < node.span.end:
             is_own = any(parameter.name == name for parameter in node.parameters)
             return {"own": name, "called": node.name} if is_own else {}

@@ -27,7 +27,7 @@ from tiniscript.syntax.ast import (
 )
 from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pieces_of
 from tiniscript.syntax.later_words import kit_for_text
-from tiniscript.syntax.parser import Parsed, parse
+from tiniscript.syntax.parser import ParsedText, parse
 
 LOOSE = "///"  # begins the lines of blocks that hang on nothing
 LOOSE_VALUE = "= "
@@ -63,7 +63,7 @@ def split_loose(rows: list[str]) -> tuple[list[str], list[str]]:
     return rows[: k - (0 < k < len(rows) and not rows[k - 1])], rows[k:]
 
 
-def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, Parsed]:
+def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, ParsedText]:
     kept = ("//" if k in grey else line for k, line in enumerate(lines))
     source = Source("\n".join(kept))
     return source, parse(source)
@@ -82,7 +82,7 @@ def _mark(source: Source, wrong: list[Span], grey: set[int]) -> None:
 class _Reader:
     """Walks over the AST, and over the pieces of the text that it comes from."""
 
-    def __init__(self, source: Source, parsed: Parsed, kit: Kit, grey: dict[int, str]) -> None:
+    def __init__(self, source: Source, parsed: ParsedText, kit: Kit, grey: dict[int, str]) -> None:
         self._source = source
         self._program = parsed.program
         self._pieces = pieces_of(parsed.scan)
@@ -119,7 +119,7 @@ class _Reader:
             grey = self._grey.get(piece.first_line)
             kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
             said = _comment(piece) if grey is None else ""
-            comments.append(Block(kind, word, (), (), "", piece.after_blank, place, (), said))
+            comments.append(Block(kind, word, (), (), "", piece.follows_blank, place, (), said))
         return comments
 
     def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
@@ -152,7 +152,7 @@ class _Reader:
         last = self._pieces[self._next - 1]
         place = self._place(first, last)
         block = block._replace(
-            note=_note(first), is_apart=first.after_blank, place=place, said=tuple(said),
+            note=_note(first), is_apart=first.follows_blank, place=place, said=tuple(said),
             comment=_comment(first),
         )  # fmt: skip
         after = _behind(last, place) if last is not first else ()
@@ -166,7 +166,7 @@ class _Reader:
         inner: list[tuple[Instruction, ...]] = []
         if isinstance(node, If):
             heads = [arm.condition for arm in node.arms]
-            inner = [arm.body for arm in node.arms] + [node.otherwise] * node.has_else
+            inner = [arm.body for arm in node.arms] + [node.else_body] * node.has_else
         else:
             inner = [node.body]
             if isinstance(node, While) or (isinstance(node, Task) and node.is_when):

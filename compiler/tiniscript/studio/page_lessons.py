@@ -51,7 +51,7 @@ def titles(language: str) -> list[dict[str, Any]]:
     return [
         {"name": lesson.name, "title": lesson.title(language),
          "block_title": lesson.title(language, BLOCKS), "robot": lesson.robot,
-         "worlds": lesson.worlds, "world": world_form(number, 1)}
+         "worlds": lesson.world_count, "world": world_form(number, 1)}
         for number, lesson in enumerate(map(_lesson, range(1, len(catalogue.folders()) + 1)), 1)
     ]  # fmt: skip
 
@@ -197,13 +197,13 @@ class Check:
         lesson = _lesson(number)
         lesson = lesson._replace(robot=shipped_name_in(data) or lesson.robot)
         self._language = language
-        self._worlds = lesson.worlds
+        self._worlds = lesson.world_count
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
         self._kit = profile.kit
         result = fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
         if result.is_right:
-            seeds = range(1, lesson.worlds + 1)
+            seeds = range(1, lesson.world_count + 1)
             text = result.source.text
             self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 

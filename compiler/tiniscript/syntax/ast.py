@@ -66,7 +66,7 @@ class If(NamedTuple):
     """`has_else`: an ELSE stands in it, perhaps with nothing after."""
 
     arms: tuple[Arm, ...]
-    otherwise: "tuple[Instruction, ...]"
+    else_body: "tuple[Instruction, ...]"
     has_else: bool
     span: Span
 

@@ -34,24 +34,24 @@ ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 class Block:
     """A block whose end has not come yet."""
 
-    __slots__ = ("arms", "body", "head", "name", "otherwise", "parameters", "span", "word")
+    __slots__ = ("argument", "arms", "body", "else_body", "name", "parameters", "span", "word")
 
     def __init__(
         self,
         word: str,
         span: Span,
-        head: Argument | None,
+        argument: Argument | None,
         name: Token | None,
         parameters: Sequence[Parameter],
     ) -> None:
         self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
         self.span = span  # of the header: where a block that never ends is reported
-        self.head = head  # the condition or the count of the arm that is being read
+        self.argument = argument  # the condition or the count of the arm that is being read
         self.name = name  # of a DEF
         self.parameters = parameters  # of a DEF
         self.body: list[Instruction] = []
         self.arms: list[Arm] = []
-        self.otherwise: list[Instruction] | None = None  # what follows ELSE, once it has come
+        self.else_body: list[Instruction] | None = None  # what follows ELSE, once it has come
 
     @property
     def header(self) -> Span:
@@ -61,11 +61,11 @@ class Block:
     @property
     def current_body(self) -> list[Instruction]:
         """Where the next instruction belongs."""
-        return self.body if self.otherwise is None else self.otherwise
+        return self.body if self.else_body is None else self.else_body
 
-    def next_arm(self, head: Argument | None, span: Span) -> None:
-        self.arms.append(Arm(self.head, tuple(self.body), self.span))
-        self.body, self.head, self.span = [], head, span
+    def next_arm(self, argument: Argument | None, span: Span) -> None:
+        self.arms.append(Arm(self.argument, tuple(self.body), self.span))
+        self.body, self.argument, self.span = [], argument, span
 
 
 class Blocks:
@@ -74,58 +74,58 @@ class Blocks:
     def __init__(self, reporter: Reporter) -> None:
         self._reporter = reporter
         self.program: list[Instruction] = []
-        self.open: list[Block] = []
-        self.tasks = 0  # TASKs and WHENs that have begun at the top level
+        self.open_blocks: list[Block] = []
+        self.task_count = 0  # TASKs and WHENs that have begun at the top level
         self._depth = 0  # open blocks, those that stand at the top level alone not counted
 
     @property
     def innermost(self) -> Block | None:
-        return self.open[-1] if self.open else None
+        return self.open_blocks[-1] if self.open_blocks else None
 
     @property
     def current_body(self) -> list[Instruction]:
         """Where the next instruction belongs."""
-        return self.open[-1].current_body if self.open else self.program
+        return self.open_blocks[-1].current_body if self.open_blocks else self.program
 
     def begin(
         self,
         word: str,
         span: Span,
-        head: Argument | None = None,
+        argument: Argument | None = None,
         name: Token | None = None,
         parameters: Sequence[Parameter] = (),
     ) -> None:
-        if word in TASK_WORDS and self.open:
-            enclosing = self.open[-1].word
+        if word in TASK_WORDS and self.open_blocks:
+            enclosing = self.open_blocks[-1].word
             self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=enclosing)
         elif word in TASK_WORDS:
-            self.tasks += 1
-            if self.tasks == TASKS + 1:
+            self.task_count += 1
+            if self.task_count == TASKS + 1:
                 self._reporter.report(codes.TOO_MANY_TASKS, span, limit=str(TASKS))
         elif word == "DEF":
-            if self.open:
+            if self.open_blocks:
                 self._reporter.report(codes.DEF_NOT_TOP, span)
         else:
             self._depth += 1
             if self._depth == BLOCKS + 1:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
-        self.open.append(Block(word, span, head, name, parameters))
+        self.open_blocks.append(Block(word, span, argument, name, parameters))
 
-    def end(self, end: Span) -> None:
+    def end(self, end_span: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.
 
         A DEF or a task inside a block and blocks nested too deep are left out, because they are
         reported.
         """
-        block = self.open.pop()
-        span, body = Span(block.span.start, end.end), tuple(block.body)
+        block = self.open_blocks.pop()
+        span, body = Span(block.span.start, end_span.end), tuple(block.body)
         if block.word == "DEF":
-            if block.name is not None and not self.open:
+            if block.name is not None and not self.open_blocks:
                 parameters = tuple(block.parameters)
                 self.program.append(Def(block.name.text, block.name.span, parameters, body, span))
         elif block.word in TASK_WORDS:
-            if not self.open:
-                self.program.append(Task(block.word == "WHEN", block.head, body, span))
+            if not self.open_blocks:
+                self.program.append(Task(block.word == "WHEN", block.argument, body, span))
         else:
             if self._depth <= BLOCKS:
                 self.current_body.append(_node(block, span))
@@ -134,13 +134,13 @@ class Blocks:
 
 def _node(block: Block, span: Span) -> Instruction:
     if block.word == "IF":
-        has_else = block.otherwise is not None
+        has_else = block.else_body is not None
         if not has_else:
             block.next_arm(None, block.span)
-        return If(tuple(block.arms), tuple(block.otherwise or ()), has_else, span)
+        return If(tuple(block.arms), tuple(block.else_body or ()), has_else, span)
     if block.word == "LOOP":
-        count = block.head
-        if count is not None and count.expression[0].op == "FOREVER":
-            count = None
-        return Loop(count, tuple(block.body), span)
-    return While(block.head, tuple(block.body), span)
+        times = block.argument
+        if times is not None and times.expression[0].op == "FOREVER":
+            times = None
+        return Loop(times, tuple(block.body), span)
+    return While(block.argument, tuple(block.body), span)

@@ -42,22 +42,22 @@ class Cursor:
 
     # -- looking over line ends, which are white space in brackets ------------------------------
 
-    def inner(self) -> Token:
+    def peek_inner(self) -> Token:
         """Return the next token that is no line end, without going there."""
         k = self.i
         while self.tokens[k].kind is NEWLINE:
             k += 1
         return self.tokens[k]
 
-    def to_inner(self) -> None:
+    def skip_newlines(self) -> None:
         while self.tokens[self.i].kind is NEWLINE:
             self.i += 1
 
     def take_inner(self, kind: str) -> bool:
         """Go past the next token that is no line end if it is a `kind`; return whether it is."""
-        is_next = self.inner().kind == kind
+        is_next = self.peek_inner().kind == kind
         if is_next:
-            self.to_inner()
+            self.skip_newlines()
             self.i += 1
         return is_next
 
@@ -70,7 +70,7 @@ class Cursor:
             sign = self.tokens[k].kind
         return sign == ")" or self.tokens[self.i].kind != "("
 
-    def before(self, k: int) -> int:
+    def index_before(self, k: int) -> int:
         """Return the place of the last token before `k` that is no line end."""
         k -= 1
         while self.tokens[k].kind is NEWLINE:

@@ -45,13 +45,13 @@ class ExpressionParser:
 
     def argument(self) -> Argument:
         cursor = self.cursor
-        cursor.to_inner()
+        cursor.skip_newlines()
         token = cursor.tokens[cursor.i]
         if token.kind is WORD and token.text == "FOREVER":
             cursor.i += 1
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(in_brackets=True)
-        token = cursor.inner()  # the CM or DEG that may stand after the whole of it
+        token = cursor.peek_inner()  # the CM or DEG that may stand after the whole of it
         if token.kind is not WORD or token.text not in WAYS:
             return argument
         cursor.take_inner(WORD)
@@ -61,12 +61,12 @@ class ExpressionParser:
 
     def expression(self, in_brackets: bool) -> Argument:
         cursor = self.cursor
-        first = cursor.i
+        start = cursor.i
         postfix = Postfix(bracket_count=1 if in_brackets else 0)
         while not self.operand(postfix) or self.operator(postfix):
             pass
         parts = tuple(postfix.parts)
-        span = cursor.span_from(cursor.tokens[first])
+        span = cursor.span_from(cursor.tokens[start])
         is_plain = len(parts) == 1 and parts[0] == ("NUMBER", parts[0].value, *span)
         return Argument(parts, span, is_plain)
 
@@ -74,8 +74,8 @@ class ExpressionParser:
         """Read an operand or what stands before one; return whether the operand is complete."""
         cursor = self.cursor
         token = cursor.tokens[cursor.i]
-        if token.kind is NEWLINE and postfix.brackets:
-            cursor.to_inner()
+        if token.kind is NEWLINE and postfix.open_bracket_count:
+            cursor.skip_newlines()
             token = cursor.token
         kind = token.kind
         if kind is NUMBER:
@@ -87,7 +87,7 @@ class ExpressionParser:
             postfix.wait(MINUS, "NEG", token, cursor.i)
         elif kind == "(":
             postfix.wait(OPEN, "(", token, cursor.i)
-            postfix.brackets += 1
+            postfix.open_bracket_count += 1
         elif not self.report_needless_plus(token, postfix):
             self.report_missing_value(token)
         cursor.i += 1
@@ -95,15 +95,15 @@ class ExpressionParser:
 
     def number(self, token: Token, postfix: Postfix) -> Part:
         """A minus right before a number belongs to it."""
-        cursor, pending = self.cursor, postfix.waiting
-        first = token
+        cursor, pending = self.cursor, postfix.pending_operators
+        first_token = token
         if pending and pending[-1].precedence == MINUS:
-            if pending[-1].index == cursor.before(cursor.i):
-                first = pending.pop().token
+            if pending[-1].index == cursor.index_before(cursor.i):
+                first_token = pending.pop().token
         cursor.i += 1
         value, is_exact = read_literal(token.text)
-        value = value if first is token else -value
-        span = Span(first.start, token.end)
+        value = value if first_token is token else -value
+        span = Span(first_token.start, token.end)
         if not LOWEST <= value <= HIGHEST:
             limit = as_text(HIGHEST if value > 0 else LOWEST)
             self.reporter.report(codes.NUMBER_TOO_BIG, span, limit=limit)
@@ -124,7 +124,7 @@ class ExpressionParser:
             postfix.parts.append(Part(op, value, token.start, token.end))
             return True
         if token.text == "NOT":
-            if postfix.waiting and postfix.waiting[-1].precedence > NOT:
+            if postfix.pending_operators and postfix.pending_operators[-1].precedence > NOT:
                 self.reporter.fail(codes.NOT_NEEDS_BRACKETS, token.span)
             postfix.wait(NOT, "NOT", token, cursor.i)
             cursor.i += 1
@@ -137,12 +137,12 @@ class ExpressionParser:
     def begin_call(self, name: Token, function: Word, postfix: Postfix) -> None:
         cursor = self.cursor
         cursor.i += 1
-        if postfix.brackets:
-            cursor.to_inner()
+        if postfix.open_bracket_count:
+            cursor.skip_newlines()
         if cursor.token.kind != "(":
             self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, usage=function.usage)
         postfix.wait(OPEN, name.text, name, cursor.i)
-        postfix.brackets += 1
+        postfix.open_bracket_count += 1
         cursor.i += 1
         if cursor.take_inner(")"):
             self.report_wrong_count(function, 0, cursor.span_from(name))
@@ -152,37 +152,37 @@ class ExpressionParser:
         cursor = self.cursor
         tokens = cursor.tokens
         while True:
-            token = cursor.inner() if postfix.brackets else tokens[cursor.i]
+            token = cursor.peek_inner() if postfix.open_bracket_count else tokens[cursor.i]
             if token.kind not in VALUE_ENDS and token.kind is not ODD:
                 binary = BINARY.get(token.text)
                 if binary is not None:
-                    if postfix.brackets:
-                        cursor.to_inner()
+                    if postfix.open_bracket_count:
+                        cursor.skip_newlines()
                     self.binary(token, *binary, postfix)
                     cursor.i += 1
                     return True
-            bracket = postfix.reduce() if postfix.waiting else None
+            bracket = postfix.reduce() if postfix.pending_operators else None
             if bracket is None:
                 return False
             if token.kind == ")":
                 cursor.take_inner(")")
-                postfix.brackets -= 1
-                postfix.waiting.pop()
+                postfix.open_bracket_count -= 1
+                postfix.pending_operators.pop()
                 if bracket.name != "(":
-                    function, count = WORDS[bracket.name], bracket.arguments + 1
+                    function, count = WORDS[bracket.name], bracket.ended_arguments + 1
                     span = cursor.span_from(bracket.token)
                     if count != len(function.arguments):
                         self.report_wrong_count(function, count, span)
                     postfix.parts.append(Part(bracket.name, 0, *span))
                 continue
             if token.kind == "," and bracket.name != "(":
-                bracket.arguments += 1
+                bracket.ended_arguments += 1
                 cursor.take_inner(",")
                 return True
             self.report_missing_close(bracket.index)
 
     def binary(self, token: Token, precedence: int, name: str, postfix: Postfix) -> None:
-        pending = postfix.waiting
+        pending = postfix.pending_operators
         while pending and pending[-1].precedence >= precedence:
             if precedence == COMPARISON == pending[-1].precedence:
                 self.reporter.fail(codes.CHAINED, token.span)
@@ -205,11 +205,15 @@ class ExpressionParser:
         Not that of `X = +1`: `X += 1` may be meant.
         """
         tokens, i = self.cursor.tokens, self.cursor.i
-        if tokens[i - 1].kind == "=" and not (postfix.parts or postfix.waiting):
+        if tokens[i - 1].kind == "=" and not (postfix.parts or postfix.pending_operators):
             return False
-        after = tokens[min(i + 1, len(tokens) - 1)]
-        begins = after.kind in (NUMBER, "(", "-") or _is_name(after) or after.text in FUNCTIONS
-        if token.kind != "+" or not begins:
+        following = tokens[min(i + 1, len(tokens) - 1)]
+        begins_value = (
+            following.kind in (NUMBER, "(", "-")
+            or _is_name(following)
+            or following.text in FUNCTIONS
+        )
+        if token.kind != "+" or not begins_value:
             return False
         repair = Repair((Edit(token.span, ""),), True)
         values = {"plus": token.text}
@@ -223,16 +227,20 @@ class ExpressionParser:
         word_row = WORDS.get(token.text) if token.kind is WORD else None
         self.reject_unknown_character(token)
         if self.ends_above(token):
-            last = self.cursor.last
-            self.reporter.fail(codes.MISSING_VALUE, last.span, before=last.text)
+            last_token = self.cursor.last
+            self.reporter.fail(codes.MISSING_VALUE, last_token.span, before=last_token.text)
         if word_row is not None:
             self.reject_unit(token)
-            by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
-            other = codes.NO_VALUE if word_row.role.is_instruction else codes.RESERVED
-            self.reporter.fail(by_role.get(word_row.role.name, other), token.span, word=token.text)
-        before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
-        hints = {} if before.kind is ODD else {"before": before.text}
-        self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **hints)
+            code_of_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
+            other_code = codes.NO_VALUE if word_row.role.is_instruction else codes.RESERVED
+            self.reporter.fail(
+                code_of_role.get(word_row.role.name, other_code), token.span, word=token.text
+            )
+        previous = (
+            self.cursor.tokens[self.cursor.index_before(self.cursor.i)] if self.cursor.i else token
+        )
+        hints = {} if previous.kind is ODD else {"before": previous.text}
+        self.reporter.fail(codes.MISSING_VALUE, token.span or previous.span, **hints)
 
     def ends_above(self, token: Token) -> bool:
         """Whether an instruction begins with this token below the line that breaks off.
@@ -242,26 +250,34 @@ class ExpressionParser:
         cursor = self.cursor
         k = cursor.i if cursor.token is token else cursor.tokens.index(token, cursor.i)
         word_row = WORDS.get(token.text) if token.kind is WORD else None
-        begins = word_row is not None and (
+        begins_instruction = word_row is not None and (
             word_row.role.is_instruction or word_row.role.is_of_blocks
         )
-        is_set = (
+        is_assignment = (
             token.kind is WORD and cursor.tokens[min(k + 1, len(cursor.tokens) - 1)].kind == "="
         )
-        if not (begins or is_set) or k == 0 or cursor.tokens[k - 1].kind is not NEWLINE:
+        if (
+            not (begins_instruction or is_assignment)
+            or k == 0
+            or cursor.tokens[k - 1].kind is not NEWLINE
+        ):
             return False
-        cursor.i = cursor.before(k) + 1
+        cursor.i = cursor.index_before(k) + 1
         return True
 
     def reject_unknown_character(self, token: Token) -> None:
         """A token that the language does not have."""
         if token.kind is not ODD:
             return
-        first, is_gap = token.text[0], not token.text.strip("_")  # a gap to fill
-        code = codes.BAD_NAME if first.isalnum() or first == "_" else codes.ODD_CHARACTER
-        if first.isdigit() or is_gap or (first == "." and len(token.text) > 1):
+        first_character, is_gap = token.text[0], not token.text.strip("_")  # a gap to fill
+        code = (
+            codes.BAD_NAME
+            if first_character.isalnum() or first_character == "_"
+            else codes.ODD_CHARACTER
+        )
+        if first_character.isdigit() or is_gap or (first_character == "." and len(token.text) > 1):
             code = codes.BAD_NUMBER
-        elif first == "~":
+        elif first_character == "~":
             code = codes.CHECKSUM_FORM
         self.reporter.fail(code, token.span, found=token.text)
 
@@ -272,12 +288,17 @@ class ExpressionParser:
             raise Failed
 
     def report_wrong_unit(self, unit: str, span: Span) -> None:
-        first, second = (word for word, unit_of in UNIT_OF.items() if unit_of == unit)
-        called = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second}(")
-        word = second if called[1] and not set("\n;") & set(called[2]) else first
+        first_word, second_word = (word for word, unit_of in UNIT_OF.items() if unit_of == unit)
+        text_parts = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second_word}(")
+        word = second_word if text_parts[1] and not set("\n;") & set(text_parts[2]) else first_word
         example = f"{word}({WAYS[unit].sample}, 60)"
         self.reporter.report(
-            codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
+            codes.UNIT_PLACE,
+            span,
+            found=unit,
+            first=first_word,
+            second=second_word,
+            example=example,
         )
 
     def reject_semicolon(self, bracket: int) -> None:
@@ -287,11 +308,11 @@ class ExpressionParser:
         if tokens[k].kind != ";":
             return
         value = tokens[k + 1 + (tokens[k + 1].kind == "-")]
-        end = next(j for j in range(k + 1, len(tokens)) if tokens[j].kind in _ENDS_VALUE)
-        if tokens[end].kind != ")" or not (value.kind is NUMBER or _is_name(value)):
+        end_index = next(j for j in range(k + 1, len(tokens)) if tokens[j].kind in _ENDS_VALUE)
+        if tokens[end_index].kind != ")" or not (value.kind is NUMBER or _is_name(value)):
             return
-        cursor.i = end + 1
-        call = Span(tokens[bracket - 1].start, tokens[end].end)
+        cursor.i = end_index + 1
+        call = Span(tokens[bracket - 1].start, tokens[end_index].end)
         fix = f"{cursor.source[Span(call.start, tokens[k].start)].rstrip()}, "
         fix += cursor.source[Span(tokens[k + 1].start, call.end)]
         repair = Repair((Edit(tokens[k].span, ","),), False)
@@ -299,22 +320,22 @@ class ExpressionParser:
         self.reporter.diagnostics.append(diagnostic)
         raise Failed
 
-    def after_name(self) -> Token | None:
+    def skip_after_name(self) -> Token | None:
         """Return what follows a name of a DEF where a comma or the end belongs.
 
         A sign is passed, with all up to there: `= 5`; a name is the next one. None for a unit.
         """
         cursor = self.cursor
-        first = cursor.token
+        first_token = cursor.token
         depth = 0
-        while first.kind in SIGNS and (depth > 0 or cursor.token.kind not in VALUE_ENDS):
+        while first_token.kind in SIGNS and (depth > 0 or cursor.token.kind not in VALUE_ENDS):
             depth += (cursor.token.kind == "(") - (cursor.token.kind == ")")
             if cursor.token.kind in INSTRUCTION_ENDS:
                 break
             cursor.i += 1
-        is_unit = len(first.text) > 1 and bool(lexicon_meaning(first.text, "unit"))
-        is_name = first.kind is WORD and not is_unit
-        return first if first.kind in SIGNS or is_name else None
+        is_unit = len(first_token.text) > 1 and bool(lexicon_meaning(first_token.text, "unit"))
+        is_name = first_token.kind is WORD and not is_unit
+        return first_token if first_token.kind in SIGNS or is_name else None
 
     def report_not_only_names(self, bracket: int, extra: Token, names: Sequence[str]) -> None:
         """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
@@ -329,19 +350,19 @@ class ExpressionParser:
 
     def report_missing_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""
-        token, before = self.cursor.inner(), self.cursor.last
+        token, previous = self.cursor.peek_inner(), self.cursor.last
         self.reject_semicolon(bracket)
-        self.reject_unit(token if before.text not in WAYS else before)
+        self.reject_unit(token if previous.text not in WAYS else previous)
         self.reject_unknown_character(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
         span = self.cursor.tokens[bracket].span
-        self.reporter.fail(codes.MISSING_CLOSE, span, before=before.text)
+        self.reporter.fail(codes.MISSING_CLOSE, span, before=previous.text)
 
 
 def _is_name(token: Token) -> bool:
     """Whether a token may be a value with a name."""
-    known = WORDS.get(token.text) if token.kind is WORD else None
-    return token.kind is WORD and (known is None or known.role.name == "value")
+    word_row = WORDS.get(token.text) if token.kind is WORD else None
+    return token.kind is WORD and (word_row is None or word_row.role.name == "value")

@@ -41,14 +41,14 @@ def format_source(source: Source) -> str:
 class Piece:
     """An instruction, SETUP with its bar, or, where it has no tokens, a line of comment."""
 
-    __slots__ = ("after_blank", "comments", "first_line", "last_line", "tokens")
+    __slots__ = ("comments", "first_line", "follows_blank", "last_line", "tokens")
 
-    def __init__(self, line: int, after_blank: bool) -> None:
+    def __init__(self, line: int, follows_blank: bool) -> None:
         self.tokens: list[Token] = []
         self.comments: list[str] = []  # those inside it and the one after it
         self.first_line = line
         self.last_line = line
-        self.after_blank = after_blank  # an empty line stands right before it
+        self.follows_blank = follows_blank  # an empty line stands right before it
 
     @property
     def is_setup(self) -> bool:
@@ -63,35 +63,35 @@ def pieces_of(scan: Scan) -> list[Piece]:
     """Return the pieces of a text in their order. Empty instructions are none."""
     pieces: list[Piece] = []
     is_open = False  # whether the last piece is an instruction that has not ended
-    brackets = 0  # open in it
+    open_brackets = 0  # open in it
     line = 0
-    line_is_empty, after_blank = True, False
-    for token in sorted((*scan.tokens[:-1], *scan.comments), key=lambda item: item.start):
+    is_empty_line, follows_blank = True, False
+    for token in sorted((*scan.tokens[:-1], *scan.comments), key=lambda token: token.start):
         kind = token.kind
         if kind is NEWLINE:
-            after_blank = after_blank or (line_is_empty and not is_open)
+            follows_blank = follows_blank or (is_empty_line and not is_open)
             line += 1
-            line_is_empty = True
-            is_open = is_open and brackets > 0
+            is_empty_line = True
+            is_open = is_open and open_brackets > 0
             continue
-        line_is_empty = False
+        is_empty_line = False
         if kind == ";":
             is_open = False
             continue
         is_comment = kind == "comment"
         is_after_code = is_comment and any(
-            item.tokens and item.last_line == line for item in pieces[-1:]
+            piece.tokens and piece.last_line == line for piece in pieces[-1:]
         )
         if not is_open and not is_after_code:
-            pieces.append(Piece(line, after_blank))
-            is_open, brackets, after_blank = not is_comment, 0, False
+            pieces.append(Piece(line, follows_blank))
+            is_open, open_brackets, follows_blank = not is_comment, 0, False
         piece = pieces[-1]
         if is_comment:
             piece.comments.append(_TIGHT_COMMENT.sub("// ", token.text.rstrip()))
             continue
         piece.tokens.append(token._replace(text=ALIASES.get(token.text, token.text)))
         piece.last_line = line
-        brackets += (kind == "(") - (kind == ")")
+        open_brackets += (kind == "(") - (kind == ")")
         if kind == "|":
             is_open = False
     return pieces
@@ -105,19 +105,19 @@ class Row(NamedTuple):
 
     word: str  # of an instruction that stands alone, the first word
     text: str
-    after_blank: bool
+    follows_blank: bool
 
 
 def _rows(pieces: list[Piece]) -> list[Row]:
     """Return the lines that the pieces make."""
-    one_line = is_one_line(pieces)
+    is_single_line = is_one_line(pieces)
     groups: list[list[Piece]] = []
     for piece in pieces:
-        if groups and _continues_line(groups[-1][-1], piece, one_line):
+        if groups and _continues_line(groups[-1][-1], piece, is_single_line):
             groups[-1].append(piece)
         else:
             groups.append([piece])
-    return [_row(group, one_line) for group in groups]
+    return [_row(group, is_single_line) for group in groups]
 
 
 def is_one_line(pieces: list[Piece]) -> bool:
@@ -125,50 +125,54 @@ def is_one_line(pieces: list[Piece]) -> bool:
 
     A comment between SETUP and the first of them stands in the way.
     """
-    places = [k for k, piece in enumerate(pieces) if piece.is_instruction]
-    if not places:
+    indexes = [k for k, piece in enumerate(pieces) if piece.is_instruction]
+    if not indexes:
         return False
-    first, last = places[0], places[-1]
-    setup = next((piece for piece in pieces[:first] if piece.is_setup), None)
-    if setup and (setup.comments or setup is not pieces[first - 1]):
+    first_index, last_index = indexes[0], indexes[-1]
+    setup_piece = next((piece for piece in pieces[:first_index] if piece.is_setup), None)
+    if setup_piece and (setup_piece.comments or setup_piece is not pieces[first_index - 1]):
         return False
-    return first == last or pieces[first].first_line == pieces[last].last_line
+    return (
+        first_index == last_index or pieces[first_index].first_line == pieces[last_index].last_line
+    )
 
 
-def _continues_line(before: Piece, piece: Piece, one_line: bool) -> bool:
+def _continues_line(previous: Piece, piece: Piece, is_single_line: bool) -> bool:
     """Whether a piece goes on the line of the one before it."""
     if not piece.is_instruction:
         return False
-    if one_line:
-        return bool(before.tokens)
-    return before.is_setup and not before.comments and not piece.after_blank
+    if is_single_line:
+        return bool(previous.tokens)
+    return previous.is_setup and not previous.comments and not piece.follows_blank
 
 
-def _row(group: list[Piece], one_line: bool) -> Row:
-    first = group[0]
-    setup = f"{first.tokens[0].text}|" if first.is_setup else ""
+def _row(group: list[Piece], is_single_line: bool) -> Row:
+    first_piece = group[0]
+    setup = f"{first_piece.tokens[0].text}|" if first_piece.is_setup else ""
     instructions = [instruction_text(piece.tokens) for piece in group if piece.is_instruction]
     text = setup + ";".join(instructions)
     word = ""
-    if instructions and not one_line:
+    if instructions and not is_single_line:
         text += ";"
         word = group[-1].tokens[0].text
     comment = " ".join(group[-1].comments)
     if text and comment:
         text += BEFORE_COMMENT
-    return Row(word, text + comment, first.after_blank)
+    return Row(word, text + comment, first_piece.follows_blank)
 
 
 def lines_of(rows: list[Row]) -> list[str]:
     """Return each row with its indentation, and a line end before it where a line is empty."""
     lines: list[str] = []
-    before = ""
+    previous_word = ""
     for row, depth in zip(rows, _depths(rows), strict=True):
         is_separate = (
-            row.after_blank and before not in _INDENTING_WORDS and row.word not in _DEDENTING_WORDS
+            row.follows_blank
+            and previous_word not in _INDENTING_WORDS
+            and row.word not in _DEDENTING_WORDS
         )
         lines.append(("\n" if is_separate and lines else "") + INDENT * depth + row.text)
-        before = row.word
+        previous_word = row.word
     return lines
 
 
@@ -192,22 +196,22 @@ def _depths(rows: list[Row]) -> list[int]:
 def instruction_text(tokens: list[Token]) -> str:
     """Return an instruction on one line, with spaces where they belong."""
     parts = [tokens[0].text]
-    before = tokens[0]
-    is_sign = False  # whether `before` is a minus that belongs to what follows
+    previous = tokens[0]
+    is_sign = False  # whether `previous` is a minus that belongs to what follows
     for token in tokens[1:]:
-        if _space_between(before, is_sign, token):
+        if _space_between(previous, is_sign, token):
             parts.append(" ")
         is_decimal = token.kind is NUMBER and token.text.startswith(".")
         parts.append("0" + token.text if is_decimal else token.text)
-        is_sign = token.kind == "-" and before.text in _BEFORE_VALUE
-        before = token
+        is_sign = token.kind == "-" and previous.text in _BEFORE_VALUE
+        previous = token
     return "".join(parts)
 
 
-def _space_between(before: Token, is_sign: bool, token: Token) -> bool:
+def _space_between(previous: Token, is_sign: bool, token: Token) -> bool:
     """Whether a space stands between two tokens; `is_sign`: the first is the minus of -X."""
-    if is_sign or before.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
+    if is_sign or previous.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
         return False
     if token.kind == "(":
-        return before.kind is not WORD or before.text in _WORD_OPERATORS
+        return previous.kind is not WORD or previous.text in _WORD_OPERATORS
     return True

@@ -27,9 +27,11 @@ def numbered_names(text: str, stem: str) -> Iterator[str]:
 
 def free_word_name(text: str, word: str) -> str:
     """Return a name for what was called `word`, a word of the language: F_1, or F_2 beside F_1."""
-    right = other_name(word)
-    is_free = right not in names_in(text)
-    return right if is_free else next(numbered_names(text, right.removesuffix("_1")))
+    numbered_name = other_name(word)
+    is_free = numbered_name not in names_in(text)
+    return (
+        numbered_name if is_free else next(numbered_names(text, numbered_name.removesuffix("_1")))
+    )
 
 
 def free_number_name(text: str) -> str:

@@ -43,17 +43,21 @@ def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[
 
 def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     """Return the younger words that a program names something with where they first appear."""
-    token_of_word: set[str] = set()
-    words = {}
-    is_begin, is_in_def, depth = True, False, 0
+    words_seen: set[str] = set()
+    token_of_word = {}
+    begins_instruction, is_in_def, depth = True, False, 0
     for k, token in enumerate(tokens):
         kind, text = token.kind, token.text
-        if kind is WORD and text in KIT_WORDS_SINCE and text not in token_of_word:
-            token_of_word.add(text)
+        if kind is WORD and text in KIT_WORDS_SINCE and text not in words_seen:
+            words_seen.add(text)
             is_named = tokens[k - 1].text == "DEF" if k else False
-            is_set = is_begin and tokens[k + 1].kind == "=" and not _value_uses(text, tokens, k + 2)
+            is_set = (
+                begins_instruction
+                and tokens[k + 1].kind == "="
+                and not _value_uses(text, tokens, k + 2)
+            )
             if is_named or is_set or is_in_def:
-                words[text] = token
+                token_of_word[text] = token
         if kind == "(":
             depth += 1
             is_in_def = is_in_def or (depth == 1 and k > 1 and tokens[k - 2].text == "DEF")
@@ -61,8 +65,8 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
             depth, is_in_def = max(depth - 1, 0), False
         elif kind == ";":
             depth, is_in_def = 0, False  # a bracket that is open there is a mistake
-        is_begin = kind in (";", "|") or (kind is NEWLINE and not depth)
-    return words
+        begins_instruction = kind in (";", "|") or (kind is NEWLINE and not depth)
+    return token_of_word
 
 
 def _value_uses(name: str, tokens: Sequence[Token], k: int) -> bool:

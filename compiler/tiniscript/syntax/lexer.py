@@ -60,7 +60,7 @@ _PATTERN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 # What is always written so.
-_MADE = {"newline": (NEWLINE, "\n"), "degrees": (WORD, "DEG"), "dash": ("-", "-")}
+_FIXED_TOKENS = {"newline": (NEWLINE, "\n"), "degrees": (WORD, "DEG"), "dash": ("-", "-")}
 
 
 def scan(text: str) -> Scan:
@@ -89,7 +89,7 @@ def scan(text: str) -> Scan:
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
         else:
-            kind, text_of = _MADE.get(group or "", (ODD, match.group()))
-            add(new(Token, (kind, text_of, start, end)))
+            kind, token_text = _FIXED_TOKENS.get(group or "", (ODD, match.group()))
+            add(new(Token, (kind, token_text, start, end)))
     add(Token(END, "", len(text), len(text)))
     return Scan(tokens, comments, wrong_checksums)

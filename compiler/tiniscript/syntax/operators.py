@@ -36,38 +36,38 @@ OPPOSITES: Final = {
 class Operator:
     """An operator, an open bracket or an open function call that waits for what follows."""
 
-    __slots__ = ("arguments", "index", "name", "precedence", "token")
+    __slots__ = ("ended_arguments", "index", "name", "precedence", "token")
 
     def __init__(self, precedence: int, name: str, token: Token, index: int) -> None:
         self.precedence = precedence
         self.name = name
         self.token = token
         self.index = index  # its place among the tokens; of a call, that of its bracket
-        self.arguments = 0  # of a function call, that have ended
+        self.ended_arguments = 0  # of a function call, that have ended
 
 
 class Postfix:
     """`parts` in postfix order, the operators that wait, and how many brackets are open."""
 
-    __slots__ = ("brackets", "parts", "waiting")
+    __slots__ = ("open_bracket_count", "parts", "pending_operators")
 
     def __init__(self, bracket_count: int) -> None:
         self.parts: list[Part] = []
-        self.waiting: list[Operator] = []
-        self.brackets = bracket_count
+        self.pending_operators: list[Operator] = []
+        self.open_bracket_count = bracket_count
 
     def wait(self, precedence: int, name: str, token: Token, index: int) -> None:
-        self.waiting.append(Operator(precedence, name, token, index))
+        self.pending_operators.append(Operator(precedence, name, token, index))
 
     def apply(self) -> None:
         """The operator that has waited last has all that it is applied to."""
-        operator = self.waiting.pop()
+        operator = self.pending_operators.pop()
         token = operator.token
         self.parts.append(Part(operator.name, 0, token.start, token.end))
 
     def reduce(self) -> Operator | None:
         """Apply what waits since the innermost open bracket, and return that bracket."""
-        waiting = self.waiting
+        waiting = self.pending_operators
         while waiting and waiting[-1].precedence != OPEN:
             self.apply()
         return waiting[-1] if waiting else None

@@ -26,7 +26,7 @@ class KnownNames(NamedTuple):
 
     values: frozenset[str]
     instructions: frozenset[str]
-    called: frozenset[tuple[str, int]]
+    names_with_count: frozenset[tuple[str, int]]
 
 
 class Item(NamedTuple):
@@ -42,26 +42,28 @@ class Item(NamedTuple):
 
 
 class Failure(NamedTuple):
-    """The instruction that begins at token `start` cannot be read on at token `at`."""
+    """The instruction that begins at token `start` cannot be read on at token `failed_at`."""
 
     start: int
-    at: int
+    failed_at: int
 
 
-def outline(words: Sequence[tuple[str, str]], known_names: KnownNames) -> list[Item] | Failure:
+def outline(
+    kinds_and_texts: Sequence[tuple[str, str]], known_names: KnownNames
+) -> list[Item] | Failure:
     """Return the items of a line of tokens (kind, text), or where it is wrong."""
-    tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(words)]
+    tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(kinds_and_texts)]
     tokens.append(Token(END, "", len(tokens), len(tokens)))
     return _Line(tokens, known_names).items()
 
 
-class _Silent(Reporter):
+class _RaisingReporter(Reporter):
     def report(self, code: codes.Code, span: Span, **values: str) -> None:
         if code.is_mistake and code is not codes.NUMBER_TOO_BIG:
             raise Failed
 
 
-class _Alone(Blocks):
+class _LoneBlocks(Blocks):
     """Each header, arm and end is right for itself."""
 
     @property
@@ -84,12 +86,12 @@ class _Expressions(ExpressionParser):
 class _Line(Parser):
     def __init__(self, tokens: list[Token], known_names: KnownNames) -> None:
         super().__init__(Source(""), Scan(tokens, [], []))
-        self.reporter = _Silent([])
-        self.blocks = _Alone(self.reporter)
-        self.expressions = self._own = _Expressions(self.cursor, self.reporter)
-        self._own.values = known_names.values
-        self._known, self._called = known_names, known_names.called
-        self._found: list[Item] = []
+        self.reporter = _RaisingReporter([])
+        self.blocks = _LoneBlocks(self.reporter)
+        self.expressions = self._own_expressions = _Expressions(self.cursor, self.reporter)
+        self._own_expressions.values = known_names.values
+        self._known_names, self._names_with_count = known_names, known_names.names_with_count
+        self._items: list[Item] = []
 
     def items(self) -> list[Item] | Failure:
         cursor, start = self.cursor, 0
@@ -104,21 +106,21 @@ class _Line(Parser):
                     self.instruction()
         except Failed:
             return Failure(start, max(start, cursor.i))
-        return self._found
+        return self._items
 
     def instruction(self) -> None:
         start, word = self.cursor.i, self.cursor.token.text
         super().instruction()
         is_set = self.cursor.tokens[start + 1].kind == "="
         kind = "do" if is_set else _KINDS.get(word, "do")
-        self._found.append(Item(kind, word, start, self.cursor.i))
+        self._items.append(Item(kind, word, start, self.cursor.i))
 
     def assignment(self, name: Token) -> None:
         tokens, k = self.cursor.tokens, self.cursor.i + 2
         if tokens[k].kind is WORD and tokens[k + 1].kind == "=":
             raise Failed  # `X = Y = 5` is rather two of them than a question
         super().assignment(name)
-        self._own.values |= {name.text}
+        self._own_expressions.values |= {name.text}
 
     def close(self, word: Token) -> None:
         """The block that it ends is on other lines."""
@@ -127,7 +129,9 @@ class _Line(Parser):
         arguments = super().arguments_of(word, word_row)
         count = len(arguments or ())
         is_right = (
-            len(word_row.arguments) == count if word_row else (word.text, count) in self._called
+            len(word_row.arguments) == count
+            if word_row
+            else (word.text, count) in self._names_with_count
         )
         if not is_right:
             raise Failed
@@ -141,7 +145,11 @@ class _Line(Parser):
 
     def own_name(self, word: Token, following: Token) -> None:
         is_called = following.kind == "("  # with how many values is looked at later
-        names = {name for name, _ in self._called} if is_called else self._known.instructions
+        names = (
+            {name for name, _ in self._names_with_count}
+            if is_called
+            else self._known_names.instructions
+        )
         if word.text not in names:
             raise Failed
 

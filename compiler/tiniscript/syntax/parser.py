@@ -46,18 +46,18 @@ _NO_COMMANDS = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
                 "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
 
 
-class Parsed(NamedTuple):
+class ParsedText(NamedTuple):
     program: Program
     scan: Scan
     diagnostics: list[codes.Diagnostic]
 
 
-def parse(source: Source) -> Parsed:
+def parse(source: Source) -> ParsedText:
     """Return the AST of a program, with all mistakes of its syntax."""
     scanned = scan(source.text)
     parser = Parser(source, scanned)
     program = parser.program()
-    return Parsed(program, scanned, parser.reporter.diagnostics)
+    return ParsedText(program, scanned, parser.reporter.diagnostics)
 
 
 class Parser:
@@ -69,7 +69,7 @@ class Parser:
         self.variables: set[str] = set()  # those that have been set so far
         self.defs: set[str] = set()  # the names of the DEFs that have begun
         # The diagnostics of ends that come before those inside them, and how many blocks are open.
-        self.early: list[tuple[int, int]] = []
+        self.early_ends: list[tuple[int, int]] = []
 
     # -- the program ------------------------------------------------------------------------
 
@@ -87,16 +87,16 @@ class Parser:
                 self.instruction()
             except Failed:
                 cursor.skip_instruction()
-        while self.blocks.open:  # that never end
-            block = self.blocks.open[-1]
-            right = BLOCK_ENDS[block.word]
-            self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=right)
+        while self.blocks.open_blocks:  # that never end
+            block = self.blocks.open_blocks[-1]
+            end_word = BLOCK_ENDS[block.word]
+            self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=end_word)
             self.blocks.end(cursor.last.span)
         return Program(start, tuple(self.blocks.program))
 
     def setup(self) -> str:
         cursor = self.cursor
-        cursor.to_inner()
+        cursor.skip_newlines()
         word, bar = cursor.token, cursor.following
         if bar.kind != "|":
             return "SI"
@@ -104,7 +104,7 @@ class Parser:
         if word.text == "PING":
             token, *rest = cursor.tokens[cursor.i :]
             if token.text != "CHECK_CONNECTION" or any(
-                item.kind not in INSTRUCTION_ENDS for item in rest
+                token.kind not in INSTRUCTION_ENDS for token in rest
             ):
                 self.reporter.report(codes.PING_ALONE, word.span)
             cursor.i = len(cursor.tokens) - 1
@@ -208,13 +208,13 @@ class Parser:
         """Open the block even if its header is wrong, so that its end is not a second mistake."""
         cursor = self.cursor
         cursor.i += 1
-        tokens, head = cursor.tokens, None
+        tokens, argument = cursor.tokens, None
         try:
             if word.text == "LOOP" and tokens[min(cursor.i + 2, len(tokens) - 1)].kind == "=":
                 self.reporter.fail(codes.LOOP_COUNTS, tokens[cursor.i + 1].span)
-            head = self.argument_of(word)
+            argument = self.argument_of(word)
         finally:
-            self.blocks.begin(word.text, cursor.span_from(word), head)
+            self.blocks.begin(word.text, cursor.span_from(word), argument)
 
     def definition(self, word: Token) -> None:
         cursor = self.cursor
@@ -237,35 +237,37 @@ class Parser:
             span = Span(word.start, name.end)
             self.blocks.begin("DEF", span, name=name, parameters=parameters)
 
-    def parameters(self, def_word: Token, result: list[Parameter]) -> None:
+    def parameters(self, def_word: Token, parameters: list[Parameter]) -> None:
         """Read the `(NAME, NAME)` of a DEF; what was read stays, even if the rest is wrong."""
         cursor = self.cursor
         bracket = cursor.i
         cursor.i += 1
         if cursor.take_inner(")"):
             return
-        extra = None
+        extra_token = None
         while True:
-            name = cursor.inner()
+            name = cursor.peek_inner()
             if name.kind is not WORD:
-                from tiniscript.syntax.unnamed import used_inside  # of a wrong program alone
+                from tiniscript.syntax.unnamed import hints_of_use  # of a wrong program alone
 
-                inside = used_inside(cursor.source, name) if name.kind is NUMBER else {}
+                hints = hints_of_use(cursor.source, name) if name.kind is NUMBER else {}
                 self.reporter.fail(
-                    codes.PARAMETER_NEEDS_NAME, name.span, name=def_word.text, **inside
+                    codes.PARAMETER_NEEDS_NAME, name.span, name=def_word.text, **hints
                 )
             cursor.take_inner(WORD)
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)
-            result.append(Parameter(name.text, name.span))
-            odd = self.expressions.after_name()
-            extra = extra or odd
-            if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
+            parameters.append(Parameter(name.text, name.span))
+            odd_token = self.expressions.skip_after_name()
+            extra_token = extra_token or odd_token
+            if not cursor.take_inner(",") and (odd_token is None or odd_token.kind is not WORD):
                 break
         if not cursor.take_inner(")"):
             self.expressions.report_missing_close(bracket)
-        if extra is not None:
-            self.expressions.report_not_only_names(bracket, extra, [each.name for each in result])
+        if extra_token is not None:
+            self.expressions.report_not_only_names(
+                bracket, extra_token, [parameter.name for parameter in parameters]
+            )
 
     def task(self, word: Token) -> None:
         cursor = self.cursor
@@ -282,23 +284,23 @@ class Parser:
     def arm(self, word: Token) -> None:
         block = self.blocks.innermost
         self.cursor.i += 1
-        head = None
+        argument = None
         try:
             if word.text == "ELSEIF":
-                head = self.argument_of(word)
+                argument = self.argument_of(word)
             else:
                 self.reject_arguments(word)
         finally:
             span = self.cursor.span_from(word)
             if block is None or block.word != "IF":
                 self.reporter.report(codes.NOT_OPEN, span, found=word.text, right="IF")
-                self.early = []
-            elif block.otherwise is not None:
+                self.early_ends = []
+            elif block.else_body is not None:
                 self.reporter.report(codes.AFTER_ELSE, span, found=word.text)
-                block.otherwise.clear()
+                block.else_body.clear()
             else:
-                block.next_arm(head, span)
-                block.otherwise = [] if word.text == "ELSE" else None
+                block.next_arm(argument, span)
+                block.else_body = [] if word.text == "ELSE" else None
 
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
@@ -308,48 +310,52 @@ class Parser:
     def close(self, word: Token) -> None:
         """End the block that a word ends, and those that are still open in it."""
         blocks, begin_word = self.blocks, ENDS[word.text]
-        if not any(block.word == begin_word for block in blocks.open):
+        if not any(block.word == begin_word for block in blocks.open_blocks):
             if self.merge_swapped_ends(word):
                 return
-            enclosing = {}
-            if blocks.open:  # it may be the end of that
-                inner = blocks.open[-1]
+            hints = {}
+            if blocks.open_blocks:  # it may be the end of that
+                inner = blocks.open_blocks[-1]
                 line = str(self.cursor.source.position(inner.header.start)[0])
-                enclosing = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
+                hints = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
             self.reporter.report(
-                codes.NOT_OPEN, word.span, found=word.text, right=begin_word, **enclosing
+                codes.NOT_OPEN, word.span, found=word.text, right=begin_word, **hints
             )
             return
-        inner_index = max(k for k, block in enumerate(blocks.open) if block.word == begin_word)
-        while (block := blocks.open[-1]).word != begin_word:
+        inner_index = max(
+            k for k, block in enumerate(blocks.open_blocks) if block.word == begin_word
+        )
+        while (block := blocks.open_blocks[-1]).word != begin_word:
             line = str(self.cursor.source.position(block.header.start)[0])
-            right = BLOCK_ENDS[block.word]
-            values = {"found": word.text, "word": block.word, "line": line, "right": right}
-            last = (
+            end_word = BLOCK_ENDS[block.word]
+            values = {"found": word.text, "word": block.word, "line": line, "right": end_word}
+            last_instruction = (
                 block.current_body[-1]
                 if len(block.current_body) > 1 and block.word != "LOOP"
                 else None
             )
-            if last and not isinstance(last, Break):  # nothing comes after one
-                values["several"] = self.cursor.source[last.span]
-            self.early.append((len(self.reporter.diagnostics), inner_index))
+            if last_instruction and not isinstance(
+                last_instruction, Break
+            ):  # nothing comes after one
+                values["several"] = self.cursor.source[last_instruction.span]
+            self.early_ends.append((len(self.reporter.diagnostics), inner_index))
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)
 
     def merge_swapped_ends(self, late_end: Token) -> bool:
         """Whether an end is that of a block that another end has closed: these two are swapped."""
-        diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open)
+        diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open_blocks)
         ends_with_depth = (
-            item
-            for item in self.early
-            if ENDS[diagnostics[item[0]].values["right"]] == ENDS[late_end.text]
+            each_entry
+            for each_entry in self.early_ends
+            if ENDS[diagnostics[each_entry[0]].values["right"]] == ENDS[late_end.text]
         )
-        place = next((item for item in ends_with_depth if item[1] == depth), None)
-        if place is None:
+        entry = next((each_entry for each_entry in ends_with_depth if each_entry[1] == depth), None)
+        if entry is None:
             return False
-        self.early.remove(place)
-        k, early_end = place[0], diagnostics[place[0]]
+        self.early_ends.remove(entry)
+        k, early_end = entry[0], diagnostics[entry[0]]
         edits = (
             Edit(early_end.span, late_end.text),
             Edit(late_end.span, early_end.values["found"]),
@@ -407,10 +413,10 @@ class Parser:
         if token.kind == ")":
             self.reporter.fail(codes.EXTRA_CLOSE, token.span)
         self.expressions.reject_unit(token)
-        header = first.text in (*HEADERS, "DEF", "ELSE", "ELSEIF")
-        code = codes.HEADER_SEPARATOR if header else codes.MISSING_SEPARATOR
-        before = " ".join(cursor.source[cursor.span_from(first)].split())
-        self.reporter.fail(code, token.span, before=before)
+        is_header = first.text in (*HEADERS, "DEF", "ELSE", "ELSEIF")
+        code = codes.HEADER_SEPARATOR if is_header else codes.MISSING_SEPARATOR
+        text_before = " ".join(cursor.source[cursor.span_from(first)].split())
+        self.reporter.fail(code, token.span, before=text_before)
 
 
 # The rule of an instruction, by its first word; of all others it is `command`. A parser made

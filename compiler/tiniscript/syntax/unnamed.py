@@ -12,21 +12,21 @@ from tiniscript.syntax.lexer import Token
 
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _PLACEHOLDER_NAME = "SIZE"  # which a message translates
-_LONGEST = 60  # characters of an instruction that a message shows
+_MOST_CHARACTERS = 60  # characters of an instruction that a message shows
 
 
-def used_inside(source: Source, number: Token) -> dict[str, str]:
+def hints_of_use(source: Source, number: Token) -> dict[str, str]:
     """Return the number, and the first instruction in the DEF that has it, with a name there."""
     text = source.text
-    head = re.compile(r"[^;\r\n]*").match(text, number.end)
-    end = _DEF_END.search(text, number.end)
+    header_rest = re.compile(r"[^;\r\n]*").match(text, number.end)
+    end_match = _DEF_END.search(text, number.end)
     is_only_number = text[number.end :].lstrip(" \t")[:1] == ")"
-    if head is None or end is None or not is_only_number:
+    if header_rest is None or end_match is None or not is_only_number:
         return {}
-    for each in re.compile(r"[^;\r\n]+").finditer(text, head.end(), end.start()):
-        instruction = each[0].partition("//")[0].strip()
+    for match in re.compile(r"[^;\r\n]+").finditer(text, header_rest.end(), end_match.start()):
+        instruction = match[0].partition("//")[0].strip()
         pattern = rf"(?<![\w.]){re.escape(number.text)}(?![\w.])"
-        inside = re.sub(pattern, _PLACEHOLDER_NAME, instruction.upper(), count=1)
-        if inside != instruction.upper() and len(instruction) <= _LONGEST:
-            return {"number": number.text, "inside": inside}
+        renamed_instruction = re.sub(pattern, _PLACEHOLDER_NAME, instruction.upper(), count=1)
+        if renamed_instruction != instruction.upper() and len(instruction) <= _MOST_CHARACTERS:
+            return {"number": number.text, "inside": renamed_instruction}
     return {}

@@ -89,7 +89,7 @@ def read(
         note = " ".join(piece.comments)
         if piece.is_setup:
             start.text, start.note, start.apart = (
-                f"{piece.tokens[0].text}|", note, piece.after_blank)  # fmt: skip
+                f"{piece.tokens[0].text}|", note, piece.follows_blank)  # fmt: skip
             root.inside.remove(START)
             root.inside.append(START)
             continue
@@ -102,7 +102,7 @@ def read(
             kind = kind_of(said)
         else:
             note = ""
-        node = Node(name(), kind, said, note, piece.after_blank, parent=open_blocks[-1])
+        node = Node(name(), kind, said, note, piece.follows_blank, parent=open_blocks[-1])
         tree.nodes[node.id] = node
         tree[open_blocks[-1]].inside.append(node.id)
         if places is not None:

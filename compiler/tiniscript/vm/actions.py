@@ -43,7 +43,7 @@ def _moves(direction: str, left: int, right: int) -> None:
     def powers(power: int) -> Powers:
         return left * power, right * power
 
-    def popped(m: Execution) -> Powers:
+    def popped_powers(m: Execution) -> Powers:
         return powers(_percent(m.task.stack.pop(), 0))
 
     def move8(m: Execution, after: int, time: int, power: int) -> Step:
@@ -51,30 +51,30 @@ def _moves(direction: str, left: int, right: int) -> None:
 
     def move(m: Execution, after: int) -> Step:
         def step() -> int:
-            driven = popped(m)
-            return m.drive(_duration(m.task.stack.pop()), driven, after)
+            move_powers = popped_powers(m)
+            return m.drive(_duration(m.task.stack.pop()), move_powers, after)
 
         return step
 
     def watch(m: Execution, after: int) -> Step:
         def step() -> int:
-            driven = popped(m)
-            return m.watch(_duration(m.task.stack.pop()), driven, after)
+            move_powers = popped_powers(m)
+            return m.watch(_duration(m.task.stack.pop()), move_powers, after)
 
         return step
 
     def watch_forever(m: Execution, after: int) -> Step:
-        return lambda: m.watch(FOREVER, popped(m), after)
+        return lambda: m.watch(FOREVER, popped_powers(m), after)
 
-    def way(m: Execution) -> tuple[int, Powers]:
+    def extent_move(m: Execution) -> tuple[int, Powers]:
         power = _percent(m.task.stack.pop(), 0)
         return m.robot.go_ms(m.task.stack.pop(), power, left != right), powers(power)
 
     def go(m: Execution, after: int) -> Step:
-        return lambda: m.drive(*way(m), after)
+        return lambda: m.drive(*extent_move(m), after)
 
     def watch_go(m: Execution, after: int) -> Step:
-        return lambda: m.watch(*way(m), after)
+        return lambda: m.watch(*extent_move(m), after)
 
     HANDLERS[f"GO_{direction}"] = go
     HANDLERS[f"WATCH_GO_{direction}"] = watch_go

@@ -35,25 +35,25 @@ def bind_steps(m: Execution, code: bytes) -> list[Step]:
     After the code stands END.
     """
     steps = [HANDLERS["END"](m, 0)] * (len(code) + 1)
-    at = 0
-    while at < len(code):
-        op, after = instruction_at(code, at)
-        operands = read_operands(op, code, at) if op.implied is None else (op.implied.value,)
+    offset = 0
+    while offset < len(code):
+        op, after = instruction_at(code, offset)
+        operands = read_operands(op, code, offset) if op.implied is None else (op.implied.value,)
         kind = op.operands[-1].kind.name if op.operands else ""
         if kind.startswith("fwd"):
             operands = (*operands[:-1], after + operands[-1])
         elif kind.startswith("back"):
             operands = (*operands[:-1], after - operands[-1])
-        steps[at] = HANDLERS[op.name](m, after, *operands)
-        at = after
+        steps[offset] = HANDLERS[op.name](m, after, *operands)
+        offset = after
     return steps
 
 
-def instruction_at(code: bytes, at: int) -> tuple[Op, int]:
+def instruction_at(code: bytes, offset: int) -> tuple[Op, int]:
     """Return the instruction at an offset, and where the next one begins."""
-    op = op_at(code, at)
+    op = op_at(code, offset)
     assert op is not None, "the code is not verified"
-    return op, at + op.size
+    return op, offset + op.size
 
 
 class Machine(Execution):
@@ -83,13 +83,13 @@ class Machine(Execution):
                 self.robot.motors(0, 0)
             task.wait = NOTHING
         self.status = RUNNING
-        run = self._steps
+        steps = self._steps
         at, pc = self.at, task.pc
         left = budget
         try:
             for left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for after the loop
                 at = pc
-                pc = run[at]()
+                pc = steps[at]()
                 if pc < 0:
                     pc = at if pc == STAY else mark_stop(pc)
                     break

@@ -21,12 +21,12 @@ class Instance:
         module = _load_module(path)
         self._proxies = []
         table: dict[str, dict[str, Any]] = {}
-        for each in js.WebAssembly.Module.imports(module):
-            proxy = create_proxy(imports[each.name])
+        for imported in js.WebAssembly.Module.imports(module):
+            proxy = create_proxy(imports[imported.name])
             self._proxies.append(proxy)
-            table.setdefault(each.module, {})[each.name] = proxy
-        given = to_js(table, dict_converter=js.Object.fromEntries)
-        exports = js.WebAssembly.Instance.new(module, given).exports
+            table.setdefault(imported.module, {})[imported.name] = proxy
+        import_object = to_js(table, dict_converter=js.Object.fromEntries)
+        exports = js.WebAssembly.Instance.new(module, import_object).exports
         names = [export.name for export in js.WebAssembly.Module.exports(module)]
         self.functions = {name: getattr(exports, name) for name in names}
         buffer = self.functions.pop("memory").buffer
@@ -38,9 +38,9 @@ class Instance:
             values = (js.BigInt(values[0]), *values[1:])
         return int(self.functions[name](*values) or 0)
 
-    def write(self, data: bytes, at: int) -> None:
+    def write(self, data: bytes, offset: int) -> None:
         if data:
-            self._bytes.subarray(at, at + len(data)).assign(data)
+            self._bytes.subarray(offset, offset + len(data)).assign(data)
 
     def read(self, start: int, end: int) -> bytes:
         return bytes(self._bytes.subarray(start, end).to_bytes())
@@ -59,13 +59,13 @@ class MemoryNumbers:
     def __init__(self, buffer: Any) -> None:
         self._array = js.Int32Array.new(buffer)
 
-    def __getitem__(self, place: Any) -> Any:
-        if isinstance(place, slice):
-            return self._array.subarray(place.start, place.stop).to_py().tolist()
-        return self._array[place]
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return self._array.subarray(index.start, index.stop).to_py().tolist()
+        return self._array[index]
 
-    def __setitem__(self, place: int, value: int) -> None:
-        self._array[place] = value
+    def __setitem__(self, index: int, value: int) -> None:
+        self._array[index] = value
 
 
 @lru_cache(maxsize=8)

@@ -55,28 +55,28 @@ def run(
     """
     robot = TracedRobot(kit, senses)
     machine = machine_of(code, robot, len(kit.readings), seed)
-    before = 0  # instructions that ran before the clock last moved
+    steps_before = 0  # instructions that ran before the clock last moved
     while True:
-        left = max_steps - (machine.steps - before)
-        status = machine.tick(robot.now_ms, min(SLICE_INSTRUCTIONS, left))
+        steps_left = max_steps - (machine.steps - steps_before)
+        status = machine.tick(robot.now_ms, min(SLICE_INSTRUCTIONS, steps_left))
         yield from robot.events
         robot.events.clear()
         if status in (DONE, FAULT):
-            what = status.upper()
+            ending = status.upper()
         elif status == WAITING and machine.wake_ms <= max_ms:
             if machine.wake_ms > robot.now_ms:
-                before = machine.steps
+                steps_before = machine.steps
             robot.now_ms = machine.wake_ms
-            if machine.steps - before < max_steps:
+            if machine.steps - steps_before < max_steps:
                 continue
-            what = "LIMIT"
+            ending = "LIMIT"
         elif status == WAITING:
-            robot.now_ms, what = max_ms, "LIMIT"
-        elif machine.steps - before >= max_steps:
-            what = "LIMIT"
+            robot.now_ms, ending = max_ms, "LIMIT"
+        elif machine.steps - steps_before >= max_steps:
+            ending = "LIMIT"
         else:
             continue
-        text = f"FAULT {machine.fault}" if what == "FAULT" else what
-        yield Event(robot.now_ms, what, (), text)
-        yield Ending(what, machine.fault, machine.at, machine.steps)
+        text = f"FAULT {machine.fault}" if ending == "FAULT" else ending
+        yield Event(robot.now_ms, ending, (), text)
+        yield Ending(ending, machine.fault, machine.at, machine.steps)
         return

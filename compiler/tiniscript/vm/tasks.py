@@ -416,11 +416,11 @@ class Start(NamedTuple):
 def find_tasks(code: bytes) -> list[Start]:
     """Return the tasks of verified code in their order, without the main one."""
     tasks = []
-    at = 0
-    while at < len(code):
-        op, at = instruction_at(code, at)
+    offset = 0
+    while offset < len(code):
+        op, offset = instruction_at(code, offset)
         if op.name in ("TASK", "WHEN"):
-            tasks.append(Start(at, op.name == "WHEN"))
+            tasks.append(Start(offset, op.name == "WHEN"))
     return tasks
 
 

@@ -48,8 +48,8 @@ class WasmImage:
         self.robot: Robot | None = None
         self._instance = Instance(MODULE, self._robot_functions())
         self.call, self.tick = self._instance.call, self._instance.functions["tick"]
-        first = self.call("exchange") // 4
-        self.exchange = self._instance.numbers[first : first + _NUMBERS]
+        start = self.call("exchange") // 4
+        self.exchange = self._instance.numbers[start : start + _NUMBERS]
         try:
             self._load(data, kit)
         except BaseException:
@@ -93,13 +93,13 @@ class WasmImage:
         """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
         owner = ref(self)  # no more: else it would live for ever, `wasm_store` says why
 
-        def asking(ask: Callable[[Robot, memoryview[int]], object]) -> Callable[[], None]:
-            def asked() -> None:
+        def robot_function(call: Callable[[Robot, memoryview[int]], object]) -> Callable[[], None]:
+            def function() -> None:
                 image = owner()
                 assert image is not None and image.robot is not None, "nothing runs yet"
-                ask(image.robot, image.exchange)
+                call(image.robot, image.exchange)
 
-            return asked
+            return function
 
         def read(robot: Robot, numbers: memoryview[int]) -> None:
             value = robot.read(numbers[_FIRST])
@@ -110,14 +110,18 @@ class WasmImage:
             numbers[_IS_ANSWERED] = robot.show(numbers[_FIRST], bool(numbers[_SECOND]))
 
         return {
-            "motors": asking(
-                lambda robot, instance: robot.motors(instance[_FIRST], instance[_SECOND])
+            "motors": robot_function(
+                lambda robot, numbers: robot.motors(numbers[_FIRST], numbers[_SECOND])
             ),
-            "off": asking(lambda robot, instance: robot.off()),
-            "read": asking(read),
-            "beep": asking(lambda robot, instance: robot.beep(instance[_FIRST], instance[_SECOND])),
-            "show": asking(show),
-            "set": asking(lambda robot, instance: robot.set(instance[_FIRST], instance[_SECOND])),
+            "off": robot_function(lambda robot, numbers: robot.off()),
+            "read": robot_function(read),
+            "beep": robot_function(
+                lambda robot, numbers: robot.beep(numbers[_FIRST], numbers[_SECOND])
+            ),
+            "show": robot_function(show),
+            "set": robot_function(
+                lambda robot, numbers: robot.set(numbers[_FIRST], numbers[_SECOND])
+            ),
         }
 
 

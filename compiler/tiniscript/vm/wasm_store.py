@@ -40,13 +40,13 @@ class Instance:
         self._store = Store(_engine())
         self._store.set_limits(memory_size=MOST_BYTES, instances=1, memories=1, tables=1)
         module = _module(path)
-        given = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
+        imported_functions = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
                  for import_type in module.imports]  # fmt: skip
-        exports = wasmtime.Instance(self._store, module, given).exports(self._store)
-        found = {export.name: exports[export.name] for export in module.exports}
+        exports = wasmtime.Instance(self._store, module, imported_functions).exports(self._store)
+        exported = {export.name: exports[export.name] for export in module.exports}
         self.functions = {name: _bound_function(self._store, func)
-                          for name, func in found.items() if isinstance(func, Func)}  # fmt: skip
-        memory = found["memory"]
+                          for name, func in exported.items() if isinstance(func, Func)}  # fmt: skip
+        memory = exported["memory"]
         assert isinstance(memory, Memory)
         self._memory = memory
         base = addressof(memory.data_ptr(self._store).contents)
@@ -56,8 +56,8 @@ class Instance:
     def call(self, name: str, *values: int) -> int:
         return int(self.functions[name](*values) or 0)
 
-    def write(self, data: bytes, at: int) -> None:
-        self._memory.write(self._store, data, at)
+    def write(self, data: bytes, offset: int) -> None:
+        self._memory.write(self._store, data, offset)
 
     def read(self, start: int, end: int) -> bytes:
         return bytes(self._memory.read(self._store, start, end))
@@ -85,27 +85,33 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
         from wasmtime._func import enter_wasm
 
         kind = function.type(store)
-        takes, gives = len(kind.params), kind.results
-        raw = (c.wasmtime_val_raw_t * max(takes, 1))()
-        quick, inside, trap_type = c.wasmtime_func_call_unchecked, function._func, c.wasm_trap_t
+        parameter_count, result_types = len(kind.params), kind.results
+        raw_values = (c.wasmtime_val_raw_t * max(parameter_count, 1))()
+        unchecked_call, raw_function, trap_type = (
+            c.wasmtime_func_call_unchecked,
+            function._func,
+            c.wasm_trap_t,
+        )
     except (ImportError, AttributeError):
         return partial(function, store)
-    numbers = memoryview(raw).cast("B").cast("q")
-    apart = len(numbers) // len(raw)
-    result = numbers if gives == [ValType.i64()] else numbers.cast("B").cast("i")
+    numbers = memoryview(raw_values).cast("B").cast("q")
+    stride = len(numbers) // len(raw_values)
+    result_numbers = numbers if result_types == [ValType.i64()] else numbers.cast("B").cast("i")
 
     def call(*values: int) -> int | None:
-        assert len(values) == takes, values
+        assert len(values) == parameter_count, values
         for k, value in enumerate(values):
-            numbers[k * apart] = value
+            numbers[k * stride] = value
         trap = POINTER(trap_type)()
-        error = quick(store._context(), byref(inside), raw, len(raw), byref(trap))
+        error = unchecked_call(
+            store._context(), byref(raw_function), raw_values, len(raw_values), byref(trap)
+        )
         if error or trap:
             with enter_wasm(store) as raised:  # what a function of Python has raised comes first
                 if error:
                     raise WasmtimeError._from_ptr(error)
                 raised._obj.contents = trap.contents
-        return result[0] if gives else None
+        return result_numbers[0] if result_types else None
 
     return call
 

@@ -15,7 +15,7 @@ from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.library import source_map
 from tiniscript.library.compiling import fit_to_robot
-from tiniscript.semantics.duration import duration
+from tiniscript.semantics.duration import duration_of_program
 from tiniscript.semantics.ir import Program
 
 
@@ -72,7 +72,7 @@ def _line(options: Namespace, program_input: inputs.Input, language: str) -> int
         source=inputs.printable_name(program_input.name),
         target="-" if is_printed else inputs.printable_name(options.output),
         bytes=len(line),
-        code=plain_code(compilation.program).length,
+        code=plain_code(compilation.program).short_length,
     )
     print(sentence, file=sys.stderr if is_printed else sys.stdout)
     return 0
@@ -89,7 +89,7 @@ def _target(program_input: inputs.Input, output: str | None) -> str | None:
 
 def _run_time_text(program: Program | None, kit: Kit, language: str) -> str:
     assert program is not None
-    run_time = duration(program, kit)
+    run_time = duration_of_program(program, kit)
     if run_time.never_ends:
         key = "runs_forever"
     elif run_time.most_ms is None:

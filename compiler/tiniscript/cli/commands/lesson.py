@@ -77,7 +77,7 @@ def _page(folder: Path, is_teachers: bool, language: str) -> str:
         parts += [f"{answer.labels[language]}:", _fence(answer.program)]
     parts.append(f"## {text('lesson_wrong', language)}")
     for answer in wrong_answers:
-        parts += [f"{answer.labels[language]}:", _fence(answer.program), answer.said[language]]
+        parts += [f"{answer.labels[language]}:", _fence(answer.program), answer.sentences[language]]
     return "\n\n".join(parts) + "\n"
 
 

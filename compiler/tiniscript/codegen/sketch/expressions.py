@@ -47,7 +47,7 @@ class Expressions:
         self.is_exact = is_exact
         self.variables = variables
         self.sensors = sensors
-        self.kept = 0  # left sides that need a variable
+        self.kept_count = 0  # left sides that need a variable
 
     def text(self, expression: Expression, reading: tuple[int, str] | None = None) -> str:
         """Return an expression; `reading` is a sensor, and what stands in the place of its name."""
@@ -74,8 +74,8 @@ class Expressions:
 
     def keep(self) -> str:
         """Return a variable for a left side."""
-        self.kept += 1
-        return f"first{self.kept}"
+        self.kept_count += 1
+        return f"first{self.kept_count}"
 
     def _number(self, value: int) -> _Operand:
         if not is_float(value):
@@ -85,27 +85,27 @@ class Expressions:
     def _unary(self, op: str, operand: _Operand) -> _Operand:
         if op == "NOT":
             return operand._replace(text="!" + _bracket(operand, _UNARY), precedence=_UNARY)
-        result = self._as_number(operand)
+        number = self._as_number(operand)
         if op == "ABS":
-            return result._replace(
-                text=f"{self.use('absolute')}({result.text})", precedence=_PRIMARY
+            return number._replace(
+                text=f"{self.use('absolute')}({number.text})", precedence=_PRIMARY
             )
         self.use("NEG")
-        gap = " " if result.text.startswith("-") else ""
-        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", precedence=_UNARY)
+        gap = " " if number.text.startswith("-") else ""
+        return number._replace(text=f"-{gap}{_bracket(number, _UNARY)}", precedence=_UNARY)
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
-        first = assignment = ""
+        kept_name = assignment = ""
         if left.is_random and right.is_random and op not in ("AND", "OR"):
-            first = self.keep()
-            assignment, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
+            kept_name = self.keep()
+            assignment, left = f"{kept_name} = {left.text}, ", _Operand(kept_name, _PRIMARY)
         if op in FUNCTIONS:
             operand = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
-            if first:
+            if kept_name:
                 operand = _Operand(f"({assignment}{operand.text})", _PRIMARY)
             return operand._replace(is_random=is_random)
-        sign, binds = SIGNS[op], _PRECEDENCE[op]
+        sign, precedence = SIGNS[op], _PRECEDENCE[op]
         if op in ARITHMETIC_OPS or op in COMPARISON_OPS:
             if left.is_literal and (
                 right.is_literal or (op in ARITHMETIC_OPS and not self.is_exact)
@@ -114,13 +114,18 @@ class Expressions:
             if op in ARITHMETIC_OPS or self.is_exact:
                 self.use(op)
         # Brackets that C++ does not need stand where it warns without them.
-        low, high = (8, 8) if op in COMPARISON_OPS else (binds, binds + 1)
+        left_precedence, right_precedence = (
+            (8, 8) if op in COMPARISON_OPS else (precedence, precedence + 1)
+        )
         if op == "OR":
-            low, high = (6 if left.precedence == _PRECEDENCE["AND"] else binds), 6
-        made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
-        if first:
-            return _Operand(f"({assignment}{made_text})", _PRIMARY, is_random=True)
-        return _Operand(made_text, binds, is_random=is_random)
+            left_precedence, right_precedence = (
+                (6 if left.precedence == _PRECEDENCE["AND"] else precedence),
+                6,
+            )
+        text = f"{_bracket(left, left_precedence)} {sign} {_bracket(right, right_precedence)}"
+        if kept_name:
+            return _Operand(f"({assignment}{text})", _PRIMARY, is_random=True)
+        return _Operand(text, precedence, is_random=is_random)
 
     def _as_number(self, operand: _Operand) -> _Operand:
         """Return an operand that C++ does not calculate with its own whole numbers."""

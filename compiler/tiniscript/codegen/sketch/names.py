@@ -84,16 +84,20 @@ class Names:
             translated_name(name, language) for name in IDENTIFIERS for language in languages()
         }
 
-    def name_of(self, name: str, before: str = "") -> str:
-        """Return the name in C++ of a name in capitals; `before` is the verb of a function."""
+    def name_of(self, name: str, verb: str = "") -> str:
+        """Return the name in C++ of a name in capitals; `verb` is the verb of a function."""
         words = [word for word in name.lower().split("_") if word]
-        result = "".join(word.capitalize() for word in words)
-        result = before + result if before else words[0] + result[len(words[0]) :]
-        if result in RESERVED or result in self._taken or _COUNTER_NAME.fullmatch(result):
-            result = self._prefix + result[0].upper() + result[1:]
-        candidate, number = result, 2
+        identifier = "".join(word.capitalize() for word in words)
+        identifier = verb + identifier if verb else words[0] + identifier[len(words[0]) :]
+        if (
+            identifier in RESERVED
+            or identifier in self._taken
+            or _COUNTER_NAME.fullmatch(identifier)
+        ):
+            identifier = self._prefix + identifier[0].upper() + identifier[1:]
+        candidate, number = identifier, 2
         while candidate in self._taken:
-            candidate, number = f"{result}_{number}", number + 1
+            candidate, number = f"{identifier}_{number}", number + 1
         self._taken.add(candidate)
         return candidate
 

@@ -57,22 +57,22 @@ class Statements:
         source: Source,
         kit: Kit,
         names: SketchNames,
-        write: Expressions,
+        expressions: Expressions,
         comments: Sequence[Comment],
     ) -> None:
         self.source = source
         self.kit = kit
         self.names = names
-        self.write = write
-        self.use = write.use
+        self.expressions = expressions
+        self.use = expressions.use
         self.lines: list[str] = []
-        self.waiting = list(reversed(comments))
+        self.pending_comments = list(reversed(comments))
         self.read_sensors: set[int] = set()
         self.set_actuators: set[int] = set()
         self.depth = 1
-        self.loops = 0
+        self.loop_depth = 0
         self.variables_set_by_calls: frozenset[int] = frozenset()  # arguments
-        self.values: list[ir.Expression] = []  # of the arguments of the call that is next
+        self.argument_values: list[ir.Expression] = []  # of the arguments of the call that is next
 
     def body(self, body: ir.Body) -> None:
         for statement in body:
@@ -80,7 +80,7 @@ class Statements:
                 isinstance(statement, ir.Assign)
                 and statement.variable in self.variables_set_by_calls
             ):
-                self.values.append(statement.value)
+                self.argument_values.append(statement.value)
             else:
                 self.statement(statement)
 
@@ -88,86 +88,88 @@ class Statements:
 
     def line(self, code: str, comment: str = "") -> None:
         indent = "  " * self.depth
-        plain = f"{indent}{code}"
+        code_line = f"{indent}{code}"
         if comment:
-            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {comment}"
-            if len(padded) <= MOST_COLUMNS:
-                plain = padded
+            commented_line = f"{code_line:<{COMMENT_COLUMN - 2}}  // {comment}"
+            if len(commented_line) <= MOST_COLUMNS:
+                code_line = commented_line
             else:
                 self.lines.append(
                     f"{indent}// {_truncate(comment, MOST_COLUMNS - len(indent) - 3)}"
                 )
-        self.lines.append(plain)
+        self.lines.append(code_line)
 
     def instruction_text(self, start: int) -> str:
         """Return the instruction or the header of a block that begins at an offset."""
-        text, at, open_brackets = self.source.text, start, 0
-        while at < len(text):
-            letter = text[at]
-            if text.startswith("//", at):
-                end = re.compile(r"[^\r\n]*").match(text, at)
-                assert end is not None
+        text, offset, open_brackets = self.source.text, start, 0
+        while offset < len(text):
+            character = text[offset]
+            if text.startswith("//", offset):
+                comment_match = re.compile(r"[^\r\n]*").match(text, offset)
+                assert comment_match is not None
                 if not open_brackets:
                     break
-                at = end.end()
+                offset = comment_match.end()
                 continue
-            if letter in ";~" or (letter in "\r\n" and not open_brackets):
+            if character in ";~" or (character in "\r\n" and not open_brackets):
                 break
-            open_brackets += {"(": 1, ")": -1}.get(letter, 0)
-            at += 1
-        result = re.sub(r"//[^\r\n]*", " ", text[start:at])
-        return comment_text(" ".join(result.split()))
+            open_brackets += {"(": 1, ")": -1}.get(character, 0)
+            offset += 1
+        text_without_comments = re.sub(r"//[^\r\n]*", " ", text[start:offset])
+        return comment_text(" ".join(text_without_comments.split()))
 
-    def remarks(self, start: int) -> None:
+    def add_comments(self, start: int) -> None:
         """Add the comments of the program before an offset, and those in its line."""
         line = self.source.position(start)[0]
-        while self.waiting and (self.waiting[-1].start < start or self.waiting[-1].line == line):
-            for row in _rows(self.waiting.pop().text, MOST_COLUMNS - 2 * self.depth - 3):
+        while self.pending_comments and (
+            self.pending_comments[-1].start < start or self.pending_comments[-1].line == line
+        ):
+            for row in _rows(self.pending_comments.pop().text, MOST_COLUMNS - 2 * self.depth - 3):
                 self.line(f"// {row}")
 
     def remaining_comments(self) -> None:
         """Add the comments after the last instruction."""
-        self.remarks(len(self.source.text) + 1)
+        self.add_comments(len(self.source.text) + 1)
 
     # -- instructions
 
     def statement(self, statement: ir.Statement) -> None:
         start = statement.span.start
-        self.remarks(start)
+        self.add_comments(start)
         _STATEMENTS[type(statement)](self, statement, self.instruction_text(start))
 
-    def read(self, read: ir.Read, said: str) -> None:
-        name = said.upper() if said.replace("_", "").isalnum() else ""
+    def read(self, read: ir.Read, comment: str) -> None:
+        name = comment.upper() if comment.replace("_", "").isalnum() else ""
         self.line(self.reading(read.sensor), name)
 
-    def motors(self, motors: ir.Motors, said: str) -> None:
+    def motors(self, motors: ir.Motors, comment: str) -> None:
         powers = ((motors.left, (-100, 100)), (motors.right, (-100, 100)))
-        self.call("motors", said, self.arguments(*powers))
+        self.call("motors", comment, self.arguments(*powers))
 
-    def stop(self, _: ir.Stop, said: str) -> None:
-        self.line(f"{self.use('stop_motors')}();", said)
+    def stop(self, _: ir.Stop, comment: str) -> None:
+        self.line(f"{self.use('stop_motors')}();", comment)
 
-    def beep(self, beep: ir.Beep, said: str) -> None:
+    def beep(self, beep: ir.Beep, comment: str) -> None:
         parts = ((beep.time, None), (beep.hertz, (31, 20_000)))
-        self.call("beep", said, self.arguments(*parts))
+        self.call("beep", comment, self.arguments(*parts))
 
-    def assign(self, assign: ir.Assign, said: str) -> None:
+    def assign(self, assign: ir.Assign, comment: str) -> None:
         name = self.names.variables[assign.variable]
-        self.line(f"{name} = {self.write.text(assign.value)};", said)
+        self.line(f"{name} = {self.expressions.text(assign.value)};", comment)
 
-    def break_(self, _: ir.Break, said: str) -> None:
-        self.line("break;", said)
+    def break_(self, _: ir.Break, comment: str) -> None:
+        self.line("break;", comment)
 
-    def call_def(self, call: ir.Call, said: str) -> None:
+    def call_def(self, call: ir.Call, comment: str) -> None:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
-        arguments, self.values = self.values, []
-        texts = [self.write.text(argument) for argument in arguments]
+        arguments, self.argument_values = self.argument_values, []
+        texts = [self.expressions.text(argument) for argument in arguments]
         for k in [k for k, terms in enumerate(arguments) if has_random(terms)][:-1]:
-            first = self.write.keep()
-            self.line(f"{first} = {texts[k]};")
-            texts[k] = first
+            kept_name = self.expressions.keep()
+            self.line(f"{kept_name} = {texts[k]};")
+            texts[k] = kept_name
         name = self.names.procedures[call.procedure]
-        self.line(f"{name}({', '.join(texts)});", said)
+        self.line(f"{name}({', '.join(texts)});", comment)
 
     def reading(self, sensor: int) -> str:
         self.read_sensors.add(sensor)
@@ -180,19 +182,23 @@ class Statements:
 
     def arguments(self, *parts: Part) -> list[str]:
         """Return arguments; the first one is calculated before, where both have a RANDOM."""
-        keeps = len(parts) > 1 and all(has_random(value) for value, _ in parts)
+        must_keep = len(parts) > 1 and all(has_random(value) for value, _ in parts)
         texts: list[str] = []
         for value, limits in parts:
-            fixed = constant(value)
-            if fixed is not None:
-                rounded = max(0, fixed) if limits is None else clamp(whole(fixed), *limits) * ONE
-                texts.append(self.write.text((Term("NUMBER", rounded),)))
+            constant_value = constant(value)
+            if constant_value is not None:
+                rounded = (
+                    max(0, constant_value)
+                    if limits is None
+                    else clamp(whole(constant_value), *limits) * ONE
+                )
+                texts.append(self.expressions.text((Term("NUMBER", rounded),)))
                 continue
-            text = self.write.text(value)
-            if keeps and not texts:
-                first = self.write.keep()
-                self.line(f"{first} = {text};")
-                text = first
+            text = self.expressions.text(value)
+            if must_keep and not texts:
+                kept_name = self.expressions.keep()
+                self.line(f"{kept_name} = {text};")
+                text = kept_name
             low, high = limits or (0, 0)
             texts.append(
                 text if limits is None else f"{self.use('limited')}({text}, {low}, {high})"
@@ -224,7 +230,7 @@ class Statements:
         self.set_actuators.add(statement.actuator)
         device = self.kit.actuators[statement.actuator]
         if device.is_yes_no:
-            value = self.write.text(statement.value)
+            value = self.expressions.text(statement.value)
         else:
             (value,) = self.arguments((statement.value, (device.low // ONE, device.high // ONE)))
         self.line(f"{self.names.sets[statement.actuator]}({value});", comment)
@@ -242,43 +248,43 @@ class Statements:
     def condition(self, reads: Sequence[int], condition: ir.Expression) -> str:
         """Return a condition; its readings are taken in it, or in lines before it."""
         if len(reads) == 1 and reads_once(condition, reads[0]):
-            return self.write.text(condition, (reads[0], self.reading(reads[0])[:-1]))
+            return self.expressions.text(condition, (reads[0], self.reading(reads[0])[:-1]))
         for sensor in reads:
             self.line(self.reading(sensor))
-        return self.write.text(condition)
+        return self.expressions.text(condition)
 
     def show(self, show: ir.Show, comment: str) -> None:
-        fixed = constant(show.value)
+        constant_value = constant(show.value)
         self.use("Serial")
         if show.is_yes_no:
-            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", comment)
-        elif fixed is not None:
-            self.line(f'Serial.println("{as_text(fixed)}");', comment)
-        elif self.write.is_exact:
-            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", comment)
+            self.line(f"{self.use('show_yes_no')}({self.expressions.text(show.value)});", comment)
+        elif constant_value is not None:
+            self.line(f'Serial.println("{as_text(constant_value)}");', comment)
+        elif self.expressions.is_exact:
+            self.line(f"{self.use('show_number')}({self.expressions.text(show.value)});", comment)
         else:
-            self.line(f"Serial.println({self.write.text(show.value)});", comment)
+            self.line(f"Serial.println({self.expressions.text(show.value)});", comment)
 
     # -- blocks
 
     def block(self, body: ir.Body, is_loop: bool = False) -> None:
         self.depth += 1
-        self.loops += is_loop
+        self.loop_depth += is_loop
         self.body(body)
-        self.loops -= is_loop
+        self.loop_depth -= is_loop
         self.depth -= 1
 
-    def if_(self, statement: ir.If, _said: str) -> None:
-        nested = 0
+    def if_(self, statement: ir.If, _comment: str) -> None:
+        nested_depth = 0
         for k, arm in enumerate(statement.arms):
             text = self.instruction_text(arm.span.start)
-            self.remarks_in(arm.span.start, k)
+            self.add_comments_before_arm(arm.span.start, k)
             line_count_before = len(self.lines)
-            inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
-            if k and arm.reads and not inline:
+            is_inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
+            if k and arm.reads and not is_inline:
                 self.line("} else {")
                 self.depth += 1
-                nested += 1
+                nested_depth += 1
                 condition = self.condition(arm.reads, arm.condition)
                 self.line(f"if ({condition}) {{", text)
             else:
@@ -286,39 +292,39 @@ class Statements:
                 assert line_count_before == len(self.lines)
                 self.line(f"{'} else ' if k else ''}if ({condition}) {{", text)
             self.block(arm.body)
-        if statement.otherwise:
+        if statement.else_body:
             self.line("} else {", "ELSE")
-            self.block(statement.otherwise)
-        for _ in range(nested):
+            self.block(statement.else_body)
+        for _ in range(nested_depth):
             self.line("}")
             self.depth -= 1
         self.line("}")
 
-    def remarks_in(self, start: int, arm: int) -> None:
+    def add_comments_before_arm(self, start: int, arm: int) -> None:
         """Add comments before an arm: those of an ELSEIF stand in the block before it."""
         self.depth += arm > 0
-        self.remarks(start)
+        self.add_comments(start)
         self.depth -= arm > 0
 
     def loop(self, loop: ir.Loop, comment: str) -> None:
         if loop.times is None:
             self.line("while (true) {", comment)
         else:
-            name = counter(self.loops)
-            fixed = constant(loop.times)
-            if fixed is None:
-                times = f"{self.use('whole')}({self.write.text(loop.times)})"
+            name = counter(self.loop_depth)
+            constant_value = constant(loop.times)
+            if constant_value is None:
+                times = f"{self.use('whole')}({self.expressions.text(loop.times)})"
                 self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
             else:
-                count = whole(fixed)
+                count = whole(constant_value)
                 kind = "int" if abs(count) <= _LARGEST_INT else "long"
                 self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
         self.block(loop.body, is_loop=True)
         self.line("}")
 
     def while_(self, loop: ir.While, comment: str) -> None:
-        inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
-        if inline or not loop.reads:
+        is_inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
+        if is_inline or not loop.reads:
             self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", comment)
         else:
             self.line("while (true) {", comment)
@@ -359,5 +365,6 @@ def _truncate(text: str, most_characters: int) -> str:
 
 def _rows(text: str, most_characters: int) -> list[str]:
     return [
-        comment_text(text[at : at + most_characters]) for at in range(0, len(text), most_characters)
+        comment_text(text[start : start + most_characters])
+        for start in range(0, len(text), most_characters)
     ] or [""]

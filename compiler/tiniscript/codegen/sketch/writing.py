@@ -25,18 +25,18 @@ from tiniscript.codegen.sketch.wiring import SketchPlan, is_exact_as_float, read
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
-from tiniscript.semantics.ways import is_open_way
+from tiniscript.semantics.ways import has_unknown_extent
 from tiniscript.syntax.lexer import scan
 
 
 def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     """Whether a program calculates: then it needs numbers that are exact."""
-    kit, wired = robot.kit, robot.board.sensors
+    kit, wirings = robot.kit, robot.board.sensors
     for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
             value = statement.value[0]
             if value.op == "SENSOR" and not reads_counts(
-                kit.sensors[value.value], wired[value.value]
+                kit.sensors[value.value], wirings[value.value]
             ):
                 return True
         if isinstance(statement, ir.Assign) or any(map(_is_computed, _arguments(statement, robot))):
@@ -91,7 +91,7 @@ def missing_feature(program: ir.Program, kit: Kit) -> str | None:
         k >= len(kit.sensors) for k in sensors_read | ir.referenced_numbers("SENSOR", statements)
     ):
         return "remote"
-    return "ways" if any(map(is_open_way, statements)) else None
+    return "ways" if any(map(has_unknown_extent, statements)) else None
 
 
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
@@ -106,9 +106,11 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
-        self.yes_no = ir.yes_no_variables(program, robot.kit)  # of each variable
-        self.arguments = frozenset(k for procedure in program.procedures for k in procedure.values)
-        self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
+        self.are_yes_no = ir.yes_no_variables(program, robot.kit)  # of each variable
+        self.argument_variables = frozenset(
+            k for procedure in program.procedures for k in procedure.values
+        )
+        self.needed_helpers: dict[str, None] = {}  # helpers, in the order in which they are met
         names = Names(language)
         kit = robot.kit
         devices = (
@@ -127,10 +129,12 @@ class _Sketch:
             variable: names.name_of(variable) for variable in dict.fromkeys(program.variables)
         }
         # values of two DEFs may have one name
-        self.named = SketchNames(
+        self.sketch_names = SketchNames(
             *devices, procedures, [variables[variable] for variable in program.variables]
         )
-        self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
+        self.expressions = Expressions(
+            self.use, self.is_exact, self.sketch_names.variables, self.sketch_names.sensors
+        )
         self.plan = SketchPlan(robot, self.label, self.is_exact)
         self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
         self.functions["to_ms"] = helpers.TO_MS[self.is_exact]
@@ -140,7 +144,7 @@ class _Sketch:
             self.functions = {key: _silent(code) for key, code in self.functions.items()}
 
     def use(self, key: str) -> str:
-        self.needed[key] = None
+        self.needed_helpers[key] = None
         return translated_name(key, self.language)
 
     def label(self, name: str) -> str:
@@ -155,31 +159,37 @@ class _Sketch:
     # -- the whole
 
     def text(self) -> str:
-        program, rows = self.program, self.statements()
+        program, statements = self.program, self.statements()
         loop: ir.Body = ()
         body = program.body
         is_ping = program.start == "PING"
-        last = body[-1] if body else None
-        if isinstance(last, ir.Loop) and last.times is None and not ir.breaks_out(last.body):
-            body, loop = body[:-1], last.body
-        procedures = [self.procedure(rows, procedure) for procedure in program.procedures]
-        rows.variables_set_by_calls = self.arguments
-        rows.body(body)
-        if isinstance(last, ir.Loop) and loop:
-            start = last.span.start
-            rows.remarks(start)
-            rows.line(f"// {rows.instruction_text(start)}: {self.text_of_key('in_loop')}")
-        main_lines, rows.lines = rows.lines, []
-        rows.body(loop)
-        rows.remaining_comments()
-        repeated_lines, rows.lines = rows.lines, []
+        last_statement = body[-1] if body else None
+        if (
+            isinstance(last_statement, ir.Loop)
+            and last_statement.times is None
+            and not ir.breaks_out(last_statement.body)
+        ):
+            body, loop = body[:-1], last_statement.body
+        procedures = [self.procedure(statements, procedure) for procedure in program.procedures]
+        statements.variables_set_by_calls = self.argument_variables
+        statements.body(body)
+        if isinstance(last_statement, ir.Loop) and loop:
+            start = last_statement.span.start
+            statements.add_comments(start)
+            statements.line(
+                f"// {statements.instruction_text(start)}: {self.text_of_key('in_loop')}"
+            )
+        main_lines, statements.lines = statements.lines, []
+        statements.body(loop)
+        statements.remaining_comments()
+        repeated_lines, statements.lines = statements.lines, []
         if is_ping:
             main_lines = []
         elif not loop:
-            rows.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
-            main_lines += [*repeated_lines, *rows.lines]
+            statements.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
+            main_lines += [*repeated_lines, *statements.lines]
             repeated_lines = []
-        return self.layout(rows, main_lines, repeated_lines, procedures)
+        return self.layout(statements, main_lines, repeated_lines, procedures)
 
     def statements(self) -> Statements:
         comments = [
@@ -190,71 +200,77 @@ class _Sketch:
             )
             for comment in scan(self.source.text).comments
         ]
-        return Statements(self.source, self.robot.kit, self.named, self.write, comments)
+        return Statements(
+            self.source, self.robot.kit, self.sketch_names, self.expressions, comments
+        )
 
-    def procedure(self, rows: Statements, procedure: ir.Procedure) -> str:
-        rows.depth = 0
-        rows.remarks(procedure.span.start)
-        rows.depth = 1
-        name = self.named.procedures[self.program.procedures.index(procedure)]
-        head, rows.lines = rows.lines, []
-        rows.variables_set_by_calls = self.arguments - {
+    def procedure(self, statements: Statements, procedure: ir.Procedure) -> str:
+        statements.depth = 0
+        statements.add_comments(procedure.span.start)
+        statements.depth = 1
+        name = self.sketch_names.procedures[self.program.procedures.index(procedure)]
+        comment_lines, statements.lines = statements.lines, []
+        statements.variables_set_by_calls = self.argument_variables - {
             *procedure.values
         }  # those of this DEF it sets itself
         variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in variables_read:  # or a compiler warns
-                rows.line(f"(void){self.named.variables[k]};")
-        rows.body(procedure.body)
-        body, rows.lines = rows.lines, []
-        types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
-        names = (self.named.variables[k] for k in procedure.values)
+                statements.line(f"(void){self.sketch_names.variables[k]};")
+        statements.body(procedure.body)
+        body, statements.lines = statements.lines, []
+        types = ("bool" if self.are_yes_no[k] else "$N" for k in procedure.values)
+        names = (self.sketch_names.variables[k] for k in procedure.values)
         header = f"void {name}({', '.join(map(' '.join, zip(types, names, strict=True)))}) {{"
-        commented_header = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
-        return "\n".join([*head, commented_header, *body, "}"])
+        commented_header = f"{header:<38}  // {statements.instruction_text(procedure.span.start)}"
+        return "\n".join([*comment_lines, commented_header, *body, "}"])
 
     def layout(
         self,
-        rows: Statements,
+        statements: Statements,
         main_lines: list[str],
         repeated_lines: list[str],
         procedures: list[str],
     ) -> str:
         """Return the sketch; what the program uses is known by now."""
-        is_ping, parts = self.program.start == "PING", self.plan
+        is_ping, plan = self.program.start == "PING", self.plan
         if not is_ping:
             self.plan.motors()
         own_functions = {
             **{
-                self.named.reads[k]: self.plan.reader(k, self.named.sensors[k], self.named.reads[k])
-                for k in sorted(rows.read_sensors)
+                self.sketch_names.reads[k]: self.plan.reader(
+                    k, self.sketch_names.sensors[k], self.sketch_names.reads[k]
+                )
+                for k in sorted(statements.read_sensors)
             },
             **{
-                self.named.sets[k]: self.translate_code(self.plan.setter(k, self.named.sets[k]))
-                for k in sorted(rows.set_actuators)
+                self.sketch_names.sets[k]: self.translate_code(
+                    self.plan.setter(k, self.sketch_names.sets[k])
+                )
+                for k in sorted(statements.set_actuators)
             },
         }
-        self.functions.update(parts.functions)
-        self.functions["halt"] = self.halt()
-        begin = [] if is_ping else self.begin()
+        self.functions.update(plan.functions)
+        self.functions["halt"] = self.halt_code()
+        setup_lines = [] if is_ping else self.setup_lines()
         self.add_needed_helpers(
-            [*main_lines, *repeated_lines, *procedures, *own_functions.values(), *begin]
+            [*main_lines, *repeated_lines, *procedures, *own_functions.values(), *setup_lines]
         )
         wiring_functions = [*own_functions.values()]
         kit = self.robot.kit
         introduction = [
             *(
                 self.text_of_key("read", name=kit.sensors[k].name)
-                for k in sorted(rows.read_sensors)
+                for k in sorted(statements.read_sensors)
             ),
             *(
                 self.text_of_key("set", name=kit.actuators[k].name)
-                for k in sorted(rows.set_actuators)
+                for k in sorted(statements.set_actuators)
             ),
         ]
         functions = {
             key: self.translate_code(self.functions[key])
-            for key in self.needed
+            for key in self.needed_helpers
             if key in self.functions
         }
         commented_lines = [
@@ -269,10 +285,10 @@ class _Sketch:
             self.opening(),
             "#include <Arduino.h>\n",
             self.constants(),
-            self.number() if self.is_exact else "",
-            self.variables(rows),
+            self.number_struct() if self.is_exact else "",
+            self.variables(statements),
             self.prototypes(all_functions),
-            f"void setup() {{\n{_lines(begin, main_lines)}}}\n",
+            f"void setup() {{\n{_lines(setup_lines, main_lines)}}}\n",
             f"void loop() {{\n{_lines(repeated_lines)}}}\n",
         ]
         if procedures:
@@ -286,7 +302,7 @@ class _Sketch:
 
     # -- its parts
 
-    def begin(self) -> list[str]:
+    def setup_lines(self) -> list[str]:
         """Return what setup() does first."""
         lines = list(self.plan.begin)
         if self.needs_serial():
@@ -297,7 +313,7 @@ class _Sketch:
         self.plan.pin("$START_BUTTON_$PIN", self.robot.board.start_button)
         if self.plan.servo_pins:
             lines.append("$begin_servos();")
-        self.needed["due"] = None
+        self.needed_helpers["due"] = None
         if self.program.start == "SB":
             lines.append("$wait_for_button();")
         else:
@@ -306,11 +322,11 @@ class _Sketch:
 
     def needs_serial(self) -> bool:
         self.add_needed_helpers([])
-        return "Serial" in self.needed or any(
-            "Serial" in self.functions.get(key, "") for key in self.needed
+        return "Serial" in self.needed_helpers or any(
+            "Serial" in self.functions.get(key, "") for key in self.needed_helpers
         )
 
-    def halt(self) -> str:
+    def halt_code(self) -> str:
         lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off, "while (true) {"]
         body = "\n".join(f"  {line}" for line in lines)
         code = f"void $halt() {{\n{body}\n  }}\n}}"
@@ -324,14 +340,14 @@ class _Sketch:
         for text in texts:
             for word in re.findall(r"\w+", text):
                 if word in by_name and f"{word}(" in text:
-                    self.needed[by_name[word]] = None
+                    self.needed_helpers[by_name[word]] = None
             self._names_in(text)
-        pending_keys = list(self.needed)
+        pending_keys = list(self.needed_helpers)
         while pending_keys:
             text = self.functions.get(pending_keys.pop(), "")
-            before = set(self.needed)
+            needed_before = set(self.needed_helpers)
             self._names_in(text)
-            pending_keys += [key for key in self.needed if key not in before]
+            pending_keys += [key for key in self.needed_helpers if key not in needed_before]
 
     def _names_in(self, text: str) -> None:
         for key in re.findall(r"\$([a-z_]+)", text):
@@ -339,61 +355,63 @@ class _Sketch:
             key = "due" if key == "started" else "move_runs" if key.startswith("move_") and (
                 key not in self.functions
             ) else key  # fmt: skip
-            self.needed[key] = None
+            self.needed_helpers[key] = None
         if "$is_forever" in text:
-            self.needed["FOREVER"] = None
+            self.needed_helpers["FOREVER"] = None
             if self.is_exact:
-                self.needed["exactly"] = None
+                self.needed_helpers["exactly"] = None
 
     def opening(self) -> str:
-        file = comment_text(self.source.name or "-e")
+        file_name = comment_text(self.source.name or "-e")
         robot, board = self.label("robot"), BOARD_TITLES[self.robot.board.chip]
-        rows = [self.text_of_key("made", file=file, robot=robot, board=board), ""]
-        rows.append(self.text_of_key("limits"))
+        lines = [self.text_of_key("made", file=file_name, robot=robot, board=board), ""]
+        lines.append(self.text_of_key("limits"))
         limits = ["limit_ping"]
         if self.program.start != "PING":
             limits = ["limit_link", "limit_watch", "limit_time"]
             limits += ["limit_si"] if self.program.start == "SI" else []
-            limits += [f"limit_{key}" for key in ("random", "fault") if key in self.needed]
-            shows = {"Serial", "show_number", "show_yes_no"} & set(self.needed)
+            limits += [f"limit_{key}" for key in ("random", "fault") if key in self.needed_helpers]
+            shows = {"Serial", "show_number", "show_yes_no"} & set(self.needed_helpers)
             limits += ["limit_show"] if shows else []
         baud = str(self.robot.board.baud)
-        lines = ["// " + row if row else "//" for row in rows]
+        comment_lines = ["// " + line if line else "//" for line in lines]
         for key in limits:
-            lines += _wrap(self.text_of_key(key, baud=baud), "// - ", "//   ")
-        return "\n".join(lines) + "\n"
+            comment_lines += _wrap(self.text_of_key(key, baud=baud), "// - ", "//   ")
+        return "\n".join(comment_lines) + "\n"
 
     def constants(self) -> str:
         if not self.plan.constants:
             return ""
-        head = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
-        return "\n".join([head, *self.plan.constants]) + "\n"
+        heading = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
+        return "\n".join([heading, *self.plan.constants]) + "\n"
 
-    def number(self) -> str:
+    def number_struct(self) -> str:
         return self.with_comment(
             self.text_of_key("Number"), self.translate_code(numbers.STRUCT.rstrip())
         )
 
-    def variables(self, rows: Statements) -> str:
+    def variables(self, statements: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
-        for k, name in enumerate(self.named.variables):
-            if k not in self.arguments:
-                lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
+        for k, name in enumerate(self.sketch_names.variables):
+            if k not in self.argument_variables:
+                lines.append(f"bool {name} = false;" if self.are_yes_no[k] else f"$N {name} = 0;")
         named_sensors = ir.referenced_numbers(
             "SENSOR", ir.all_statements(self.program)
         )  # read or not
-        for k in sorted(rows.read_sensors | named_sensors):
+        for k in sorted(statements.read_sensors | named_sensors):
             kind = self.plan.kind(k)
-            lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
+            lines.append(
+                f"{kind} {self.sketch_names.sensors[k]} = {'false' if kind == 'bool' else '0'};"
+            )
         pieces = ["\n".join([f"// {self.text_of_key('values')}", *lines])] if lines else []
         for key, (note, code) in helpers.SHARED.items():
-            if key in self.needed:
+            if key in self.needed_helpers:
                 pieces.append((f"// {self.text_of_key(note)}\n" if note else "") + code)
         if self.plan.servo_pins:
             pieces.append(helpers.shared_servo_code(self.plan.servo_pins))
-        if self.write.kept:
-            shared_names = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
+        if self.expressions.kept_count:
+            shared_names = ", ".join(f"first{k + 1}" for k in range(self.expressions.kept_count))
             pieces.append(f"// {self.text_of_key('shared_first')}\n$N {shared_names};")
         return "\n".join(pieces) + "\n" if pieces else ""
 
@@ -406,8 +424,12 @@ class _Sketch:
         ]
         if not declarations:
             return ""
-        last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.text_of_key('prototypes')}", *declarations, *([last] if last else [])]
+        forever_line = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed_helpers else ""
+        lines = [
+            f"// {self.text_of_key('prototypes')}",
+            *declarations,
+            *([forever_line] if forever_line else []),
+        ]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:
@@ -438,12 +460,14 @@ class _Sketch:
 
 
 def _lines(*parts: list[str]) -> str:
-    first, *others = parts
-    if others:
-        first = [f"  {line}" for line in first]
-        if first and others[0]:
-            first.append("")
-    return "".join(f"{line}\n" for line in (*first, *(row for rows in others for row in rows)))
+    first_part, *other_parts = parts
+    if other_parts:
+        first_part = [f"  {line}" for line in first_part]
+        if first_part and other_parts[0]:
+            first_part.append("")
+    return "".join(
+        f"{line}\n" for line in (*first_part, *(row for rows in other_parts for row in rows))
+    )
 
 
 def _silent(code: str) -> str:
@@ -455,5 +479,5 @@ def _heading(text: str) -> str:
     return f"// {'-' * 4} {text} {'-' * max(4, 90 - len(text))}\n"
 
 
-def _wrap(text: str, first: str, other: str) -> list[str]:
-    return wrap(text, MOST_COLUMNS, initial_indent=first, subsequent_indent=other)
+def _wrap(text: str, first_indent: str, next_indent: str) -> list[str]:
+    return wrap(text, MOST_COLUMNS, initial_indent=first_indent, subsequent_indent=next_indent)

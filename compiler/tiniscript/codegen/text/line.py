@@ -22,17 +22,22 @@ EMPTY_PROGRAM = "SI|"  # a program that does nothing: an empty line would be non
 
 def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
     """Yield tokens; in place of a word that stands for instructions those of them."""
-    rest = iter(tokens)
-    for token in rest:
+    tokens_left = iter(tokens)
+    for token in tokens_left:
         word = WORDS.get(token.text)
         if word is None or not word.stands_for:
             yield token
             continue
-        values = _values(rest) if word.arguments else []
-        value_of = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
+        values = _values(tokens_left) if word.arguments else []
+        value_of = dict(
+            zip([parameter.name.upper() for parameter in word.arguments], values, strict=True)
+        )
         expansion = []
-        for part in scan(word.stands_for).tokens[:-1]:
-            expansion += value_of.get(part.text, [part._replace(start=token.start, end=token.end)])
+        for token_of_expansion in scan(word.stands_for).tokens[:-1]:
+            expansion += value_of.get(
+                token_of_expansion.text,
+                [token_of_expansion._replace(start=token.start, end=token.end)],
+            )
         yield from spell_out(expansion)
 
 
@@ -54,27 +59,27 @@ def _values(tokens: Iterator[Token]) -> list[list[Token]]:
 def line_of(source: Source) -> str:
     """Return a program's text as one line, without its end: the same instructions."""
     parts: list[str] = []
-    brackets = 0
-    before = ""  # the kind of the last token, or nothing at the beginning
+    open_brackets = 0
+    previous_kind = ""  # the kind of the last token, or nothing at the beginning
     has_ended = False  # whether an instruction has ended since then
     for token in spell_out(scan(source.text).tokens):
         kind = token.kind
         if kind is END:
             break
         if kind is NEWLINE or kind == ";":
-            has_ended = has_ended or not brackets
+            has_ended = has_ended or not open_brackets
             continue
-        if has_ended and before not in ("", "|"):
+        if has_ended and previous_kind not in ("", "|"):
             parts.append(";")
-        elif before in (WORD, NUMBER) and kind in (WORD, NUMBER):
+        elif previous_kind in (WORD, NUMBER) and kind in (WORD, NUMBER):
             parts.append(" ")
         parts.append(ALIASES.get(token.text, token.text))
-        brackets += (kind == "(") - (kind == ")")
-        before, has_ended = kind, False
+        open_brackets += (kind == "(") - (kind == ")")
+        previous_kind, has_ended = kind, False
     return with_checksum("".join(parts) or EMPTY_PROGRAM)
 
 
-class PlainPlace(NamedTuple):
+class PlainLocation(NamedTuple):
     """What `span` of the text says makes the code from `offset` on."""
 
     offset: int
@@ -82,31 +87,33 @@ class PlainPlace(NamedTuple):
 
 
 class PlainCode(NamedTuple):
-    """`length` is that with short jumps; it is the code's own where the code fits a level.
+    """`short_length` is that with short jumps; it is the code's own where the code fits a level.
 
-    The offsets of `places` count so, too.
+    The offsets of `locations` count so, too.
     """
 
     code: bytes
-    length: int
-    places: tuple[PlainPlace, ...]
+    short_length: int
+    locations: tuple[PlainLocation, ...]
 
 
 def plain_code(program: Program) -> PlainCode:
     """Return the plain code of a checked program, as it is written."""
-    code, its_places = lower(program, plain=True)
-    short = _short_offsets(code)
-    places = tuple(PlainPlace(short[place.offset], place.span) for place in its_places)
-    return PlainCode(code, short[len(code)], places)
+    code, locations = lower(program, plain=True)
+    short_offsets = _short_offsets(code)
+    short_locations = tuple(
+        PlainLocation(short_offsets[location.offset], location.span) for location in locations
+    )
+    return PlainCode(code, short_offsets[len(code)], short_locations)
 
 
 def _short_offsets(code: bytes) -> dict[int, int]:
     """Return where each instruction, and the end, would be if no jump were a far one."""
-    short_offsets, at, excess_bytes = {0: 0}, 0, 0
-    while at < len(code):
-        op = op_at(code, at)
+    short_offsets, offset, excess_bytes = {0: 0}, 0, 0
+    while offset < len(code):
+        op = op_at(code, offset)
         assert op is not None
-        at += op.size
+        offset += op.size
         excess_bytes += op.name.endswith("_FAR")
-        short_offsets[at] = at - excess_bytes
+        short_offsets[offset] = offset - excess_bytes
     return short_offsets

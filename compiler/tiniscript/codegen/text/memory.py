@@ -40,21 +40,21 @@ class Need(NamedTuple):
 class _Def(NamedTuple):
     """The sensors that are surely read after it, and the variables of its values."""
 
-    read_end: int
+    read_mask: int
     values: tuple[int, ...]
 
 
 class _Block:
     """A block that is open; sets of sensors have a bit for each."""
 
-    __slots__ = ("after", "before", "has_else", "name", "taken", "word")
+    __slots__ = ("has_else", "name", "read_after", "read_before", "readings_taken", "word")
 
-    def __init__(self, word: str, before: int, taken_bytes: int, name: str = "") -> None:
+    def __init__(self, word: str, read_before: int, readings_taken: int, name: str = "") -> None:
         self.word = word
         self.name = name  # of a DEF
-        self.before = before
-        self.taken = taken_bytes
-        self.after = -1
+        self.read_before = read_before
+        self.readings_taken = readings_taken
+        self.read_after = -1
         self.has_else = False
 
 
@@ -68,55 +68,57 @@ class Reader:
         self.tokens = tokens
         self.i = 0
         self.needs: list[Need] = []
-        self.most = 0  # bytes that have been wanted at once
+        self.most_bytes = 0  # bytes that have been wanted at once
         self.block_bytes = _BLOCK_BYTES + 3 * sensor_bytes
         self.def_bytes = _DEF_BYTES + sensor_bytes
-        self.length = 0  # of the code
-        self.used = 0  # at the other end
-        self.brackets = 0
-        self.is_way = False  # of the instruction whose brackets have been read
-        self.one_too_many: Span | None = None  # the first bracket after MOST_BRACKETS
+        self.code_bytes = 0  # of the code
+        self.used_bytes = 0  # at the other end
+        self.open_brackets = 0
+        self.has_extent_unit = False  # of the instruction whose brackets have been read
+        self.extra_bracket_span: Span | None = None  # the first bracket after MOST_BRACKETS
         self.sensors = {
             device.name: k for k, device in enumerate(kit_for_tokens(tokens, kit).readings)
         }
         self.actuators = {device.name: k for k, device in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
-        self.own: dict[str, int] = {}  # the values of the DEF that is open
-        self.count = 0  # of variables so far, with the values of DEFs
+        self.own_variables: dict[str, int] = {}  # the values of the DEF that is open
+        self.variable_count = 0  # of variables so far, with the values of DEFs
         self.defs: dict[str, _Def] = {}
         self.blocks: list[_Block] = []
-        self.read = 0  # sensors that are surely read
-        self.known = 0  # those, and what this instruction has read
-        self.waiting: list[tuple[int, str]] = []  # operators: how tightly each binds, its name
+        self.read_mask = 0  # sensors that are surely read
+        self.known_mask = 0  # those, and what this instruction has read
+        self.pending_operators: list[
+            tuple[int, str]
+        ] = []  # operators: how tightly each binds, its name
 
     # -- memory -------------------------------------------------------------------------------
 
     def require_room(self, byte_count: int) -> None:
         """Note that a byte is wanted after the code and `byte_count` bytes."""
-        expected = self.length + byte_count + 1 + self.used
-        if expected > self.most:
-            self.most = expected
-            self.needs.append(Need(expected, self.tokens[max(self.i - 1, 0)].span))
+        bytes_needed = self.code_bytes + byte_count + 1 + self.used_bytes
+        if bytes_needed > self.most_bytes:
+            self.most_bytes = bytes_needed
+            self.needs.append(Need(bytes_needed, self.tokens[max(self.i - 1, 0)].span))
 
-    def emit(self, count: int) -> None:
-        for _ in range(count):
+    def emit(self, byte_count: int) -> None:
+        for _ in range(byte_count):
             self.require_room(0)
-            self.length += 1
+            self.code_bytes += 1
 
     def emit_numbered(self, number: int) -> None:
         self.emit(1 if number < SHORTS else 2)
 
     def push(self) -> None:
         self.require_room(0)
-        self.used += 1
+        self.used_bytes += 1
 
     def pop(self) -> None:
-        self.used -= 1
+        self.used_bytes -= 1
 
     def add_name(self, name: str, other_bytes: int) -> None:
-        count = 1 + other_bytes + len(name)
-        self.require_room(len(name) + count - 1)
-        self.used += count
+        byte_count = 1 + other_bytes + len(name)
+        self.require_room(len(name) + byte_count - 1)
+        self.used_bytes += byte_count
 
     # -- tokens -------------------------------------------------------------------------------
 
@@ -135,14 +137,14 @@ class Reader:
         return token
 
     def skip_newlines(self) -> None:
-        while self.brackets and self.token.kind is NEWLINE:
+        while self.open_brackets and self.token.kind is NEWLINE:
             self.i += 1
 
     def open_bracket(self) -> None:
         self.i += 1
-        self.brackets += 1
-        if self.brackets > MOST_BRACKETS and self.one_too_many is None:
-            self.one_too_many = self.tokens[self.i - 1].span
+        self.open_brackets += 1
+        if self.open_brackets > MOST_BRACKETS and self.extra_bracket_span is None:
+            self.extra_bracket_span = self.tokens[self.i - 1].span
 
     # -- instructions -------------------------------------------------------------------------
 
@@ -154,11 +156,11 @@ class Reader:
                 self.instruction()
 
     def instruction(self) -> None:
-        self.known = self.read
+        self.known_mask = self.read_mask
         token = self.take()
         word = WORDS.get(token.text)
         if word is None:
-            self.name(token.text)
+            self.read_name(token.text)
         elif token.text in ENDS:
             self.close(ENDS[token.text])
         elif token.text == "DEF":
@@ -166,7 +168,7 @@ class Reader:
             self.add_name(name, self.def_bytes)
             self.emit(_JUMP_BYTES)
             self.open("DEF", name)
-            self.names()
+            self.read_def_values()
         elif token.text in TASKS:
             self.emit(_TASK_BYTES)
             self.open(token.text)
@@ -183,37 +185,37 @@ class Reader:
         elif word.arguments:
             self.command(word)
 
-    def name(self, name: str) -> None:
+    def read_name(self, name: str) -> None:
         if self.token.kind == "=":
             self.assignment(name)
         elif name in self.sensors:
             self.emit_numbered(self.sensors[name])
-            self.read |= 1 << self.sensors[name]
+            self.read_mask |= 1 << self.sensors[name]
         elif name in self.defs:
-            self.give(self.defs[name].values)
-            self.read |= self.defs[name].read_end
+            self.read_call_values(self.defs[name].values)
+            self.read_mask |= self.defs[name].read_mask
             self.emit(_JUMP_BYTES)
         else:
             self.arguments()
             self.emit_numbered(self.actuators[name])
 
     def assignment(self, name: str) -> None:
-        number = self.number_of(name, self.count)
-        if number == self.count:
+        number = self.number_of(name, self.variable_count)
+        if number == self.variable_count:
             self.add_name(name, 0)
         self.i += 1
         self.push()
         self.value()
-        if number == self.count:
+        if number == self.variable_count:
             self.variables[name] = number
-            self.count += 1
+            self.variable_count += 1
         self.emit_numbered(number)
 
-    def number_of(self, name: str, other: int) -> int:
-        """Return the number of a variable, and `other` where there is none."""
-        return self.own.get(name, self.variables.get(name, other))
+    def number_of(self, name: str, default: int) -> int:
+        """Return the number of a variable, and `default` where there is none."""
+        return self.own_variables.get(name, self.variables.get(name, default))
 
-    def names(self) -> None:
+    def read_def_values(self) -> None:
         """Read the names in the brackets of a DEF, where it has any."""
         if self.token.kind != "(":
             return
@@ -224,10 +226,10 @@ class Reader:
             kind = name.kind
             if kind is WORD:
                 self.add_name(name.text, 0)
-                self.own[name.text] = self.count
-                self.count += 1
+                self.own_variables[name.text] = self.variable_count
+                self.variable_count += 1
 
-    def give(self, values: Sequence[int]) -> None:
+    def read_call_values(self, values: Sequence[int]) -> None:
         """Read the brackets of a call, where it has any: each value is set after its code."""
         if self.token.kind != "(":
             return
@@ -244,28 +246,28 @@ class Reader:
         """Go past the next token in brackets, which it may close."""
         self.skip_newlines()
         token = self.take()
-        self.brackets -= token.kind == ")"
+        self.open_brackets -= token.kind == ")"
         return token
 
-    def command(self, spec: Word) -> None:
-        word = spec.text
+    def command(self, word_row: Word) -> None:
+        word = word_row.text
         if word == "ELSEIF":
             self.next_arm()
         elif word == "WHILE":
             self.emit(_JUMP_BYTES)
             self.open(word)
         is_forever = self.arguments()
-        if spec.role.lasts:
-            code = 2 if self.is_way else 1
+        if word_row.role.lasts:
+            code_bytes = 2 if self.has_extent_unit else 1
             if self.token.kind is WORD:
                 self.take()
-                self.emit(code)
-                self.known = 0
+                self.emit(code_bytes)
+                self.known_mask = 0
                 self.arguments()
-                code = 1
+                code_bytes = 1
             elif is_forever:
-                code += 2
-            self.emit(code)
+                code_bytes += 2
+            self.emit(code_bytes)
         elif word == "LOOP":
             self.emit(1 if is_forever else _JUMP_BYTES)
             self.open(word)
@@ -273,7 +275,7 @@ class Reader:
             self.emit(_JUMP_BYTES)
             if word == "IF":
                 self.open(word)
-            self.blocks[-1].taken = self.known
+            self.blocks[-1].readings_taken = self.known_mask
         else:
             self.emit(1)
 
@@ -281,35 +283,35 @@ class Reader:
 
     def open(self, word: str, name: str = "") -> None:
         self.require_room(self.block_bytes - 1)
-        self.used += self.block_bytes
-        self.blocks.append(_Block(word, self.read, self.known, name))
+        self.used_bytes += self.block_bytes
+        self.blocks.append(_Block(word, self.read_mask, self.known_mask, name))
         if word != "IF":
-            self.known = self.read = 0
+            self.known_mask = self.read_mask = 0
 
     def next_arm(self) -> None:
         block = self.blocks[-1]
         self.emit(_JUMP_BYTES)
-        block.after &= self.read
-        self.read, self.known = block.before, block.taken
+        block.read_after &= self.read_mask
+        self.read_mask, self.known_mask = block.read_before, block.readings_taken
 
     def close(self, word: str) -> None:
         block = self.blocks.pop()
         if word == "IF":
-            self.read &= block.after & (-1 if block.has_else else block.before)
+            self.read_mask &= block.read_after & (-1 if block.has_else else block.read_before)
         else:
             self.emit(1 if word in ("DEF", *TASKS) else _JUMP_BYTES)
             if word == "DEF":
-                self.defs[block.name] = _Def(self.read, tuple(self.own.values()))
-                self.own = {}
-            self.read = block.before
-        self.used -= self.block_bytes
+                self.defs[block.name] = _Def(self.read_mask, tuple(self.own_variables.values()))
+                self.own_variables = {}
+            self.read_mask = block.read_before
+        self.used_bytes -= self.block_bytes
 
     # -- values -------------------------------------------------------------------------------
 
     def arguments(self) -> bool:
         """Read what stands in the brackets of an instruction; return whether it is FOREVER."""
         self.open_bracket()
-        is_forever = self.is_way = False
+        is_forever = self.has_extent_unit = False
         while True:
             self.push()
             self.skip_newlines()
@@ -357,8 +359,8 @@ class Reader:
             return False
         if token.text in self.sensors:
             number = self.sensors[token.text]
-            if not self.known >> number & 1:
-                self.known |= 1 << number
+            if not self.known_mask >> number & 1:
+                self.known_mask |= 1 << number
                 self.emit_numbered(number)
             self.emit_numbered(number)
         else:
@@ -367,19 +369,19 @@ class Reader:
 
     def number(self, token: Token) -> None:
         value, _ = read_literal(token.text)
-        if self.waiting and self.waiting[-1] == (MINUS, "NEG"):
-            before = self.i - 2
-            while self.tokens[before].kind is NEWLINE:
-                before -= 1
-            if self.tokens[before].kind == "-":
-                self.waiting.pop()
+        if self.pending_operators and self.pending_operators[-1] == (MINUS, "NEG"):
+            index_before = self.i - 2
+            while self.tokens[index_before].kind is NEWLINE:
+                index_before -= 1
+            if self.tokens[index_before].kind == "-":
+                self.pending_operators.pop()
                 self.pop()
                 value = -value
         self.emit(push_bytes(value))
 
     def wait(self, binding: int, name: str) -> None:
         self.push()
-        self.waiting.append((binding, name))
+        self.pending_operators.append((binding, name))
 
     def operator(self) -> bool:
         """Read what follows an operand; return whether another operand is wanted."""
@@ -392,16 +394,16 @@ class Reader:
                 return True
             if token.kind is WORD and token.text in WAYS:
                 self.take()
-                self.is_way = True
+                self.has_extent_unit = True
             self.reduce(OPEN + 1)
-            if not self.waiting or token.kind not in (")", ","):
+            if not self.pending_operators or token.kind not in (")", ","):
                 return False
             if token.kind == ",":
                 self.take()
                 return True
             self.take()
-            self.brackets -= 1
-            _, name = self.waiting.pop()
+            self.open_brackets -= 1
+            _, name = self.pending_operators.pop()
             self.pop()
             if name != "(":
                 self.emit(1)
@@ -416,8 +418,8 @@ class Reader:
 
     def reduce(self, binding: int) -> None:
         """Apply what waits and binds at least so tightly, back to an open bracket."""
-        while self.waiting and self.waiting[-1][0] >= binding:
-            precedence, _ = self.waiting.pop()
+        while self.pending_operators and self.pending_operators[-1][0] >= binding:
+            precedence, _ = self.pending_operators.pop()
             self.pop()
             if precedence <= AND:
                 self.pop()

@@ -28,8 +28,8 @@ class Row(NamedTuple):
     around it."""
 
     codes: tuple[Code, ...]
-    at: str | type
-    find: Callable[..., None]
+    target: str | type
+    report: Callable[..., None]
 
 
 TABLE = (
@@ -88,8 +88,12 @@ FOUND_ELSEWHERE: dict[Code, str] = {
 
 _STATEMENTS = (*get_args(ir.Statement), ir.Task)
 _ROWS: dict[str | type, list[Row]] = {
-    at: [row for row in TABLE if row.at == at or (row.at == STATEMENT and at in _STATEMENTS)]
-    for at in (PROGRAM, TASKS, BODY, *_STATEMENTS)
+    target: [
+        row
+        for row in TABLE
+        if row.target == target or (row.target == STATEMENT and target in _STATEMENTS)
+    ]
+    for target in (PROGRAM, TASKS, BODY, *_STATEMENTS)
 }
 
 
@@ -97,28 +101,28 @@ def lint(program: ir.Program, kit: Kit, source: Source, scan: Scan) -> list[Diag
     """Return the warnings for a program that has no mistakes, of this text and these tokens."""
     context = LintContext(program, kit, source, scan)
     for procedure in program.procedures:
-        _look_at(procedure.body, BodyContext(is_repeated=True), context)
+        _check_body(procedure.body, BodyContext(is_repeated=True), context)
     for task in program.tasks:
         for row in _ROWS[ir.Task]:
-            row.find(task, BodyContext(), context)
-        _look_at(task.body, BodyContext(is_repeated=task.until is not None), context)
-    _look_at(program.body, BodyContext(is_last=True), context)
+            row.report(task, BodyContext(), context)
+        _check_body(task.body, BodyContext(is_repeated=task.until is not None), context)
+    _check_body(program.body, BodyContext(is_last=True), context)
     for row in (*_ROWS[PROGRAM], *(_ROWS[TASKS] if program.tasks else ())):
-        row.find(context)
+        row.report(context)
     return context.diagnostics
 
 
-def _look_at(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
+def _check_body(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     for row in _ROWS[BODY]:
-        row.find(body, body_context, context)
+        row.report(body, body_context, context)
     for statement in body:
         for row in _ROWS[type(statement)]:
-            row.find(statement, body_context, context)
+            row.report(statement, body_context, context)
         inner_bodies = ir.bodies(statement)
         if inner_bodies:
             inner_context = _inner_context(statement, body_context, is_last=statement is body[-1])
-            for item in inner_bodies:
-                _look_at(item, inner_context, context)
+            for inner_body in inner_bodies:
+                _check_body(inner_body, inner_context, context)
 
 
 def _inner_context(statement: ir.Statement, outer: BodyContext, is_last: bool) -> BodyContext:

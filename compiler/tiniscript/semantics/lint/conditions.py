@@ -20,8 +20,8 @@ from tiniscript.semantics.comparisons import (
     answer_of,
     answer_of_both,
     can_come_true,
-    comparison,
-    is_between,
+    comparison_of,
+    is_one_of_many,
     looks_ahead,
 )
 from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, LintContext
@@ -101,17 +101,21 @@ class _Conditions:
         is_ahead = looks_ahead(device)
         is_turned = op in _REVERSED_COMPARATORS.get(move.direction, {}) and is_ahead
         if is_turned and not body_context.asked_sensors & _sensors(condition):
-            turned = comparison._replace(op=_REVERSED_COMPARATORS[move.direction][op])
-            other = "" if answer_of(turned) else self._with_condition(move, str(turned))
+            reversed_comparison = comparison._replace(op=_REVERSED_COMPARATORS[move.direction][op])
+            fixed_move = (
+                ""
+                if answer_of(reversed_comparison)
+                else self._with_condition(move, str(reversed_comparison))
+            )
             is_forward = move.direction == "F"
-            number_is, repair = ("number", "fix") if is_forward else ("far", "away")
-            values = {"sensor": device.name, number_is: as_text(number), repair: other}
+            number_gap, repair_gap = ("number", "fix") if is_forward else ("far", "away")
+            values = {"sensor": device.name, number_gap: as_text(number), repair_gap: fixed_move}
             self._context.report(codes.TURNED_ROUND, move.span, **values)
         else:
-            reached = "GE" if device is TIME else _COMPARATOR_REACHED.get(move.direction, "")
-            text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
-            is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with_condition(move, text) if is_sure else ""
+            reached_op = "GE" if device is TIME else _COMPARATOR_REACHED.get(move.direction, "")
+            condition_text = f"{device.name} {SIGN_OF.get(reached_op, '')} {as_text(number)}"
+            is_sure = bool(reached_op) and (is_ahead or device is TIME)
+            fix = self._with_condition(move, condition_text) if is_sure else ""
             self._report_exact(comparison, move.span, "UNTIL", fix)
 
     def _report_frozen_until(
@@ -139,12 +143,12 @@ class _Conditions:
 
     def check_while(self, loop: ir.While, body_context: BodyContext) -> None:
         self._report_frozen_while(loop)
-        head = Span(loop.span.start, loop.span.start + len("WHILE"))
+        header_span = Span(loop.span.start, loop.span.start + len("WHILE"))
         comparison = self._comparison(loop.condition)
-        if comparison and not self._report_known(comparison, head):
+        if comparison and not self._report_known(comparison, header_span):
             if not body_context.asked_sensors & _sensors(loop.condition):
                 self._report_turned_while(loop, comparison)
-        self._report_known_of_both(loop.condition, head)
+        self._report_known_of_both(loop.condition, header_span)
 
     def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
         self._report_late_arms(statement)
@@ -159,25 +163,33 @@ class _Conditions:
 
     def _report_turned_while(self, loop: ir.While, comparison: Comparison) -> None:
         """`WHILE(DISTANCE < 10); F(0.2, 60); END_WHILE`: what ends it does not come that way."""
-        way, end = self._way_and_end(loop, comparison)
-        if end:
+        direction, ending_op = self._direction_and_ending_op(loop, comparison)
+        if ending_op:
             device, _, number = comparison
-            turned = comparison._replace(op=_opposite(end))
-            is_short = all(_lasts_ms(item) < SHORT_MOVE_MS for item in loop.body)
-            fix = f"WHILE({turned})" if is_short and not answer_of(turned) else ""
-            number_is = "near" if way == "F" else "beyond"
-            values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
-            self._context.report(codes.TURNED_ROUND, self._context.head(loop.span), **values)
+            reversed_comparison = comparison._replace(op=_opposite(ending_op))
+            is_short = all(_lasts_ms(statement) < SHORT_MOVE_MS for statement in loop.body)
+            fix = (
+                f"WHILE({reversed_comparison})"
+                if is_short and not answer_of(reversed_comparison)
+                else ""
+            )
+            number_gap = "near" if direction == "F" else "beyond"
+            values = {"sensor": device.name, number_gap: as_text(number), "fix": fix}
+            self._context.report(codes.TURNED_ROUND, self._context.header_span(loop.span), **values)
 
-    def _way_and_end(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
+    def _direction_and_ending_op(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
         """Return the way that all moves of a loop go, and what else would end it, if anything."""
-        moves = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
-        ways = {item.direction if isinstance(item, ir.Move) else "" for item in moves}
-        is_watched = any(isinstance(item, ir.Move) and item.until for item in moves)
-        if len(ways) != 1 or is_watched or not looks_ahead(comparison.device):
+        moves = [
+            statement for statement in loop.body if not isinstance(statement, STANDING_STATEMENTS)
+        ]
+        directions = {
+            statement.direction if isinstance(statement, ir.Move) else "" for statement in moves
+        }
+        is_watched = any(isinstance(statement, ir.Move) and statement.until for statement in moves)
+        if len(directions) != 1 or is_watched or not looks_ahead(comparison.device):
             return "", ""
-        (way,) = ways
-        return way, _REVERSED_COMPARATORS.get(way, {}).get(_opposite(comparison.op), "")
+        (direction,) = directions
+        return direction, _REVERSED_COMPARATORS.get(direction, {}).get(_opposite(comparison.op), "")
 
     def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
@@ -187,30 +199,32 @@ class _Conditions:
         if (
             len(condition) == 1
             or ir.breaks_out(loop.body)
-            or self._context.variables.set_in(loop.body) & set(variables)
+            or self._context.variables.assigned_in(loop.body) & set(variables)
         ):
             return
         sensor_of_variable = self._context.variables.sensors_of(variables)
         if not sensor_of_variable and condition[-1].op not in ("LT", "LE", "GT", "GE", "NE"):
             return  # `WHILE(ON = 1)` is how others write LOOP(FOREVER)
         name = self._program.variables[variables[0]]
-        head = Span(loop.span.start, loop.span.start + len("WHILE"))
+        header_span = Span(loop.span.start, loop.span.start + len("WHILE"))
         values = {"name": name, "fix": ""}
         if sensor_of_variable:
             values["sensor"] = sensor_of_variable[name]
             condition_text = self._condition_text(condition, sensor_of_variable, loop.span, "WHILE")
             comparison = self._comparison(self._condition_of_sensors(condition, sensor_of_variable))
-            is_turned = comparison is not None and bool(self._way_and_end(loop, comparison)[1])
+            is_turned = comparison is not None and bool(
+                self._direction_and_ending_op(loop, comparison)[1]
+            )
             values["fix"] = f"WHILE({condition_text})" if condition_text and not is_turned else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
-        self._context.report(codes.FROZEN_WHILE, head, **values)
+        self._context.report(codes.FROZEN_WHILE, header_span, **values)
 
     def _report_frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
-        sensor_of_variable = self._context.variables.held_in(outermost, variables)
+        sensor_of_variable = self._context.variables.sensors_held_in(outermost, variables)
         if not sensor_of_variable or any(term.op in _CHANGING_OPS for term in arm.condition):
             return
         name = self._program.variables[variables[0]]
@@ -226,7 +240,7 @@ class _Conditions:
         variables = _variables(show.value) if len(show.value) == 1 else []
         if variables and self._report_thrown_once(show, variables[0], outermost):
             return
-        sensor_of_variable = self._context.variables.held_in(outermost, variables)
+        sensor_of_variable = self._context.variables.sensors_held_in(outermost, variables)
         if not sensor_of_variable:
             return
         name = self._program.variables[variables[0]]
@@ -235,8 +249,8 @@ class _Conditions:
             for k, device in enumerate(self._kit.readings)
             if device.name == sensor_of_variable[name]
         )
-        used = self._context.variables.used_in(outermost)
-        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
+        terms_used = self._context.variables.terms_used_in(outermost)
+        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & terms_used:
             return  # it is shown beside what is measured now, or the rounds need it
         fix = f"SHOW({sensor_of_variable[name]})"
         self._context.report(
@@ -249,20 +263,22 @@ class _Conditions:
         It is said where the loop shows it in each round, shows nothing else that changes, and
         where the number is there for nothing else.
         """
-        sets = [
-            item
-            for item in self._program.body
-            if isinstance(item, ir.Assign) and item.variable == variable
+        assignments = [
+            statement
+            for statement in self._program.body
+            if isinstance(statement, ir.Assign) and statement.variable == variable
         ]
-        if len(sets) != 1 or self._context.variables.set_to[variable] != [sets[0].value]:
+        if len(assignments) != 1 or self._context.variables.assigned_values[variable] != [
+            assignments[0].value
+        ]:
             return False
-        if all(term.op != "RANDOM" for term in sets[0].value) or _runs_once(loop):
+        if all(term.op != "RANDOM" for term in assignments[0].value) or _runs_once(loop):
             return False
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
-            isinstance(item, ir.Show)
-            for item in ir.all_statements(self._program)
-            if any(term in expression for expression in ir.expressions(item))
+            isinstance(statement, ir.Show)
+            for statement in ir.all_statements(self._program)
+            if any(term in expression for expression in ir.expressions(statement))
         )
         shown_terms = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
@@ -270,7 +286,7 @@ class _Conditions:
         changing_terms = [
             term for term in shown_terms if term.op in _CHANGING_OPS or term.op == "VARIABLE"
         ]
-        is_before = sets[0].span.end <= loop.span.start
+        is_before = assignments[0].span.end <= loop.span.start
         if not (
             is_before
             and is_only_shown
@@ -278,12 +294,12 @@ class _Conditions:
             and show in _round_statements(loop)
         ):
             return False
-        name, assignment = self._program.variables[variable], self._source[sets[0].span]
+        name, assignment = self._program.variables[variable], self._source[assignments[0].span]
         if not any(
             diagnostic.values.get("thrown") == name for diagnostic in self._context.diagnostics
         ):
-            within = f"{assignment};{self._source[show.span]}"
-            self._context.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
+            example = f"{assignment};{self._source[show.span]}"
+            self._context.report(codes.FROZEN_WHILE, show.span, thrown=name, within=example)
         return True
 
     def _report_late_arms(self, statement: ir.If) -> None:
@@ -294,11 +310,11 @@ class _Conditions:
             if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
                 continue
             key = (comparison.device.name, _SIDE_BY_COMPARATOR[comparison.op])
-            before = widest.get(key)
-            if before is None or not _is_within(comparison, before):
+            wider = widest.get(key)
+            if wider is None or not _is_within(comparison, wider):
                 widest[key] = comparison
             elif k:
-                self._context.report(codes.LATE_ARM, arm.span, wide=str(before),
+                self._context.report(codes.LATE_ARM, arm.span, wide=str(wider),
                                      narrow=str(comparison))  # fmt: skip
 
     def _report_known(self, comparison: Comparison, span: Span) -> bool:
@@ -318,9 +334,9 @@ class _Conditions:
 
     def _report_known_of_both(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
-        answer, meant = answer_of_both(condition, self._kit)
+        answer, intended_condition = answer_of_both(condition, self._kit)
         if answer:
-            self._context.report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
+            self._context.report(codes.KNOWN_ANSWER, span, answer=answer, either=intended_condition)
 
     def _report_subtracted(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
@@ -337,14 +353,14 @@ class _Conditions:
 
     def _report_exact(self, comparison: Comparison, span: Span, word: str, fix: str) -> None:
         device, op, number = comparison
-        if op == "EQ" and is_between(device, number):
+        if op == "EQ" and is_one_of_many(device, number):
             self._context.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
                          word=word, fix=fix)  # fmt: skip
 
     # -- what is in them ----------------------------------------------------------------------
 
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
-        return comparison(condition, self._kit)
+        return comparison_of(condition, self._kit)
 
     def _condition_of_sensors(
         self, condition: ir.Expression, sensor_of_variable: Mapping[str, str]
@@ -370,9 +386,9 @@ class _Conditions:
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        asking = self._condition_of_sensors(condition, sensor_of_variable)
-        can_become_true = can_come_true(asking, direction, self._kit)
-        text = self._context.condition(span, word)
+        sensor_condition = self._condition_of_sensors(condition, sensor_of_variable)
+        can_become_true = can_come_true(sensor_condition, direction, self._kit)
+        text = self._context.condition_text(span, word)
         if not can_become_true and (can_become_true is not None or direction):
             return ""
         return re.sub(
@@ -400,12 +416,12 @@ def _runs_once(loop: ir.Loop | ir.While) -> bool:
 def _round_statements(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
     statements: list[ir.Statement] = []
-    rest: list[ir.Loop | ir.While] = [loop]
-    while rest:
-        for item in rest.pop().body:
-            statements.append(item)
-            if isinstance(item, (ir.Loop, ir.While)):
-                rest.append(item)
+    loops_left: list[ir.Loop | ir.While] = [loop]
+    while loops_left:
+        for statement in loops_left.pop().body:
+            statements.append(statement)
+            if isinstance(statement, (ir.Loop, ir.While)):
+                loops_left.append(statement)
     return statements
 
 

@@ -53,7 +53,7 @@ class LintContext:
     def variables(self) -> Variables:
         return Variables(self.program, self.kit)
 
-    def head(self, span: Span) -> Span:
+    def header_span(self, span: Span) -> Span:
         """Return the header that a block begins with, up to the end of its brackets."""
         text, depth = self.source[span], 0
         for k, sign in enumerate(text):
@@ -62,21 +62,21 @@ class LintContext:
                 return Span(span.start, span.start + k + 1)
         return span
 
-    def condition(self, span: Span, word: str) -> str:
+    def condition_text(self, span: Span, word: str) -> str:
         """Return what is in the brackets after `word`, the last of that name in `span`.
 
         Nothing where it is long, or goes over several lines.
         """
         text = self.source[span]
-        places = [match.end() for match in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
-        if not places:
+        offsets = [match.end() for match in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
+        if not offsets:
             return ""
-        begin = places[-1] if word == "UNTIL" else places[0]
+        start = offsets[-1] if word == "UNTIL" else offsets[0]
         depth = 1
-        for k in range(begin, min(len(text), begin + MOST_CHARACTERS)):
+        for k in range(start, min(len(text), start + MOST_CHARACTERS)):
             depth += (text[k] == "(") - (text[k] == ")")
             if not depth:
-                condition = text[begin:k].strip()
+                condition = text[start:k].strip()
                 return "" if re.search(r"[\r\n]|//", condition) else condition
         return ""
 
@@ -87,58 +87,64 @@ class Variables:
     def __init__(self, program: ir.Program, kit: Kit) -> None:
         self._program = program
         self._kit = kit
-        self.set_to: dict[int, list[ir.Expression]] = {}
+        self.assigned_values: dict[int, list[ir.Expression]] = {}
         for statement in ir.all_statements(program):
             if isinstance(statement, ir.Assign):
-                self.set_to.setdefault(statement.variable, []).append(statement.value)
+                self.assigned_values.setdefault(statement.variable, []).append(statement.value)
         # By a loop's start, the variables that get a value in it; None where it takes no time.
-        self._in_loops: dict[int, set[int] | None] = {}
-        self._used: dict[int, set[ir.Term]] = {}  # by a loop's start
-        self._sets: list[set[int]] = []  # for each DEF, the variables that it gives a value
+        self._assigned_in_loop: dict[int, set[int] | None] = {}
+        self._terms_of_loop: dict[int, set[ir.Term]] = {}  # by a loop's start
+        self._assigned_by_def: list[
+            set[int]
+        ] = []  # for each DEF, the variables that it gives a value
         for procedure in program.procedures:
-            self._sets.append(self.set_in(procedure.body))
+            self._assigned_by_def.append(self.assigned_in(procedure.body))
 
-    def set_in(self, body: ir.Body) -> set[int]:
+    def assigned_in(self, body: ir.Body) -> set[int]:
         """Return the variables that a body, or a DEF that it calls, gives a value."""
-        result = set()
+        assigned = set()
         for statement in ir.walk(body):
             if isinstance(statement, ir.Assign):
-                result.add(statement.variable)
-            elif isinstance(statement, ir.Call) and statement.procedure < len(self._sets):
-                result |= self._sets[statement.procedure]
-        return result
+                assigned.add(statement.variable)
+            elif isinstance(statement, ir.Call) and statement.procedure < len(
+                self._assigned_by_def
+            ):
+                assigned |= self._assigned_by_def[statement.procedure]
+        return assigned
 
     def sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
-        result = {}
+        sensor_of_variable = {}
         for variable in variables:
-            values = set(self.set_to.get(variable, ()))
+            values = set(self.assigned_values.get(variable, ()))
             value = next(iter(values)) if len(values) == 1 else ()
             if len(value) != 1 or value[0].op != "SENSOR":
                 return {}
             name = self._program.variables[variable]
-            result[name] = self._kit.readings[value[0].value].name
-        return result
+            sensor_of_variable[name] = self._kit.readings[value[0].value].name
+        return sensor_of_variable
 
-    def held_in(self, loop: ir.Loop | ir.While, variables: list[int]) -> dict[str, str]:
+    def sensors_held_in(self, loop: ir.Loop | ir.While, variables: list[int]) -> dict[str, str]:
         """Return `sensors_of` where a loop drives and gives none of the variables a value."""
-        place = loop.span.start
-        if place not in self._in_loops:
-            drives = any(isinstance(item, (ir.Move, ir.Motors)) for item in ir.walk(loop.body))
-            self._in_loops[place] = self.set_in(loop.body) if drives else None
-        changed = self._in_loops[place]
-        is_held = changed is not None and not changed & set(variables)
+        loop_start = loop.span.start
+        if loop_start not in self._assigned_in_loop:
+            drives = any(
+                isinstance(statement, (ir.Move, ir.Motors)) for statement in ir.walk(loop.body)
+            )
+            self._assigned_in_loop[loop_start] = self.assigned_in(loop.body) if drives else None
+        assigned = self._assigned_in_loop[loop_start]
+        is_held = assigned is not None and not assigned & set(variables)
         return self.sensors_of(variables) if is_held else {}
 
-    def used_in(self, loop: ir.Loop | ir.While) -> set[ir.Term]:
+    def terms_used_in(self, loop: ir.Loop | ir.While) -> set[ir.Term]:
         """Return the terms of a loop: all sensors, and what statements other than SHOW use."""
-        place = loop.span.start
-        if place not in self._used:
-            self._used[place] = {
+        loop_start = loop.span.start
+        if loop_start not in self._terms_of_loop:
+            self._terms_of_loop[loop_start] = {
                 term
-                for item in ir.walk((loop,))
-                for expression in ir.expressions(item)
+                for statement in ir.walk((loop,))
+                for expression in ir.expressions(statement)
                 for term in expression
-                if term.op == "SENSOR" or not isinstance(item, ir.Show)
+                if term.op == "SENSOR" or not isinstance(statement, ir.Show)
             }
-        return self._used[place]
+        return self._terms_of_loop[loop_start]

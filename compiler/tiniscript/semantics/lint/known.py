@@ -13,7 +13,7 @@ from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
-from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_between
+from tiniscript.semantics.comparisons import TIME, Comparison, comparison_of, is_one_of_many
 from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 
@@ -34,7 +34,7 @@ def report_past_clock(context: LintContext) -> None:
     past_ms = 0
     for statement in () if context.program.tasks else context.program.body:
         if isinstance(statement, ir.While):
-            clock_comparison = comparison(statement.condition, context.kit)
+            clock_comparison = comparison_of(statement.condition, context.kit)
             if (
                 clock_comparison is None
                 or clock_comparison.device is not TIME
@@ -58,20 +58,20 @@ def _least_duration(statement: ir.Statement) -> int:
 
 
 def _report_over(
-    loop: ir.While, clock_comparison: Comparison, past: int, context: LintContext
+    loop: ir.While, clock_comparison: Comparison, past_ms: int, context: LintContext
 ) -> None:
-    later_comparison = clock_comparison._replace(number=past + clock_comparison.number)
-    values = {"already": as_text(past), "answer": "answer_no"}
+    later_comparison = clock_comparison._replace(number=past_ms + clock_comparison.number)
+    values = {"already": as_text(past_ms), "answer": "answer_no"}
     if later_comparison.number <= HIGHEST:
         values |= {"more": as_text(clock_comparison.number), "later": f"WHILE({later_comparison})"}
-    context.report(codes.KNOWN_ANSWER, context.head(loop.span), **values)
+    context.report(codes.KNOWN_ANSWER, context.header_span(loop.span), **values)
 
 
-def _is_over(clock_comparison: Comparison, past: int) -> bool:
+def _is_over(clock_comparison: Comparison, past_ms: int) -> bool:
     return (
-        past >= clock_comparison.number
+        past_ms >= clock_comparison.number
         if clock_comparison.op == "LT"
-        else past > clock_comparison.number
+        else past_ms > clock_comparison.number
     )
 
 
@@ -82,12 +82,12 @@ def report_narrowed(
     statement: ir.Statement | ir.Task, body_context: BodyContext, context: LintContext
 ) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
-    found_in = (each for value in ir.expressions(statement) for each in _nested(value))
-    for outer, inner, numbers in found_in:
-        limit, other = numbers
-        if outer != inner and (other < limit if outer == "MAX" else other > limit):
-            nesting = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
-            narrow = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
+    nestings = (nesting for value in ir.expressions(statement) for nesting in _nested(value))
+    for outer, inner, numbers in nestings:
+        limit, inner_limit = numbers
+        if outer != inner and (inner_limit < limit if outer == "MAX" else inner_limit > limit):
+            nesting = f"{outer}({as_text(limit)}, {inner}({as_text(inner_limit)}, …))"
+            narrow = f"{outer}({as_text(inner_limit)}, {inner}({as_text(limit)}, …))"
             values = {"found": nesting, "number": as_text(limit), "narrow": narrow}
             context.report(codes.KNOWN_ANSWER, statement.span, **values)
 
@@ -100,8 +100,10 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
             stack.append((op, number))
         elif op in _NARROWING_OPS and len(stack) > 1:
             right, left = stack.pop(), stack.pop()
-            numbers = [it[1] for it in (left, right) if it[0] == "NUMBER"]
-            inner = next((it for it in (left, right) if it[0] in _NARROWING_OPS), None)
+            numbers = [operand[1] for operand in (left, right) if operand[0] == "NUMBER"]
+            inner = next(
+                (operand for operand in (left, right) if operand[0] in _NARROWING_OPS), None
+            )
             if len(numbers) == 1 and numbers[0] is not None and inner and inner[1] is not None:
                 yield op, inner[0], (numbers[0], inner[1])
             stack.append((op, numbers[0] if len(numbers) == 1 else None))
@@ -116,30 +118,30 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
 
 def report_no_room(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
-    for one, other in pairwise(statement.arms) if statement.has_else else ():
-        first, second = one.condition, other.condition
+    for arm, next_arm in pairwise(statement.arms) if statement.has_else else ():
+        first, second = arm.condition, next_arm.condition
         is_same_value = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDE_OPS
         if (
             is_same_value
             and first[-2].op == "NUMBER"
-            and _is_fine(first[:-2], first[-2].value, context)
+            and _has_many_values(first[:-2], first[-2].value, context)
         ):
-            text = context.condition(other.span, "ELSEIF")
+            text = context.condition_text(next_arm.span, "ELSEIF")
             name = text.partition("<")[0].partition(">")[0].strip()
             if name:
                 values = {"value": name, "number": as_text(first[-2].value)}
-                context.report(codes.EXACT, other.span, **values)
+                context.report(codes.EXACT, next_arm.span, **values)
 
 
-def _is_fine(value: ir.Expression, number: int, context: LintContext) -> bool:
+def _has_many_values(value: ir.Expression, number: int, context: LintContext) -> bool:
     """Whether a value comes from a sensor that has very many."""
-    for op, at in value:
-        if op == "SENSOR" and is_between(context.kit.readings[at], max(number, 1)):
+    for op, index in value:
+        if op == "SENSOR" and is_one_of_many(context.kit.readings[index], max(number, 1)):
             return True
         if op == "VARIABLE":
-            values_set = context.variables.set_to.get(at, ())
-            if any(term.op == "SENSOR" and is_between(context.kit.readings[term.value], 1)
-                   for each in values_set for term in each):  # fmt: skip
+            values_set = context.variables.assigned_values.get(index, ())
+            if any(term.op == "SENSOR" and is_one_of_many(context.kit.readings[term.value], 1)
+                   for expression in values_set for term in expression):  # fmt: skip
                 return True
     return False
 
@@ -149,23 +151,32 @@ def _is_fine(value: ir.Expression, number: int, context: LintContext) -> bool:
 
 def report_thrown_arms(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
-    for one, other in pairwise(statement.arms):
-        thrown = _throw_of(one.condition)
-        if thrown and thrown == _throw_of(other.condition) and other.condition[-1].op == "EQ":
-            _report_throw(thrown, other.span, context)
+    for arm, next_arm in pairwise(statement.arms):
+        throw = _throw_of(arm.condition)
+        if throw and throw == _throw_of(next_arm.condition) and next_arm.condition[-1].op == "EQ":
+            _report_throw(throw, next_arm.span, context)
             return
 
 
 def report_thrown_again(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
-    for one, other in pairwise(body):
-        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW_OPS) else ()
-        if thrown and _throw_of(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
-            _report_throw(thrown, context.head(other.span), context)
+    for statement, next_statement in pairwise(body):
+        throw = (
+            statement.value
+            if isinstance(statement, ir.Show) and len(statement.value) == len(_THROW_OPS)
+            else ()
+        )
+        if (
+            throw
+            and _throw_of(throw)
+            and isinstance(next_statement, ir.Loop)
+            and next_statement.times == throw
+        ):
+            _report_throw(throw, context.header_span(next_statement.span), context)
 
 
-def _report_throw(thrown: ir.Expression, span: Span, context: LintContext) -> None:
-    low, high = (as_text(term.value) for term in thrown[:2])
+def _report_throw(throw: ir.Expression, span: Span, context: LintContext) -> None:
+    low, high = (as_text(term.value) for term in throw[:2])
     context.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
 
 

@@ -27,7 +27,7 @@ _LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
 def report_late_conditions(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """Look at the statements of a body, not at those within them."""
-    _LateConditions(context).look_at(body, body_context.loop, body_context.is_repeated)
+    _LateConditions(context).check_body(body, body_context.loop, body_context.is_repeated)
 
 
 class _LateConditions:
@@ -36,39 +36,41 @@ class _LateConditions:
         self._kit = context.kit
         self._source = context.source
 
-    def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None, is_repeated: bool) -> None:
+    def check_body(self, body: ir.Body, loop: ir.Loop | ir.While | None, is_repeated: bool) -> None:
         """Look at the statements of a body, which `loop` repeats."""
-        late_checks = self._in_loop(body) if loop is not None else set()
+        late_indexes = self._check_loop(body) if loop is not None else set()
         if isinstance(loop, ir.While):
-            self._in_while(loop)
+            self._check_while(loop)
         for k, statement in enumerate(body):
-            if isinstance(statement, ir.If) and k not in late_checks:
+            if isinstance(statement, ir.If) and k not in late_indexes:
                 self._report_idle_stop(body, k, statement, loop)
                 if not (is_repeated or self._context.program.tasks):
                     self._report_looked_before(body, k, statement)
 
-    def _in_loop(self, body: ir.Body) -> set[int]:
+    def _check_loop(self, body: ir.Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
 
         Return the places of the conditions.
         """
-        late_checks = set()
+        late_indexes = set()
         for k, statement in enumerate(body):
             if not isinstance(statement, ir.Move) or not self._is_blind(statement, LONG_MOVE_MS):
                 continue
-            after = range(k + 1, len(body))
-            place = next((at for at in after if not isinstance(body[at], ir.Read)), k)
-            branch = body[place]
+            indexes_after = range(k + 1, len(body))
+            index = next(
+                (index for index in indexes_after if not isinstance(body[index], ir.Read)), k
+            )
+            branch = body[index]
             if not isinstance(branch, ir.If):
                 continue
             condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
             can_become_true = can_come_true(condition, statement.direction, self._kit)
             if sensor is not None and can_become_true:
-                condition_text = self._context.condition(branch.arms[0].span, "IF")
+                condition_text = self._context.condition_text(branch.arms[0].span, "IF")
                 self._report_late_check(statement, sensor, condition_text)
-                late_checks.add(place)
-        return late_checks
+                late_indexes.add(index)
+        return late_indexes
 
     def _report_looked_before(self, body: ir.Body, k: int, branch: ir.If) -> None:
         """`IF(DISTANCE < 15); B(1, 70); ENDIF; F(10, 50)`: it looks once, and then drives on."""
@@ -82,12 +84,14 @@ class _LateConditions:
         is_blind = self._is_blind(move, LONG_AFTER_MS)
         if is_blind and can_come_true(condition, move.direction, self._kit):
             self._report_late_check(
-                move, sensor, self._context.condition(branch.arms[0].span, "IF")
+                move, sensor, self._context.condition_text(branch.arms[0].span, "IF")
             )
 
-    def _in_while(self, loop: ir.While) -> None:
+    def _check_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
-        body = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
+        body = [
+            statement for statement in loop.body if not isinstance(statement, STANDING_STATEMENTS)
+        ]
         condition = loop.condition
         if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER_COMPARATORS:
             return
@@ -121,41 +125,45 @@ class _LateConditions:
         condition = branch.arms[0].condition
         if stop is None or self._context.uses_motors or not _can_change(condition):
             return
-        before = _nearest_move(body, range(k - 1, -1, -1))
-        after = _nearest_move(body, range(k + 1, len(body)))
-        stands = [item for item in branch.arms[0].body if isinstance(item, (ir.Move, ir.Beep))]
-        if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
+        move_before = _nearest_move(body, range(k - 1, -1, -1))
+        move_after = _nearest_move(body, range(k + 1, len(body)))
+        pausing_statements = [
+            statement
+            for statement in branch.arms[0].body
+            if isinstance(statement, (ir.Move, ir.Beep))
+        ]
+        if any(isinstance(move, ir.Move) and move.direction == "W" for move in pausing_statements):
             return  # S with its wait is a pause
-        pauses = bool(stands)
-        for move, place in ((before, "move"), (after, "next")):
+        has_pause = bool(pausing_statements)
+        for move, gap in ((move_before, "move"), (move_after, "next")):
             if (
                 isinstance(move, ir.Move)
                 and move.direction in "FB"
                 and self._is_blind(move, LONG_MOVE_MS)
             ):
                 if move.direction == "B" and asks_if_near(condition, self._kit):
-                    if place == "move":
+                    if gap == "move":
                         break
                     return  # it drives away from what is near
-                values = self._idle_stop_values(stop, move, place, branch)
+                values = self._idle_stop_values(stop, move, gap, branch)
                 if values["fix"]:
                     values |= self._replacement_values(body, move, branch)
-                if place == "move" or not pauses:
+                if gap == "move" or not has_pause:
                     self._context.report(codes.IDLE_STOP, stop.span, **values)
                 return
-        repeated_move = before if isinstance(before, ir.Move) else after
+        repeated_move = move_before if isinstance(move_before, ir.Move) else move_after
         if (
             loop is not None
             and isinstance(repeated_move, ir.Move)
             and self._is_blind(repeated_move, 1)
-            and not pauses
+            and not has_pause
         ):
             values = {"found": self._source[stop.span], "next": ""}
             values["again"] = self._source[repeated_move.span]
             self._context.report(codes.IDLE_STOP, stop.span, **values)
 
     def _idle_stop_values(
-        self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If
+        self, stop: ir.Stop, move: ir.Move, gap: str, branch: ir.If
     ) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         stop_text, move_text = self._source[stop.span], self._source[move.span]
@@ -164,35 +172,42 @@ class _LateConditions:
         if move.direction == "B" and self._distance_in(condition) is not None:
             can_become_true = False  # what is behind the robot is not seen
         condition_text = (
-            self._context.condition(branch.arms[0].span, "IF") if can_become_true else ""
+            self._context.condition_text(branch.arms[0].span, "IF") if can_become_true else ""
         )
-        values = {"found": stop_text, "move": "", "next": "", place: move_text}
+        values = {"found": stop_text, "move": "", "next": "", gap: move_text}
         values["fix"] = f"{move_text} UNTIL({condition_text})" if condition_text else ""
         if not can_become_true:
-            values["needless" if place == "move" else "behind"] = move_text
+            values["needless" if gap == "move" else "behind"] = move_text
         return values
 
     def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
-        first, last = sorted((move.span, branch.span))
-        begin, rest, end = (
-            str(self._source.position(at)[0])
-            for at in (first.start, branch.span.start, last.end - 1)
+        first_span, last_span = sorted((move.span, branch.span))
+        first_line, if_line, last_line = (
+            str(self._source.position(offset)[0])
+            for offset in (first_span.start, branch.span.start, last_span.end - 1)
         )
-        instructions_between = [item for item in body if first.end <= item.span.start < last.start]
+        instructions_between = [
+            statement
+            for statement in body
+            if first_span.end <= statement.span.start < last_span.start
+        ]
         replaced_text = self._source[move.span]
         if len(branch.arms[0].body) > 1:
-            return {"of": replaced_text, "rest": rest}
+            return {"of": replaced_text, "rest": if_line}
         text = self._source.text
         rest_of_lines = (
-            text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
+            text[: first_span.start].rpartition("\n")[2] + text[last_span.end :].partition("\n")[0]
         )
-        is_alone = begin == end or not rest_of_lines.partition("//")[0].strip()
-        if any(not isinstance(item, ir.Read) for item in instructions_between) or not is_alone:
-            return {"of": replaced_text, "out": rest}
-        if begin == end:
-            return {"all": self._source[Span(first.start, last.end)]}
-        return {"first": begin, "last": end}
+        is_alone = first_line == last_line or not rest_of_lines.partition("//")[0].strip()
+        if (
+            any(not isinstance(statement, ir.Read) for statement in instructions_between)
+            or not is_alone
+        ):
+            return {"of": replaced_text, "out": if_line}
+        if first_line == last_line:
+            return {"all": self._source[Span(first_span.start, last_span.end)]}
+        return {"first": first_line, "last": last_line}
 
     def _is_blind(self, move: ir.Move, least_ms: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
@@ -209,9 +224,11 @@ class _LateConditions:
         return None
 
 
-def _nearest_move(body: ir.Body, places: range) -> ir.Statement | None:
+def _nearest_move(body: ir.Body, indexes: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
-    return next((body[at] for at in places if not isinstance(body[at], STANDING_STATEMENTS)), None)
+    return next(
+        (body[index] for index in indexes if not isinstance(body[index], STANDING_STATEMENTS)), None
+    )
 
 
 def _time_of(move: ir.Move) -> int | None:
@@ -248,18 +265,22 @@ def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: Lint
     for k, motors in enumerate(body):
         if not isinstance(motors, ir.Motors) or _is_still(motors):
             continue
-        rest = (body[at] for at in range(k + 1, len(body)))
-        after = next((item for item in rest if not isinstance(item, _INSTANT_STATEMENTS)), None)
-        if isinstance(after, ir.If) and all(map(_is_instant, (after, *rest))):
-            after = None
-        if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
+        rest = (body[index] for index in range(k + 1, len(body)))
+        next_statement = next(
+            (item for item in rest if not isinstance(item, _INSTANT_STATEMENTS)), None
+        )
+        if isinstance(next_statement, ir.If) and all(map(_is_instant, (next_statement, *rest))):
+            next_statement = None
+        if isinstance(next_statement, ir.Motors) and next_statement[:2] == motors[:2]:
             continue  # they are set again to the same
         values = {"found": source[motors.span]}
-        if isinstance(after, (ir.Motors, ir.Stop)) or (
-            isinstance(after, ir.Move) and after.direction != "W" and after.until is None
+        if isinstance(next_statement, (ir.Motors, ir.Stop)) or (
+            isinstance(next_statement, ir.Move)
+            and next_statement.direction != "W"
+            and next_statement.until is None
         ):
-            values["next"] = source[after.span]
-        elif after is not None or not body_context.is_last:
+            values["next"] = source[next_statement.span]
+        elif next_statement is not None or not body_context.is_last:
             continue
         left, right = known_value(motors.left) or 0, known_value(motors.right) or 0
         if left in _LIKELY_TIMES and right in _LIKELY_POWERS:
@@ -272,7 +293,7 @@ def _is_instant(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
     if not isinstance(statement, ir.If):
         return isinstance(statement, _INSTANT_STATEMENTS)
-    bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
+    bodies = (statement.else_body, *(arm.body for arm in statement.arms))
     return all(isinstance(item, ir.Stop) or _is_instant(item) for body in bodies for item in body)
 
 

@@ -19,22 +19,26 @@ from tiniscript.semantics.ir import Beep, Expression, Move
 from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
-from tiniscript.semantics.ways import way_ms
+from tiniscript.semantics.ways import extent_move_ms
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD
 from tiniscript.syntax.operators import SIGN_OF
 
-SECOND = 1000  # ms
-LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
-LONG_DRIVE = 30 * SECOND  # no classroom is so long: centimetres or degrees were meant
-LONGEST_DRIVE = 60 * SECOND  # … also where the number is no round one
-LONG_WAIT = 100 * SECOND
-USUAL_SPEED = 30 * SECOND  # cm in a second, of a robot whose kit does not say it
-FAR_DISTANCE = 300 * SECOND * 100 * SECOND * SECOND  # 3 m, as a product of speed, power and time
-VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an Arduino has them
-LONG_BEEP = 100 * SECOND
+SECOND_MS = 1000  # ms
+LONG_TIME_MS = 20 * SECOND_MS  # a power was meant, where the power is a time
+LONG_DRIVE_MS = 30 * SECOND_MS  # no classroom is so long: centimetres or degrees were meant
+LONGEST_DRIVE_MS = 60 * SECOND_MS  # … also where the number is no round one
+LONG_WAIT_MS = 100 * SECOND_MS
+USUAL_SPEED = 30 * SECOND_MS  # cm in a second, of a robot whose kit does not say it
+FAR_DISTANCE = (
+    300 * SECOND_MS * 100 * SECOND_MS * SECOND_MS
+)  # 3 m, as a product of speed, power and time
+VERY_LONG_TIME_MS = (
+    500 * SECOND_MS
+)  # milliseconds were meant, as `delay(1000)` of an Arduino has them
+LONG_BEEP_MS = 100 * SECOND_MS
 LOW_HERTZ = 100_000  # thousandths: a power was meant
-ANGLES = (360 * SECOND, 720 * SECOND)
-TURN_PART = 45 * SECOND  # turns of more than one round have such parts
+ANGLES = (360 * SECOND_MS, 720 * SECOND_MS)
+TURN_PART = 45 * SECOND_MS  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
 _LEADING_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
 _LEADING_ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
@@ -64,8 +68,8 @@ def check_clock(
     for expression in ir.expressions(statement):
         for device, op, number in comparisons_in(expression, context.kit):
             if device is TIME and _is_milliseconds(number):
-                limit, right = as_text(number), as_text(number // 1000)
-                values = {"limit": limit, "fix": f"TIME {SIGN_OF[op]} {right}"}
+                limit, seconds = as_text(number), as_text(number // 1000)
+                values = {"limit": limit, "fix": f"TIME {SIGN_OF[op]} {seconds}"}
                 context.report(codes.LONG_TIME, _clock_span(statement, limit, context), **values)
 
 
@@ -79,15 +83,17 @@ def _clock_span(statement: ir.Statement | ir.Task, limit: str, context: LintCont
 def check_times(loop: ir.Loop, body_context: BodyContext, context: LintContext) -> None:
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = known_value(loop.times)
-    head = Span(loop.span.start, loop.span.start + len("LOOP"))
+    header_span = Span(loop.span.start, loop.span.start + len("LOOP"))
     if times is not None and times < 500:  # it is rounded
-        context.report(codes.NEVER_REPEATS, head, times=as_text(times))
+        context.report(codes.NEVER_REPEATS, header_span, times=as_text(times))
     elif times is not None and times % 1000:
-        context.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
+        context.report(
+            codes.ROUNDED_TIMES, header_span, times=as_text(times), right=str(whole(times))
+        )
 
 
 def check_move(move: Move, body_context: BodyContext, context: LintContext) -> None:
-    diagnostics = _check_way(move, context.kit) if move.unit else _check_time(move, context)
+    diagnostics = _check_extent(move, context.kit) if move.unit else _check_time(move, context)
     context.diagnostics += diagnostics or _check_named_time(move, context)
 
 
@@ -99,12 +105,14 @@ def _check_named_time(move: Move, context: LintContext) -> list[Diagnostic]:
     variable = time[0].value
     if not any(variable in procedure.values for procedure in context.program.procedures):
         return []
-    values = [known_value(each) for each in context.variables.set_to.get(variable, ())]
+    values = [known_value(value) for value in context.variables.assigned_values.get(variable, ())]
     if not values or None in values or is_time(context.program.variables[variable]):
         return []
     longest, text = max(value or 0 for value in values), context.source[move.span]
     diagnostics = _warn_of_long_time(move, longest, known_value(move.power), context.kit, text)
-    return [it._replace(values={**it.values, "fix": ""}) for it in diagnostics]
+    return [
+        diagnostic._replace(values={**diagnostic.values, "fix": ""}) for diagnostic in diagnostics
+    ]
 
 
 def _check_time(move: Move, context: LintContext) -> list[Diagnostic]:
@@ -115,19 +123,21 @@ def _check_time(move: Move, context: LintContext) -> list[Diagnostic]:
     """
     time, power, kit = known_value(move.time), known_value(move.power), context.kit
     text, is_ended = context.source[move.span], move.until is not None
-    zero = None if is_ended else _LEADING_ZERO.match(text) or _LEADING_ZERO_OF_TURN.match(text)
+    zero_match = (
+        None if is_ended else _LEADING_ZERO.match(text) or _LEADING_ZERO_OF_TURN.match(text)
+    )
     if time is None:
-        return _check_power(move) if is_ended else _report_way_as_time(move, kit, text)
+        return _check_power(move) if is_ended else _report_extent_as_time(move, kit, text)
     if time <= 0 and not is_ended:
         return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, {"word": move.direction})]
-    if zero is not None:  # `L(039, 60)`
-        fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
-        is_sure = len(zero[1]) > 2 and not zero[1].startswith("00")
-        values = {"found": zero[1], "right": as_text(time), "fix": fix if is_sure else ""}
-        if len(zero[1]) == 2:  # 3 seconds or 0.3
-            values["point"] = f"0.{zero[1][1:]}"
-        at = Span(move.span.start + zero.start(1), move.span.start + zero.end(1))
-        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_check_power(move)]
+    if zero_match is not None:  # `L(039, 60)`
+        fix = f"{text[: zero_match.start(1)]}0.{zero_match[1][1:]}{text[zero_match.end(1) :]}"
+        is_sure = len(zero_match[1]) > 2 and not zero_match[1].startswith("00")
+        values = {"found": zero_match[1], "right": as_text(time), "fix": fix if is_sure else ""}
+        if len(zero_match[1]) == 2:  # 3 seconds or 0.3
+            values["point"] = f"0.{zero_match[1][1:]}"
+        zero_span = Span(move.span.start + zero_match.start(1), move.span.start + zero_match.end(1))
+        return [Diagnostic(codes.ZERO_BEFORE, zero_span, values, move.span), *_check_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         until_match = _UNTIL_CLAUSE.search(text) if is_ended else None
@@ -140,21 +150,21 @@ def _check_time(move: Move, context: LintContext) -> list[Diagnostic]:
     )
 
 
-def _check_way(move: Move, kit: Kit) -> list[Diagnostic]:
+def _check_extent(move: Move, kit: Kit) -> list[Diagnostic]:
     """Return the warning about a move by its way: what its numbers surely make."""
-    way = known_value(move.time)
-    if way is not None and way <= 0:
+    extent = known_value(move.time)
+    if extent is not None and extent <= 0:
         values = {"word": move.direction, "unit": move.unit}
         return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, values)]
     try:
-        way_ms(move, kit)
+        extent_move_ms(move, kit)
     except Fault as fault:
         values = {"fault": fault.name, "unit": move.unit if fault.name == "NO_POWER" else ""}
         return [Diagnostic(codes.WILL_FAULT, move.span, values)]
     return _check_power(move)
 
 
-def _report_way_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
+def _report_extent_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
     """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
     is_clock = len(time) == 1 and time[0].op == "TIME"
@@ -169,8 +179,8 @@ def _report_way_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
     if not is_sum or len(sensors) != 1 or sensors[0].unit not in _LENGTHS:
         return []
     name = sensors[0].name
-    left = next((as_text(part.value) for part in time if part.op == "NUMBER"), "10")
-    until_example = f"F(FOREVER,{power}) UNTIL({name} < {left})" if move.direction == "F" else ""
+    limit = next((as_text(part.value) for part in time if part.op == "NUMBER"), "10")
+    until_example = f"F(FOREVER,{power}) UNTIL({name} < {limit})" if move.direction == "F" else ""
     values = {"sensor": name, "word": move.direction, "until": until_example, "seconds": seconds}
     return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
@@ -186,7 +196,7 @@ def _check_power(move: Move) -> list[Diagnostic]:
     if (
         power is not None
         and 0 <= power < LITTLE_POWER
-        and (time is None or time < LONG_TIME or move.unit)
+        and (time is None or time < LONG_TIME_MS or move.unit)
     ):
         time_text = "2" if not time else as_text(time)
         time_text = "FOREVER" if move.time is None else f"{time_text} {move.unit}".rstrip()
@@ -204,25 +214,27 @@ def _warn_of_long_time(
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
     power_text = as_text(80_000 if power is None else power)
-    turns, drives = word in ("L", "R"), word in ("F", "B")
-    is_round = time % (5 * SECOND) == 0
-    is_long = time > LONGEST_DRIVE or (time >= LONG_DRIVE and is_round)
-    is_very_long = time >= VERY_LONG_TIME
+    is_turn, is_drive = word in ("L", "R"), word in ("F", "B")
+    is_round = time % (5 * SECOND_MS) == 0
+    is_long = time > LONGEST_DRIVE_MS or (time >= LONG_DRIVE_MS and is_round)
+    is_very_long = time >= VERY_LONG_TIME_MS
     usage = f"{word}( , {power_text})"
-    length = as_text(time)
-    parts = _FIRST_VALUE.fullmatch(text)
-    first, rest = parts.groups() if parts else ("", f", {power_text})")
-    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not after a note
+    time_text = as_text(time)
+    call_match = _FIRST_VALUE.fullmatch(text)
+    first_text, rest_text = call_match.groups() if call_match else ("", f", {power_text})")
+    extent_call = (
+        first_text and f"{word}({first_text} {UNIT_OF.get(word, '')}{rest_text}"
+    )  # not after a note
     speed = kit.speed or USUAL_SPEED
-    is_far_drive = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR_DISTANCE
-    if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % TURN_PART):
-        values = {"degrees": length, "word": word, "turn": usage}
-        values |= {"way": way} if kit.turn else {}
-    elif drives and (is_long or is_far_drive) and not is_very_long:
-        values = {"centimetres": length, "word": word, "drive": usage}
-        values |= {"way": way} if kit.speed else {}
+    is_far_drive = is_round and time >= LONG_TIME_MS and speed * (power or 0) * time >= FAR_DISTANCE
+    if is_turn and _is_turn(time, kit, is_long) and not (is_very_long and time % TURN_PART):
+        values = {"degrees": time_text, "word": word, "turn": usage}
+        values |= {"way": extent_call} if kit.turn else {}
+    elif is_drive and (is_long or is_far_drive) and not is_very_long:
+        values = {"centimetres": time_text, "word": word, "drive": usage}
+        values |= {"way": extent_call} if kit.speed else {}
     elif _is_milliseconds(time) if word == "W" else is_very_long:
-        values = {"time": length, "fix": f"{word}({as_text(time // 1000)}{rest}"}
+        values = {"time": time_text, "fix": f"{word}({as_text(time // 1000)}{rest_text}"}
     else:
         return []
     return [Diagnostic(codes.LONG_TIME, move.span, values)]
@@ -231,14 +243,14 @@ def _warn_of_long_time(
 def _is_turn(time: int, kit: Kit, is_long: bool) -> bool:
     """`R(90, 60)`, which turns for 90 seconds: degrees were meant."""
     if kit.turn:
-        return time >= LONG_TIME
-    return time in ANGLES or (is_long and time < VERY_LONG_TIME)
+        return time >= LONG_TIME_MS
+    return time in ANGLES or (is_long and time < VERY_LONG_TIME_MS)
 
 
 def _is_milliseconds(time: int) -> bool:
     """`W(200)`: a round number, and no round number of minutes, but for W(1500) and W(3000)."""
-    is_whole = time >= LONG_WAIT and time % (50 * SECOND) == 0
-    return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
+    is_whole = time >= LONG_WAIT_MS and time % (50 * SECOND_MS) == 0
+    return is_whole and (time % (500 * SECOND_MS) == 0 or time % (30 * SECOND_MS) != 0)
 
 
 def check_beep(beep: Beep, body_context: BodyContext, context: LintContext) -> None:
@@ -247,17 +259,17 @@ def check_beep(beep: Beep, body_context: BodyContext, context: LintContext) -> N
     context.diagnostics += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
         context.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
-    if time is None or hertz is None or time < LONG_BEEP:
+    if time is None or hertz is None or time < LONG_BEEP_MS:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
     rival = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
     fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
     sound = ""
-    if time % (100 * SECOND) == 0:  # a round time, and no note's hertz
+    if time % (100 * SECOND_MS) == 0:  # a round time, and no note's hertz
         fix, rival = rival if hertz % 100_000 else "", ""
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
         fix, rival, sound = "", "", f"BEEP(seconds, {as_text(time)})"
-    elif time % (50 * SECOND) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
+    elif time % (50 * SECOND_MS) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
         fix, rival = rival, fix
     gaps = {"fix": fix, "sound": sound} | ({"rival": rival} if rival else {})
     context.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
@@ -269,7 +281,7 @@ def report_swapped_rounds(context: LintContext) -> None:
     for k, token in enumerate(tokens[:-_TOKENS_TO_SECOND_VALUE]):
         if token.text != "ROUND":
             continue
-        number, comma, start = tokens[k + 2 : k + 2 + _TOKENS_TO_SECOND_VALUE - 1]
+        number, comma, value_start = tokens[k + 2 : k + 2 + _TOKENS_TO_SECOND_VALUE - 1]
         is_whole = number.kind is NUMBER and float(number.text).is_integer()
         if not is_whole or comma.kind != ",":
             continue
@@ -278,7 +290,7 @@ def report_swapped_rounds(context: LintContext) -> None:
             depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
             end += 1
         if any(token.kind is WORD for token in tokens[k + 4 : end - 1]):
-            value = context.source[Span(start.start, tokens[end - 2].end)]
+            value = context.source[Span(value_start.start, tokens[end - 2].end)]
             fix = f"ROUND({value}, {number.text})"
             span = Span(token.start, tokens[end - 1].end)
             context.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
@@ -288,15 +300,17 @@ def report_swapped_names(move: Move, body_context: BodyContext, context: LintCon
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     if move.until is not None or move.time is None or move.power is None or move.unit:
         return
-    sides = (move.time, move.power)
-    if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
+    operands = (move.time, move.power)
+    if not all(len(operand) == 1 and operand[0].op == "VARIABLE" for operand in operands):
         return
-    set_to = context.variables.set_to
-    values = [[*map(known_value, set_to.get(side[0].value, ()))] for side in sides]
+    assigned_values = context.variables.assigned_values
+    values = [
+        [*map(known_value, assigned_values.get(operand[0].value, ()))] for operand in operands
+    ]
     if not all(len(value) == 1 and value[0] is not None for value in values):
         return
     time, power = (value[0] or 0 for value in values)
-    first, second = (context.program.variables[side[0].value] for side in sides)
+    first, second = (context.program.variables[operand[0].value] for operand in operands)
     if _is_swapped(time, power) and not _is_right_order(first, second):
         fix = f"{move.direction}({second}, {first})"
         context.report(codes.SWAPPED, move.span, fix=fix, time=as_text(time), power=as_text(power))
@@ -311,7 +325,7 @@ def _is_right_order(first: str, second: str) -> bool:
 
 def _is_swapped(time: int, power: int | None) -> bool:
     """`F(80, 2)`: a long time with a power that moves hardly any robot."""
-    return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
+    return power is not None and LONG_TIME_MS <= time <= 100_000 and 0 < power <= LITTLE_POWER
 
 
 def _warn_of_cut_value(

@@ -26,7 +26,14 @@ def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
     for body in (program.body, *(task.body for task in program.tasks if task.until is None)):
         is_before_loop = True
         for statement in _statements_done_once(body):
-            reading = next((item for item in _readings_of(statement) if item[0] in remote), None)
+            reading = next(
+                (
+                    reading_and_span
+                    for reading_and_span in _readings_of(statement)
+                    if reading_and_span[0] in remote
+                ),
+                None,
+            )
             if reading is not None:
                 context.diagnostics.append(
                     _diagnostic(*reading, statement, body, is_before_loop, context)
@@ -70,24 +77,30 @@ def _diagnostic(
 ) -> Diagnostic:
     name = context.kit.readings[sensor].name
     values = {"early" if is_before_loop else "name": name}
-    if isinstance(statement, ir.If) and (question := context.condition(span, "IF")):
+    if isinstance(statement, ir.If) and (question := context.condition_text(span, "IF")):
         values["question"] = question
     text = context.source[span]
-    place = re.search(rf"(?i)\b{name}\b", text)
-    name_span = Span(span.start + place.start(), span.start + place.end()) if place else span
+    name_match = re.search(rf"(?i)\b{name}\b", text)
+    name_span = (
+        Span(span.start + name_match.start(), span.start + name_match.end()) if name_match else span
+    )
     return Diagnostic(codes.ASKED_ONCE, name_span, values, None, _loop_repair(span, body, context))
 
 
 def _loop_repair(span: Span, body: ir.Body, context: LintContext) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
-    rest = [each for each in body if each.span.end > span.start]
+    rest = [statement for statement in body if statement.span.end > span.start]
     if not any(
-        isinstance(item, _VISIBLE_STATEMENTS)
-        for item in ir.walk_with_calls((*rest,), context.program.procedures)
+        isinstance(statement, _VISIBLE_STATEMENTS)
+        for statement in ir.walk_with_calls((*rest,), context.program.procedures)
     ):
         return None
-    first, end = rest[0], rest[-1].span.end
-    start = first.arms[0].span.start if isinstance(first, ir.If) else first.span.start
+    first_statement, end = rest[0], rest[-1].span.end
+    start = (
+        first_statement.arms[0].span.start
+        if isinstance(first_statement, ir.If)
+        else first_statement.span.start
+    )
     separator = "\n" if "\n" in context.source.text[start:end] else ";"
     edits = (Edit(Span(start, start), f"LOOP(FOREVER){separator}"),
              Edit(Span(end, end), f"{separator}END_LOOP"))  # fmt: skip

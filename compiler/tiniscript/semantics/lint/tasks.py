@@ -26,19 +26,21 @@ def report_kept_motors(context: LintContext) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = context.program
     motors = _Motors(program)
-    all_of = partial(ir.walk_with_calls, procedures=program.procedures)
+    statements_of = partial(ir.walk_with_calls, procedures=program.procedures)
     higher_bodies = [task.body for task in program.tasks if task.until is not None]
     tasks = [task for task in program.tasks if task.until is None]
     lower_bodies = [*(task.body for task in tasks), program.body]
     for task in tasks:
         del lower_bodies[0]
         is_stopped = any(
-            isinstance(item, ir.Stop) for body in higher_bodies for item in all_of(body)
+            isinstance(statement, ir.Stop)
+            for body in higher_bodies
+            for statement in statements_of(body)
         )
         if not is_stopped and motors.are_kept(task.body):
             line = str(context.source.position(task.span.start)[0])
             for body in lower_bodies:
-                waiting_move = next(filter(_is_move, all_of(_endless_part(body))), None)
+                waiting_move = next(filter(_is_move, statements_of(_endless_part(body))), None)
                 if waiting_move is not None:
                     context.report(codes.NO_MOTORS, waiting_move.span, line=line)
             return
@@ -51,14 +53,14 @@ def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
     first_moves = [body[0] for body in (*tasks, context.program.body) if body and _is_move(body[0])]
     if len(first_moves) < 2 or not tasks[0] or first_moves[0] is not tasks[0][0]:
         return
-    first = context.source[first_moves[0].span]
-    values = {"first": first, "both": "M(60, 30);W(4)"}
-    spans = sorted(item.span for body in (*tasks, context.program.body) for item in body)
+    first_text = context.source[first_moves[0].span]
+    values = {"first": first_text, "both": "M(60, 30);W(4)"}
+    spans = sorted(statement.span for body in (*tasks, context.program.body) for statement in body)
     orders = [context.source[span] for span in spans]
     if len(orders) <= _MOST_INSTRUCTIONS and not any("\n" in order for order in orders):
         values["after"] = ";".join(orders)
-    for item in first_moves[1:]:
-        context.report(codes.NO_MOTORS, item.span, **values)
+    for move in first_moves[1:]:
+        context.report(codes.NO_MOTORS, move.span, **values)
 
 
 class _Motors:
@@ -67,43 +69,51 @@ class _Motors:
 
     def are_kept(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
-        rest = _endless_part(body)
+        endless_part = _endless_part(body)
         if not any(
-            isinstance(item, ir.Motors) or (_is_move(item) and _takes_time(item)) for item in rest
+            isinstance(statement, ir.Motors) or (_is_move(statement) and _takes_time(statement))
+            for statement in endless_part
         ):
             return False
         return (
-            self._wants_motors_in_loop(rest, False) is not None
-            or self._wants_motors_in_loop(rest, True) is True
+            self._wants_motors_in_loop(endless_part, False) is not None
+            or self._wants_motors_in_loop(endless_part, True) is True
         )
 
     def _wants_motors_after(self, body: ir.Body, is_wanted: bool) -> bool | None:
         """Return whether the motors are wanted after a body, None where it may let them go."""
-        result: bool | None = is_wanted
-        for call in body:
-            if result is None or isinstance(call, ir.Break):
+        is_wanted_now: bool | None = is_wanted
+        for statement in body:
+            if is_wanted_now is None or isinstance(statement, ir.Break):
                 return None
-            if isinstance(call, ir.Motors):
-                result = True
-            elif isinstance(call, ir.Stop) or _is_move(call):
-                result = False
-            elif isinstance(call, (ir.Move, ir.Beep)):
-                result = result or None
-            elif isinstance(call, ir.Call):
-                result = self._wants_motors_after(self._procedures[call.procedure].body, result)
-            elif isinstance(call, ir.If):
-                arms = [self._wants_motors_after(arm, result) for arm in ir.bodies(call)]
-                result = None if None in arms else all(arms)
-            elif isinstance(call, (ir.Loop, ir.While)):
-                result = self._wants_motors_in_loop(call.body, result)
-        return result
+            if isinstance(statement, ir.Motors):
+                is_wanted_now = True
+            elif isinstance(statement, ir.Stop) or _is_move(statement):
+                is_wanted_now = False
+            elif isinstance(statement, (ir.Move, ir.Beep)):
+                is_wanted_now = is_wanted_now or None
+            elif isinstance(statement, ir.Call):
+                is_wanted_now = self._wants_motors_after(
+                    self._procedures[statement.procedure].body, is_wanted_now
+                )
+            elif isinstance(statement, ir.If):
+                arm_results = [
+                    self._wants_motors_after(arm_body, is_wanted_now)
+                    for arm_body in ir.bodies(statement)
+                ]
+                is_wanted_now = None if None in arm_results else all(arm_results)
+            elif isinstance(statement, (ir.Loop, ir.While)):
+                is_wanted_now = self._wants_motors_in_loop(statement.body, is_wanted_now)
+        return is_wanted_now
 
     def _wants_motors_in_loop(self, body: ir.Body, is_wanted: bool) -> bool | None:
-        once = self._wants_motors_after(body, is_wanted)
-        if once is None or self._wants_motors_after(body, once) is None:
+        after_one_turn = self._wants_motors_after(body, is_wanted)
+        if after_one_turn is None or self._wants_motors_after(body, after_one_turn) is None:
             return None
-        takes_time = once or any(map(_takes_time, body))  # else a turn of it waits for 1 ms
-        return is_wanted and once if takes_time else None
+        takes_time = after_one_turn or any(
+            map(_takes_time, body)
+        )  # else a turn of it waits for 1 ms
+        return is_wanted and after_one_turn if takes_time else None
 
 
 def report_brief_tasks(context: LintContext) -> None:
@@ -120,8 +130,8 @@ def report_brief_tasks(context: LintContext) -> None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, statements)):
                 context.diagnostics.append(_single_run_diagnostic(task, context.source))
         elif driving_statements and known_value(task.until.condition) is None:
-            is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in statements)
-            if is_brief and any(isinstance(item, ir.Stop) for item in statements):
+            is_brief = all(isinstance(statement, _INSTANT_STATEMENTS) for statement in statements)
+            if is_brief and any(isinstance(statement, ir.Stop) for statement in statements):
                 _report_resumed_move(task, driving_statements[0], context)
 
 
@@ -137,24 +147,24 @@ def _repeats(statement: ir.Statement) -> bool:
 def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
     """It says to write a loop around all of it, on lines of its own where the TASK has them."""
     text = source[task.span]
-    end = re.search(r"\w+\Z", text)
-    assert end is not None
-    after, before = task.word.end, task.span.start + end.start()
+    end_match = re.search(r"\w+\Z", text)
+    assert end_match is not None
+    header_end, end_start = task.word.end, task.span.start + end_match.start()
     separator = "\n" if "\n" in text else ";"
-    edits = (Edit(Span(after, after), f"{separator}LOOP(FOREVER)"),
-             Edit(Span(before, before), f"END_LOOP{separator}"))  # fmt: skip
+    edits = (Edit(Span(header_end, header_end), f"{separator}LOOP(FOREVER)"),
+             Edit(Span(end_start, end_start), f"END_LOOP{separator}"))  # fmt: skip
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 
 
 def report_lone_task(context: LintContext) -> None:
     """`TASK;F(5, 50);BEEP(5, 440);END_TASK` alone: in it one comes after the other."""
     program = context.program
-    is_idle = all(isinstance(each, (ir.Read, ir.Assign)) for each in program.body)
+    is_idle = all(isinstance(statement, (ir.Read, ir.Assign)) for statement in program.body)
     (task, *other_tasks) = program.tasks
     if other_tasks or task.until is not None or not task.body or not is_idle:
         return
     text = context.source[task.span]
-    statements = [each for each in task.body if not isinstance(each, ir.Read)]
+    statements = [statement for statement in task.body if not isinstance(statement, ir.Read)]
     moves_last = sorted(statements, key=_is_move)
     if [*map(_is_move, moves_last)] != [False, True] or not isinstance(moves_last[0], ir.Beep):
         context.report(codes.LONE_TASK, task.word)
@@ -175,29 +185,33 @@ def report_lone_task(context: LintContext) -> None:
 
 
 def _report_resumed_move(
-    task: ir.Task, driving_statements: ir.Statement, context: LintContext
+    task: ir.Task, driving_statement: ir.Statement, context: LintContext
 ) -> None:
-    head = re.match(_WHEN_HEADER, context.source[task.span])
-    values = {"line": str(context.source.position(driving_statements.span.start)[0])}
-    if head is not None:
+    header_match = re.match(_WHEN_HEADER, context.source[task.span])
+    values = {"line": str(context.source.position(driving_statement.span.start)[0])}
+    if header_match is not None:
         ended_move = (
-            f"IF{head[1]};BREAK;ENDIF"
-            if isinstance(driving_statements, ir.Loop)
-            else f"UNTIL{head[1]}"
+            f"IF{header_match[1]};BREAK;ENDIF"
+            if isinstance(driving_statement, ir.Loop)
+            else f"UNTIL{header_match[1]}"
         )
         values["ended"] = ended_move
     # a DEF that is called may have it
-    stops = [each for each in task.body if isinstance(each, (ir.Stop, ir.Call))]
-    stop = min(stops, key=lambda each: isinstance(each, ir.Call))
+    stops = [statement for statement in task.body if isinstance(statement, (ir.Stop, ir.Call))]
+    stop = min(stops, key=lambda statement: isinstance(statement, ir.Call))
     context.report(codes.WHEN_GOES_ON, stop.span, **values)
 
 
 def _endless_part(body: ir.Body) -> ir.Body:
     """Return what a body does for ever at its end: a move, or what a loop repeats."""
-    last = body[-1] if body else None
-    if isinstance(last, ir.Loop) and last.times is None:
-        return last.body
-    is_move = isinstance(last, ir.Move) and last.time is None and last.until is None
+    last_statement = body[-1] if body else None
+    if isinstance(last_statement, ir.Loop) and last_statement.times is None:
+        return last_statement.body
+    is_move = (
+        isinstance(last_statement, ir.Move)
+        and last_statement.time is None
+        and last_statement.until is None
+    )
     return body[-1:] if is_move else ()
 
 

@@ -41,20 +41,20 @@ MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 
 def report_never_reached(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """What stands after a loop without an end, or after BREAK."""
-    for before, after in pairwise(body):
-        if not ir.falls_through((before,)):
-            values = {"found": context.source[after.span].split("\n")[0]}
-            if isinstance(before, ir.Loop):
-                values["line"] = str(context.source.position(before.span.start)[0])
+    for statement, next_statement in pairwise(body):
+        if not ir.falls_through((statement,)):
+            values = {"found": context.source[next_statement.span].split("\n")[0]}
+            if isinstance(statement, ir.Loop):
+                values["line"] = str(context.source.position(statement.span.start)[0])
                 if (
-                    isinstance(after, ir.Loop)
-                    and after.times is None
+                    isinstance(next_statement, ir.Loop)
+                    and next_statement.times is None
                     and body is context.program.body
                 ):
                     values["together"] = "TASK"
-            elif isinstance(before, ir.Break):
+            elif isinstance(statement, ir.Break):
                 values["ends"] = "BREAK"
-            context.report(codes.NEVER_REACHED, after.span, **values)
+            context.report(codes.NEVER_REACHED, next_statement.span, **values)
             return
 
 
@@ -72,19 +72,19 @@ def report_instructions_in_notes(context: LintContext) -> None:
     if all(token.kind in INSTRUCTION_ENDS for token in tokens):
         _report_all_notes(short_comments, context)
         return
-    rows = [
+    notes = [
         token
         for token in short_comments
         if re.fullmatch(_CALLS, token.text) or swallowed_instructions(token.text)
     ]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
     depth = k = 0
-    for note in rows:
+    for note in notes:
         while tokens[k].start < note.start:
             depth += (tokens[k].kind == "(") - (tokens[k].kind == ")")
             k += 1
-        begin = max(source.text.rfind(sign, 0, note.start) for sign in "\r\n") + 1
-        if depth or not source.text[begin : note.start].strip(" \t;"):
+        line_start = max(source.text.rfind(sign, 0, note.start) for sign in "\r\n") + 1
+        if depth or not source.text[line_start : note.start].strip(" \t;"):
             continue
         if _ends_instruction(tokens, k) and not is_ping:
             rest = "; ".join(swallowed_instructions(note.text))
@@ -106,11 +106,17 @@ def swallowed_instructions(note: str) -> list[str]:
 
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
-    first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    instructions = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
-    is_row = all(item in instructions or not set("()") & set(item) for item in (first, *others))
-    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in instructions)
-    return instructions if is_row and first else []
+    first_part, *other_parts = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
+    instructions = [
+        part for part in other_parts if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", part)
+    ]
+    are_instructions = all(
+        part in instructions or not set("()") & set(part) for part in (first_part, *other_parts)
+    )
+    are_instructions = are_instructions and any(
+        re.fullmatch(_CALL, part, re.IGNORECASE) for part in instructions
+    )
+    return instructions if are_instructions and first_part else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
@@ -124,8 +130,8 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
     while k >= 0 and (depth or tokens[k].kind not in (";", "|", NEWLINE)):
         depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
         k -= 1
-    word_row = WORDS.get(tokens[k + 1].text)
-    return word_row is None or word_row.role.name not in ("start", "block", "arm")
+    word = WORDS.get(tokens[k + 1].text)
+    return word is None or word.role.name not in ("start", "block", "arm")
 
 
 # -- blocks ----------------------------------------------------------------------------------
@@ -147,8 +153,8 @@ def report_busy_loop(
     ):
         return
     word = "LOOP(FOREVER)" if isinstance(loop, ir.Loop) else "WHILE"
-    head = Span(loop.span.start, loop.span.start + len(word))
-    context.report(codes.BUSY_LOOP, head, word=word)
+    header_span = Span(loop.span.start, loop.span.start + len(word))
+    context.report(codes.BUSY_LOOP, header_span, word=word)
 
 
 def _is_forever(loop: ir.Loop | ir.While) -> bool:
@@ -168,22 +174,27 @@ def report_empty_blocks(body: ir.Body, body_context: BodyContext, context: LintC
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        is_noted = re.compile(_NOTE_AFTER).match(source.text, statement.span.end)
-        if "//" in text or is_noted:
+        note_match = re.compile(_NOTE_AFTER).match(source.text, statement.span.end)
+        if "//" in text or note_match:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
-        span = context.head(statement.span)
-        after = _leading_instructions(body[k + 1 :], source)
-        before = (
-            [] if after else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
+        span = context.header_span(statement.span)
+        instructions_after = _leading_instructions(body[k + 1 :], source)
+        instructions_before = (
+            []
+            if instructions_after
+            else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
         )
-        if not after and not before:
+        if not instructions_after and not instructions_before:
             continue
-        head_text, end = " ".join(source[span].split()), BLOCK_ENDS[word]
-        values = {"head": head_text, "end": end}
-        for name, rows in (("example", after), ("before", before)):
-            if 0 < len(rows) <= MOST_EXAMPLE_INSTRUCTIONS:
-                values[name] = "; ".join((head_text, *rows, end))
+        header, end = " ".join(source[span].split()), BLOCK_ENDS[word]
+        values = {"head": header, "end": end}
+        for name, instructions in (
+            ("example", instructions_after),
+            ("before", instructions_before),
+        ):
+            if 0 < len(instructions) <= MOST_EXAMPLE_INSTRUCTIONS:
+                values[name] = "; ".join((header, *instructions, end))
         context.report(codes.EMPTY_BLOCK, span, **values)
 
 
@@ -198,13 +209,19 @@ def _is_empty(statement: ir.Statement) -> bool:
 def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
     plain_statements = [
-        *takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)
+        *takewhile(
+            lambda statement: not isinstance(statement, (ir.If, ir.Loop, ir.While)), statements
+        )
     ]
     end = next(
-        (k + 1 for k, each in enumerate(plain_statements) if isinstance(each, ir.Break)),
+        (k + 1 for k, statement in enumerate(plain_statements) if isinstance(statement, ir.Break)),
         len(plain_statements),
     )
-    return [source[each.span] for each in plain_statements[:end] if not isinstance(each, ir.Read)]
+    return [
+        source[statement.span]
+        for statement in plain_statements[:end]
+        if not isinstance(statement, ir.Read)
+    ]
 
 
 # -- what nobody uses ------------------------------------------------------------------------
@@ -236,11 +253,11 @@ def report_unused_readings(context: LintContext) -> None:
 
 
 def report_unused_defs(context: LintContext) -> None:
-    called = {
+    numbers_called = {
         statement.procedure for statement in context.statements if isinstance(statement, ir.Call)
     }
     for number, procedure in enumerate(context.program.procedures):
-        if number not in called:
+        if number not in numbers_called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
             values = {"name": procedure.name}
             if procedure.values:
