@@ -150,8 +150,8 @@ def _make_empty(folder: Path) -> None:
     try:
         if folder.exists():
             shutil.rmtree(folder)
-    except OSError as why:  # Windows removes no program that runs
-        _fail(sentence("in_use", why=why.strerror or str(why)))
+    except OSError as error:  # Windows removes no program that runs
+        _fail(sentence("in_use", why=error.strerror or str(error)))
     if not _runs(Path(sys.executable), "-c", "import ensurepip"):
         _fail(sentence("no_venv"))
     if subprocess.run([sys.executable, "-m", "venv", str(folder)]).returncode:

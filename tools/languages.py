@@ -29,9 +29,9 @@ from tiniscript.base.languages import (
     FOLDER,
     NAMES_CATALOGUE,
     SOURCE_LANGUAGE,
-    files,
     languages,
-    table,
+    read_table,
+    source_files,
 )
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
@@ -53,7 +53,7 @@ def sources() -> dict[str, Catalogue]:
     which is the one without a special case.
     """
     paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
-    catalogues = {path.stem: catalogue_source.load(path) for path in paths}
+    catalogues = {path.stem: catalogue_source.load_catalogue(path) for path in paths}
     lasts = {entry.key: entry for entry in catalogues.get("messages", Catalogue()).entries.values()}
     programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
     for key, entry in lasts.items():
@@ -92,7 +92,7 @@ def pseudo(source: Catalogue) -> Catalogue:
     catalogue = Catalogue()
     for at, entry in source.entries.items():
         forms = {name: _lengthened(form) for name, form in entry.forms.items()}
-        forms = entry.forms if entry.is_same and not entry.like else forms
+        forms = entry.forms if entry.is_same and not entry.same_text_key else forms
         catalogue.entries[at] = Entry(*at, entry.plural, forms, entry.hash, is_same=entry.is_same)
     return catalogue
 
@@ -137,7 +137,7 @@ def check_lexicon(language: str) -> Iterator[str]:
 
 
 def _rows(language: str) -> list[str]:
-    rows = table(language, "lexicon.txt").split("\n")
+    rows = read_table(language, "lexicon.txt").split("\n")
     return [row for row in rows if row and not row.startswith("#")]
 
 
@@ -157,7 +157,7 @@ def main() -> int:
         make_pseudo(english)
         return 0
     problem_count = sum(
-        tell(files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
+        tell(source_files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
         for name, catalogue in english.items()
     )
     problem_count += tell(

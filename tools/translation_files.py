@@ -82,7 +82,7 @@ class Translation:
             return
         row.key = new_keys[0]
         row.text = format_rows(row.key, texts, len(texts) > 1)
-        translation_file.texts[row.key], translation_file.lines[row.key] = texts, row.line
+        translation_file.texts[row.key], translation_file.line_of_key[row.key] = texts, row.line
         self.seen[f"{name} {row.key}"] = hashes
 
     def _follow_places(self, name: str, translation_file: TranslationFile, row: Row) -> None:
@@ -144,7 +144,7 @@ class Translation:
             if row is None:
                 translation_file.rows.append(row := Row(key, None, 0, ""))
             row.text = format_rows(key, texts, len(group) > 1)
-            translation_file.texts[key], translation_file.lines[key] = texts, row.line
+            translation_file.texts[key], translation_file.line_of_key[key] = texts, row.line
         if name != NAMES_CATALOGUE:
             self._note(name, key, [entry.seen_hash for entry in group])
 

@@ -18,7 +18,7 @@ from babel.messages.pofile import PoFileError, read_po, write_po
 
 from tiniscript.base.catalogue_source import Catalogue, Entry, Forms
 from tiniscript.base.languages import NAMES_CATALOGUE, languages
-from tiniscript.base.translations import NUMBERS_TRIED, Language, misfits
+from tiniscript.base.translations import NUMBERS_TRIED, Language, find_misfits
 from tiniscript.base.version import __version__
 from tools.translation_files import Translation, tell
 
@@ -52,7 +52,7 @@ def give(path: Path, translation: Translation) -> int:
         header_comment=f"# {language.english_name} texts of TiniScript, in {END} for translators",
         language_team=language.english_name,
     )  # fmt: skip
-    plurals = f"nplurals={len(language.forms)}; plural=({language.rule});"
+    plurals = f"nplurals={len(language.forms)}; plural=({language.plural_rule});"
     catalog.mime_headers = [("Plural-Forms", plurals)]
     for name in translation.english:
         for entry in translation.merge(name).entries.values():
@@ -125,7 +125,7 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     old_translation, old_seen = entry.translation, entry.seen_hash
     entry.translation, entry.seen_hash = forms, entry.hash
-    if why := misfits(entry, translation.language):
+    if why := find_misfits(entry, translation.language):
         entry.translation, entry.seen_hash = old_translation, old_seen
         return f"{message.context}: {why[0]}"
     translation.put(name, key, group)

@@ -221,8 +221,8 @@ def main() -> int:
         try:
             act()
             said = "works"
-        except (Failed, OSError, AssertionError) as why:
-            said, failed = f"FAILS: {why}", failed + 1
+        except (Failed, OSError, AssertionError) as error:
+            said, failed = f"FAILS: {error}", failed + 1
         print(f"{name:32} {said}  ({time.monotonic() - began_s:.1f} s)", flush=True)
 
     with browsers() as opens:

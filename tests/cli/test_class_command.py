@@ -185,7 +185,7 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
     )  # fmt: skip
     here = [Present("00000001", "A", True), Present("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
-        options = Classroom.targets(cast(Classroom, room), here, verb)
+        options = Classroom.options_for(cast(Classroom, room), here, verb)
         assert options.verb == verb  # of an upload, who no longer reads stops the robots
         assert hasattr(options, "attend") == attends
         assert options.ports == ["mqtt://h:1/c/00000001"]
@@ -200,7 +200,7 @@ def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
     alone = Options("upload", "en").read([])
     assert own is not None and alone is not None
     for verb in ("class", "stop", "upload"):
-        options = vars(Classroom.targets(cast(Classroom, room), [], verb))
+        options = vars(Classroom.options_for(cast(Classroom, room), [], verb))
         lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
         assert len(lacks) > 5
         assert {name: options.get(name, "none") for name in lacks} == lacks
@@ -360,7 +360,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
     )  # fmt: skip
     told.request = partial(Connection.request, cast(Connection, told))
-    told.ask_or = partial(Connection.ask_or, cast(Connection, told))
+    told.ask_or = partial(Connection.request_or_raise, cast(Connection, told))
     with pytest.raises(CommandError) as exception_info:
         robot_broker.use_broker(cast(Connection, told), None, Namespace())
     assert "older than this tsc" in exception_info.value.sentence("en")

@@ -80,7 +80,7 @@ def opened(place: Path, own: str | None = None, seen: bool = False) -> Translati
     """Return what `xx` has, as the tool sees it; `seen`: of the English texts of now."""
     if own is not None:
         write(place / "xx" / "some.toml", own)
-    english = {"some": catalogue_source.load(place / SOURCE_LANGUAGE / "some.toml")}
+    english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if seen:
         translation.see([])
@@ -217,9 +217,9 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         for each in ("some.toml", SEEN_FILE, ABOUT_FILE):
             (folder / each).write_bytes(data)
         language = read_language(folder / ABOUT_FILE)
-        assert len(language.form_of) == NUMBERS_TRIED
+        assert len(language.form_digits) == NUMBERS_TRIED
         read_seen(folder / SEEN_FILE)
-        english = catalogue_source.load(folder / "some.toml")
+        english = catalogue_source.load_catalogue(folder / "some.toml")
         merge_translations(
             english, "some", read_translation_file(folder / "some.toml"), {}, language
         )
@@ -417,7 +417,7 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
-    read, _, wrong = catalogue_source.rows(rows + plural)
+    read, _, wrong = catalogue_source.parse_rows(rows + plural)
     assert wrong == []
     assert {row.key: row.value for row in read} == {
         key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
@@ -441,9 +441,9 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
-    english = languages.table(SOURCE_LANGUAGE, "lexicon.txt")
+    english = languages.read_table(SOURCE_LANGUAGE, "lexicon.txt")
     tables = {SOURCE_LANGUAGE: english, "fr": "\n".join(rows)}
-    monkeypatch.setattr("tools.languages.table", lambda language, _: tables[language])
+    monkeypatch.setattr("tools.languages.read_table", lambda language, _: tables[language])
     assert [*check_lexicon("fr")] == rows[1:5]
 
 
@@ -485,7 +485,7 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
         english_name,
         forms,
     )
-    assert "".join(language.form_of[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
+    assert "".join(language.form_digits[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
     before = {path: path.read_bytes() for path in (place / code).iterdir()}
     assert whole() == 0

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.languages import SOURCE_LANGUAGE, entries, languages, plural_text
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, merged_catalogue, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -72,7 +72,7 @@ def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("language", languages()[1:])
 def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
     """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
-    for entry in entries("studio", language).entries.values():
+    for entry in merged_catalogue("studio", language).entries.values():
         places = sorted(re.findall(r"%[\d%]", entry.english))
         assert all(
             sorted(re.findall(r"%[\d%]", each)) == places for each in entry.translation.values()
@@ -218,7 +218,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`tsc studio` and a static host give the same files, by the same list."""
-    brought = ready.Ready("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
+    brought = ready.ReadyFile("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
     brought.path.write_text(":0100000001FE\n:00000001FF\n")
     (tmp_path / "page").mkdir()
     monkeypatch.setattr(ready, "files", list)

@@ -233,7 +233,7 @@ class Slow:
     def read(self, sensor: int) -> int | None:
         return (sensor % 3 - 1) * 2_147_483_000 if self.is_ready() else None
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
         raise AssertionError
 
     def beep(self, hertz: int, duration_ms: int) -> None:

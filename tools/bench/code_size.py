@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tests.support.casefile import documents, read
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.semantics.ir import all_statements
 from tools import ROOT
@@ -35,7 +35,7 @@ class Measured(NamedTuple):
         return self.code_bytes / self.statement_count
 
 
-def corpus() -> Iterator[Compiled]:
+def corpus() -> Iterator[Compilation]:
     """Yield the compiled programs of the documents and examples."""
     robot_of_text: dict[str, str] = {}  # the robot, or nothing, of each text
     for path in (*documents(), *sorted(LESSONS.glob("*/*.md"))):

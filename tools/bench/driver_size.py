@@ -38,12 +38,12 @@ def wired(name: str, robot: Robot) -> Wiring:
         if fixed is None:
             can = (
                 pin
-                for pin in sorted(chip.digital)
+                for pin in sorted(chip.digital_pins)
                 if chip.can(pin, ability) and pin not in used_pins
             )
             pins[key] = next(can)
             used_pins.add(pins[key])
-        elif driver.chosen_by(key, settings):
+        elif driver.choosing_key(key, settings):
             pins[key] = fixed
     return Wiring(name, pins, settings)
 
@@ -70,9 +70,9 @@ def main() -> int:
         for driver in DRIVERS_IN_ORDER:
             try:
                 flash, note = flash_with(driver, project), ""
-            except RuntimeError as why:
-                if "greater than maximum allowed" not in str(why):
-                    print(why, file=sys.stderr)
+            except RuntimeError as error:
+                if "greater than maximum allowed" not in str(error):
+                    print(error, file=sys.stderr)
                     return 2
                 smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
                 flash = flash_with(driver, project, smaller)

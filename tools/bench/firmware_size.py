@@ -92,8 +92,8 @@ def measure(name: str, project: Path = PROJECT) -> Sketch:
 def main() -> int:
     try:
         sketches = [measure(name) for name in short_of_room()]
-    except RuntimeError as why:
-        print(why, file=sys.stderr)
+    except RuntimeError as error:
+        print(error, file=sys.stderr)
         return 2
     is_enough = True
     size_rows = []

@@ -138,8 +138,8 @@ def on_each_baud(
         try:
             figures_by_baud = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
             return int(not are_kept(figures_by_baud, Path(name)))
-        except RuntimeError as failed:
-            print(failed, file=sys.stderr)
+        except RuntimeError as error:
+            print(error, file=sys.stderr)
             return 2
 
 

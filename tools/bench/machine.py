@@ -41,11 +41,11 @@ def per_iteration(work: Work) -> float:
 def main() -> int:
     try:
         cycles()
-    except workloads.WrongResult as wrong:
-        print(f"wrong result: {wrong}", file=sys.stderr)
+    except workloads.WrongResult as error:
+        print(f"wrong result: {error}", file=sys.stderr)
         return 1
-    except RuntimeError as why:  # the firmware is not built
-        print(why, file=sys.stderr)
+    except RuntimeError as error:  # the firmware is not built
+        print(error, file=sys.stderr)
         return 2
     return 0
 

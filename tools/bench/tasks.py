@@ -58,8 +58,8 @@ def main() -> int:
     try:
         firmware = firmware_size.measure("uno").firmware
         firmware_without_tasks = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
-    except RuntimeError as failed:
-        print(failed, file=sys.stderr)
+    except RuntimeError as error:
+        print(error, file=sys.stderr)
         return 2
     page.show("tasks", [(row, f"{jitter_ms(firmware, others):.2f} ms")
                         for others, row in COUNTING_ROWS.items()])  # fmt: skip

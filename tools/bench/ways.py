@@ -53,7 +53,7 @@ class Robot(Talk):
 
     def __init__(self, seed: int, slip: float, by_discs: bool) -> None:
         motors = (FAST, SLOW) if seed % 2 else (SLOW, FAST)
-        settings = Settings(seed=seed, motors=motors, rough=Roughness(slip), eeprom_us=0)
+        settings = Settings(seed=seed, motors=motors, roughness=Roughness(slip), eeprom_us=0)
         profile = robots.load("tinibot2")
         place = floor(size=1000, start="x_cm = 500\ny_cm = 500")
         robot = VirtualRobot(profile, place, settings)
@@ -81,7 +81,7 @@ class Robot(Talk):
         """Do what `tsc set trim` does: make it straight, and measure at two powers."""
         weaker = round(100 * (1 - SLOW / FAST))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
-        self.until(self.session.trim(trim.data()))
+        self.wait_for(self.session.trim(trim.data()))
         measures = []
         for power in (40, 80):
             ahead_cm, _, _ = self.drive(f"F(2, {power})")
@@ -89,7 +89,7 @@ class Robot(Talk):
         for power in (40, 80):
             _, _, turned = self.drive(f"R(1, {power})")
             measures.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
-        self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
+        self.wait_for(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
 def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]:

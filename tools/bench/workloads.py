@@ -80,11 +80,11 @@ def code_of(work: Work) -> bytes:
 def expected_values(work: Work) -> tuple[int, ...]:
     """Return the values that the machine in Python shows, in thousandths."""
     *events, ending = run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths}))
-    assert isinstance(ending, Ending) and ending.what == "DONE", ending
+    assert isinstance(ending, Ending) and ending.kind == "DONE", ending
     return tuple(
         value
         for event in events
-        if not isinstance(event, Ending) and event.what == "SHOW"
+        if not isinstance(event, Ending) and event.kind == "SHOW"
         for value in event.values
     )
 

@@ -45,8 +45,8 @@ def main(words: Sequence[str] | None = None) -> int:
         for name in FILES:
             write(folder / name, text_of(name))
             print(folder / name)
-    except OSError as why:
-        print(f"{COMMAND}: {why.strerror or why}: {why.filename or folder}", file=sys.stderr)
+    except OSError as error:
+        print(f"{COMMAND}: {error.strerror or error}: {error.filename or folder}", file=sys.stderr)
         return 1
     return 0
 

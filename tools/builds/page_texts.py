@@ -31,7 +31,7 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     text = texts("command", language)
     result = texts("studio", language) | {key: text[value] for key, value in COMMAND_TEXTS.items()}
     return {
-        "": info.form_of,
+        "": info.form_digits,
         **{
             key: value if isinstance(value, str)
             else [value.get(form, value["other"]) for form in info.forms]

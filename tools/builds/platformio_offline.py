@@ -74,8 +74,8 @@ def main(arguments: list[str] | None = None) -> int:
     project: Path = options.project.resolve()
     try:
         settings = settings_for(project, options.offline)
-    except CannotMake as why:
-        print(f"platformio_offline: {why}", file=sys.stderr)
+    except CannotMake as error:
+        print(f"platformio_offline: {error}", file=sys.stderr)
         return 2
     if options.command:
         path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", "")))

@@ -49,8 +49,8 @@ def main(words: Sequence[str] | None = None) -> int:
         return 2
     try:
         build(ROOT, folder, has_studio=not options.no_studio)
-    except CannotMake as failure:
-        print(f"site: {failure}", file=sys.stderr)
+    except CannotMake as error:
+        print(f"site: {error}", file=sys.stderr)
         return 2
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB")

@@ -70,8 +70,8 @@ def main(words: Sequence[str] | None = None) -> int:
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
     try:
         missing += add_wheels(wheels, systems, pythons, options.wheel)
-    except CannotMake as why:
-        print(f"usb_stick: {why} Is this computer online?", file=sys.stderr)
+    except CannotMake as error:
+        print(f"usb_stick: {error} Is this computer online?", file=sys.stderr)
         return 2
     if not options.no_installer and "windows" in systems:
         missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
@@ -105,8 +105,8 @@ def add_wheels(
             print(f"wheels for {title}", flush=True)
             try:
                 stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, EXTRAS)
-            except CannotMake as why:
-                missing.append(_with_fewer(wheel, wheels, name, python, str(why)))
+            except CannotMake as error:
+                missing.append(_with_fewer(wheel, wheels, name, python, str(error)))
     return missing
 
 
@@ -129,8 +129,8 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
         if hashlib.sha256(target.read_bytes()).hexdigest() == sha256:
             return []
         why = "what came is not that installer"
-    except (OSError, ValueError) as failure:  # also what urllib raises
-        why = str(getattr(failure, "reason", failure))
+    except (OSError, ValueError) as error:  # also what urllib raises
+        why = str(getattr(error, "reason", error))
     target.unlink(missing_ok=True)
     return [Missing("no_installer", url, why)]
 

@@ -44,7 +44,7 @@ def page(language: str, command: str, table: Table) -> str:
 def _overview(language: str, table: Table) -> Iterator[str]:
     yield f"# {_text('title', language)}"
     yield _text("introduction", language)
-    for heading, rows in help.groups(language):
+    for heading, rows in help.command_groups(language):
         yield heading
         yield table(
             [_text(key, language) for key in ("command", "does")],
@@ -62,11 +62,11 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
     options = [option for option in shown_of(command) if option.verbs != "*"]
     has_virtual_section = any(option.name == "virtual" for option in options)
     yield _options(
-        [option for option in options if not (has_virtual_section and option.virtual)],
+        [option for option in options if not (has_virtual_section and option.is_virtual)],
         language,
         table,
     )
-    virtual_options = [option for option in options if has_virtual_section and option.virtual]
+    virtual_options = [option for option in options if has_virtual_section and option.is_virtual]
     if virtual_options:
         yield verb_text("virtual", language)
         yield _options(virtual_options, language, table)

@@ -25,7 +25,7 @@ def with_drivers(profile: Path) -> str:
     text = profile.read_text(encoding="utf-8")
     for used_by, end in LISTS.items():
         rows = "".join(
-            _row(driver.name, driver.profile)
+            _row(driver.name, driver.profile_help)
             for driver in DRIVERS.values()
             if driver.used_by == used_by
         )

@@ -75,10 +75,10 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         shows = [
             [event.values[0], int(event.text.endswith("E"))]
             for event in robot.events
-            if event.what == "SHOW"
+            if event.kind == "SHOW"
         ]
-        is_still = all(not any(e.values) for e in robot.events if e.what == "MOTORS")
-        other_events = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
+        is_still = all(not any(e.values) for e in robot.events if e.kind == "MOTORS")
+        other_events = {event.kind for event in robot.events} - {"SHOW", "MOTORS"}
         if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MOST_SHOWS:
             continue
         numbers = {name: number for number, name, _ in FAULTS}
@@ -107,8 +107,8 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
 def verdict(code: bytes, device_count: int) -> str:
     try:
         verify(code, device_count, device_count)
-    except Refused as refused:
-        return f"{refused.name} {refused.offset}"
+    except Refused as error:
+        return f"{error.name} {error.offset}"
     return ""
 
 

@@ -191,9 +191,9 @@ def answer_of(
         robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
-            robot.say("DONE", (), "DONE")
+            robot.record("DONE", (), "DONE")
         elif status == FAULT:
-            robot.say("FAULT", (), f"FAULT {machine.fault}")
+            robot.record("FAULT", (), f"FAULT {machine.fault}")
         elif status == RUNNING and not robot.was_slow:
             return None
         else:
@@ -205,7 +205,7 @@ def answer_of(
                 robot.now_ms = wake_ms
                 continue
             robot.now_ms = run.inputs.max_ms
-            robot.say("LIMIT", (), "LIMIT")
+            robot.record("LIMIT", (), "LIMIT")
         return [str(event) for event in robot.events]
     return None
 

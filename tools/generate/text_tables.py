@@ -16,7 +16,7 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen.text.problems import PROBLEMS, problem_text
 from tiniscript.robots.kit_words import pack_range, pack_word
-from tiniscript.robots.text_levels import OF_TASKS_AND_WAYS, UNREAD
+from tiniscript.robots.text_levels import TASK_AND_EXTENT_WORDS, UNREAD_WORDS
 from tools.generate.cpp_header import camel, cpp_file, enumeration
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
@@ -35,9 +35,9 @@ def role_of(word: Word) -> str:
     A word that no level reads is like those of later versions: its name is taken, and that is all.
     They are not said, and no more are other spellings of the ends of tasks.
     """
-    if word.text in UNREAD:
+    if word.text in UNREAD_WORDS:
         return "later"
-    if word.text in OF_TASKS_AND_WAYS:
+    if word.text in TASK_AND_EXTENT_WORDS:
         return "later" if word.text in ALIASES else "task"
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
@@ -124,7 +124,7 @@ def bytes_before(name: str) -> int:
 
 def bytes_of(role: str) -> int:
     """Return how many letters the words of this role have, those of tasks apart."""
-    words = (word for word in words_in_order() if word.text not in OF_TASKS_AND_WAYS)
+    words = (word for word in words_in_order() if word.text not in TASK_AND_EXTENT_WORDS)
     return sum(len(word.text) for word in words if word.role.name == role)
 
 

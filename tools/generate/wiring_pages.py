@@ -75,7 +75,7 @@ def _words(words: str) -> str:
 
 
 def _block(block: Block, name: str, language: str) -> str:
-    words = _words(block.words)
+    words = _words(block.text)
     if block.kind in ("drawing", "finished"):
         kind = "" if block.kind == "drawing" else "finished."
         drawing = f"../../pictures/wiring/{name}.{kind}{language}.svg"

@@ -62,8 +62,8 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         folder.mkdir(parents=True, exist_ok=True)  # who cannot have it hears so before an hour
         return rehearse(folder, parts, options)
-    except OSError as why:
-        return _fail(f"{why.strerror or why}: {why.filename or folder}")
+    except OSError as error:
+        return _fail(f"{error.strerror or error}: {error.filename or folder}")
     except KeyboardInterrupt:
         return _fail("Ended. Nothing is in the folder.")
 
@@ -129,8 +129,8 @@ def lacks(parts: Sequence[str]) -> str:
     if "studio" in parts:
         try:
             find_tools()
-        except CannotMake as why:
-            return str(why)
+        except CannotMake as error:
+            return str(error)
     return ""
 
 

@@ -19,10 +19,10 @@ from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
+    EXTENTS,
     FUNCTIONS,
     MOVES,
     UNIT_OF,
-    WAYS,
     WORDS,
     lexicon,
 )
@@ -57,7 +57,7 @@ _COMPARISON_SENSES = {
     "=!": "<>", "≤": "<", "≥": ">", "≠": "<>",
 }  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
-_WAY_UNITS = tuple(way.unit for way in WAYS.values())
+_WAY_UNITS = tuple(way.unit for way in EXTENTS.values())
 _STORED_UNIT = "="  # of what a variable keeps that nothing reads: a move would take seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
@@ -600,7 +600,7 @@ class _Said:
         texts = {item.kind for item in lexicon().get(token.text, ())}
         is_last_argument = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
         is_only_unit = texts == {"unit"} or (
-            "unit" in texts and (is_last_argument or token.text in WAYS)
+            "unit" in texts and (is_last_argument or token.text in EXTENTS)
         )
         is_unbound = not self.names.is_name(token.text) and after.kind is not NUMBER
         if not is_only_unit or not is_unbound or (len(token.text) == 1 and not is_last_argument):
@@ -647,7 +647,7 @@ class _Said:
         after = texts(self.tokens[k : closed(self.tokens, k) or k])
         way = UNIT_OF.get(word.text, "")
         if way in after:
-            units[0] = WAYS[way].unit
+            units[0] = EXTENTS[way].unit
         return units
 
     def _units_of_names(self) -> dict[str, str]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from unicodedata import category
 
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, lexicon_concept, lexicon_meaning
+from tiniscript.base.words import EXTENTS, FUNCTIONS, MOVES, WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
@@ -365,7 +365,9 @@ def _code_of_call(words: Sequence[Lexeme]) -> Code:
     if "=" in signs:
         return codes.NAMED_ARGUMENT
     inside = words[signs.index("(") :]
-    if any(lexicon_meaning(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
+    if any(
+        lexicon_meaning(it.text, "unit") and it.text not in (*EXTENTS, "°", "º") for it in inside
+    ):
         return codes.UNIT
     return codes.OTHER_CALL
 

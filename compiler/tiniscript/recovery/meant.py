@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.spelling import is_slip, nearest
-from tiniscript.base.words import MOVES, UNIT_OF, WAYS, lexicon_meaning
+from tiniscript.base.words import EXTENTS, MOVES, UNIT_OF, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
@@ -157,7 +157,7 @@ def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     values = explanation.values_as(code)
     found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
     is_misspelling = nearest(found_word, [suggestion]) or (
-        suggestion in WAYS and is_slip(found_word, suggestion)
+        suggestion in EXTENTS and is_slip(found_word, suggestion)
     )
     if code is codes.OTHER_LANGUAGE and is_misspelling:
         code = codes.UNKNOWN_WORD
@@ -196,7 +196,7 @@ def _moved_lines_diagnostic(
 def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
     text = lexicon_meaning(plain(unit), "unit")
-    return next((way for way, way_unit in WAYS.items() if text and way_unit.unit == text[0]), "")
+    return next((way for way, way_unit in EXTENTS.items() if text and way_unit.unit == text[0]), "")
 
 
 def _move_pattern(name: str, way: str) -> re.Pattern[str]:

@@ -11,10 +11,10 @@ from math import nan
 from typing import NamedTuple
 
 from tiniscript.base.words import (
+    EXTENTS,
     MOVES,
     OPPOSITE_MOVES,
     UNIT_OF,
-    WAYS,
     WORDS,
     Argument,
     lexicon_meaning,
@@ -396,11 +396,11 @@ class _Reader:
             unit = value.unit
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
             if is_of_scratch and way == "CM" and value.number >= _LEAST_STEPS:
-                unit, self.is_sure = WAYS[way].unit, False
+                unit, self.is_sure = EXTENTS[way].unit, False
             if unit == "turns" and way == "DEG":
-                unit, self.is_sure = WAYS[way].unit, False
+                unit, self.is_sure = EXTENTS[way].unit, False
                 value = _Value(number_text(value.number * LAP), unit)
-            if way and unit == WAYS[way].unit:
+            if way and unit == EXTENTS[way].unit:
                 if slots[0] is not None or any(value.unit is None for value in values[:k]):
                     return None
                 slots[0], order[k], self.way = value, 0, way

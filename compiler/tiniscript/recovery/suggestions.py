@@ -15,7 +15,7 @@ from itertools import islice
 from typing import NamedTuple, Protocol
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Span, overlap
+from tiniscript.base.source import Edit, Span, edits_overlap
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import BLOCK_ENDS, OPPOSITE_MOVES, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
@@ -144,7 +144,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
                 each = _suggestion_for(part)
                 if each and not (
                     suggestions_of_line
-                    and overlap([suggestions_of_line[-1].blanking_edit], [each.blanking_edit])
+                    and edits_overlap([suggestions_of_line[-1].blanking_edit], [each.blanking_edit])
                 ):
                     suggestions_of_line.append(each)
         suggestions += suggestions_of_line

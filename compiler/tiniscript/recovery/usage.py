@@ -19,12 +19,12 @@ from tiniscript.base.spelling import nearest
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
+    CONDITION,
+    EXTENTS,
     MOVES,
     POWER,
-    QUESTION,
     UNIT_OF,
     VERSION_OF_WORD,
-    WAYS,
     WORDS,
     Argument,
     Word,
@@ -501,7 +501,7 @@ class Usage:
         argument = word.arguments[at]
         unit = lexicon_meaning(found, "unit")
         way = UNIT_OF.get(word.text, "")
-        is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
+        is_of_way = bool(way) and unit == (EXTENTS[way].unit, "1000")
         text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
             _NoValue(word, argument, before[-1].text, found_text, unit[0] if unit else "", text)
@@ -765,7 +765,7 @@ def _calls(instruction: str, name: str) -> bool:
 def _usage(word: str) -> str:
     known = WORDS.get(ALIASES.get(word, word))
     is_asking = known is not None and [argument.name for argument in known.arguments] == [
-        QUESTION.name
+        CONDITION.name
     ]
     return (known.example if is_asking else known.usage) if known else word
 

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, lexicon_meaning
+from tiniscript.base.words import EXTENTS, FUNCTIONS, UNIT_OF, WORDS, Word, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
@@ -52,7 +52,7 @@ class ExpressionParser:
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(in_brackets=True)
         token = cursor.inner()  # the CM or DEG that may stand after the whole of it
-        if token.kind is not WORD or token.text not in WAYS:
+        if token.kind is not WORD or token.text not in EXTENTS:
             return argument
         cursor.take_inner(WORD)
         return argument._replace(unit=Part(token.text, 0, *token.span))
@@ -267,7 +267,7 @@ class ExpressionParser:
 
     def reject_unit(self, token: Token) -> None:
         """CM or DEG anywhere but after the whole of a value."""
-        if token.kind is WORD and token.text in WAYS:
+        if token.kind is WORD and token.text in EXTENTS:
             self.report_wrong_unit(token.text, token.span)
             raise Failed
 
@@ -275,7 +275,7 @@ class ExpressionParser:
         first, second = (word for word, unit_of in UNIT_OF.items() if unit_of == unit)
         called = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second}(")
         word = second if called[1] and not set("\n;") & set(called[2]) else first
-        example = f"{word}({WAYS[unit].sample}, 60)"
+        example = f"{word}({EXTENTS[unit].sample}, 60)"
         self.reporter.report(
             codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
         )
@@ -331,7 +331,7 @@ class ExpressionParser:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
         self.reject_semicolon(bracket)
-        self.reject_unit(token if before.text not in WAYS else before)
+        self.reject_unit(token if before.text not in EXTENTS else before)
         self.reject_unknown_character(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text

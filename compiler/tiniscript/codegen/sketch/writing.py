@@ -288,7 +288,7 @@ class _Sketch:
 
     def begin(self) -> list[str]:
         """Return what setup() does first."""
-        lines = list(self.plan.begin)
+        lines = list(self.plan.begin_lines)
         if self.needs_serial():
             lines.append(f"Serial.begin({self.robot.board.baud});")
         lines.append("pinMode($START_BUTTON_$PIN, INPUT_PULLUP);")
@@ -311,7 +311,7 @@ class _Sketch:
         )
 
     def halt(self) -> str:
-        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off, "while (true) {"]
+        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off_lines, "while (true) {"]
         body = "\n".join(f"  {line}" for line in lines)
         code = f"void $halt() {{\n{body}\n  }}\n}}"
         return code if self.robot.board.buzzer is not None else _silent(code)
@@ -364,10 +364,10 @@ class _Sketch:
         return "\n".join(lines) + "\n"
 
     def constants(self) -> str:
-        if not self.plan.constants:
+        if not self.plan.constant_lines:
             return ""
         head = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
-        return "\n".join([head, *self.plan.constants]) + "\n"
+        return "\n".join([head, *self.plan.constant_lines]) + "\n"
 
     def number(self) -> str:
         return self.with_comment(
