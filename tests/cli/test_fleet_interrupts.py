@@ -133,7 +133,8 @@ class Watched:
         for port in "12":
             member = Member(Target(port, "", True, True), deque())
             member.connection = cast(Any, SimpleNamespace(
-                interrupt=lambda: self.stopped.append(self.now_s), line=SimpleNamespace(robot=None)
+                interrupt=lambda: self.stopped.append(self.now_s),
+                connection=SimpleNamespace(robot=None),
             ))  # fmt: skip
             self.fleet.members.append(member)
         news = SimpleNamespace(wait=self.passes, clear=lambda: None)

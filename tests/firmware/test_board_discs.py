@@ -210,12 +210,12 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
         pending_request = robot.session.ping()
         flicker(uno, hertz, 350, robot.run)  # wheels that show no edge are stuck later
         assert pending_request.outcome and pending_request.outcome.status == OK
-        assert not any(event.what in ("reset", "watchdog") for event in uno.events[begun:])
+        assert not any(event.kind in ("reset", "watchdog") for event in uno.events[begun:])
         assert [uno.pins[pin].state for pin in MOTORS] == ["pwm", "pwm"]
         begun = len(uno.events)
         uno.send(b"STOP\r")
         flicker(uno, hertz, 20, uno.run_ms)
-        ended = [event.cycle for event in uno.events[begun:] if event.what == "received"][-1]
+        ended = [event.cycle for event in uno.events[begun:] if event.kind == "received"][-1]
         for motor in MOTORS:
             change = uno.pins[motor]
             assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS

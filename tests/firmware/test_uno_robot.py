@@ -91,7 +91,7 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     assert wired.until(wired.session.undo()) == OK
     wired.run(500)
     written = [
-        event.cycle for event in uno.events if event.what == "eeprom" and event.cycle > begun
+        event.cycle for event in uno.events if event.kind == "eeprom" and event.cycle > begun
     ]
     assert len(written) == 13
     assert written[-1] - written[0] < 60 * CYCLES_PER_MS

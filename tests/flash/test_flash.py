@@ -150,7 +150,7 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
         uno.go()
         tsc(package, "--port", uno.pty).gives(3, f"no bootloader responds on {uno.pty}", "HC-05")
         uno.pause()
-        assert not [event for event in uno.events if event.what == "crash"]
+        assert not [event for event in uno.events if event.kind == "crash"]
 
 
 def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:

@@ -59,7 +59,7 @@ def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
     own = Translation(language, sources())
     was = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
     assert [path for path, problems in own.problems() if problems] == []
-    assert [*own.follow()] == []
+    assert [*own.follow_moved_texts()] == []
     own.folder = tmp_path
     own.write()
     for path in tmp_path.iterdir():

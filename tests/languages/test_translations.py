@@ -83,7 +83,7 @@ def opened(place: Path, own: str | None = None, seen: bool = False) -> Translati
     english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if seen:
-        translation.see([])
+        translation.note_seen([])
         translation.write()
     return translation
 
@@ -130,7 +130,7 @@ def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
         assert said("a") == "Read {file}."
     before = (place / "xx" / "some.toml").read_text().splitlines()
     again = opened(place)
-    assert [*again.follow()] == []
+    assert [*again.follow_moved_texts()] == []
     again.write()
     after = (place / "xx" / "some.toml").read_text().splitlines()
     assert sorted(after) == sorted(before), "it keeps what somebody must mend"
@@ -175,7 +175,7 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     write(place / "xx" / SEEN_FILE, row)
     own = opened(place, OWN)
     assert problems(own) == [(SEEN_FILE, line, why)]
-    own.see(["*"])
+    own.note_seen(["*"])
     own.write()
     assert (place / "xx" / SEEN_FILE).read_text() == row
 
@@ -299,7 +299,7 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
     opened(place, seen=True)
     assert said("b") == "Stop now.", "somebody has run the tool for others"
-    assert own.see(["x*", "b"]) == ["x*"]
+    assert own.note_seen(["x*", "b"]) == ["x*"]
     own.write()
     assert said("b") == "Alto."
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
@@ -316,7 +316,7 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     write(place / SOURCE_LANGUAGE / "some.toml", moved)
     if has_run:
         own = opened(place)
-        assert [*own.follow()] == []
+        assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
             'more = ["", "Ponlo.", "", "Quítalo."]\n'
@@ -343,7 +343,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     opened(place, seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
     own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
-    assert [*own.follow()] == ["some.toml: goes"]
+    assert [*own.follow_moved_texts()] == ["some.toml: goes"]
     own.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
@@ -353,7 +353,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
     assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
     again = opened(place)
-    assert [*again.follow()] == []
+    assert [*again.follow_moved_texts()] == []
     again.write()
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen
 
@@ -364,7 +364,7 @@ def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
         own = opened(place, spoilt, seen=True)
-        assert [*own.follow()] == []
+        assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen[:60])
         kept = (place / "xx" / "some.toml").read_text(encoding="utf-8")
@@ -756,13 +756,13 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     monkeypatch.chdir(tmp_path)
     english = tool.sources()
     before = Translation(language, english)
-    translators.give(Path("out.po"), before)
+    translators.write_file(Path("out.po"), before)
     shutil.copytree(FOLDER / SOURCE_LANGUAGE, tmp_path / "languages" / SOURCE_LANGUAGE)
     (tmp_path / "languages" / language).mkdir()
     for itself in (FOLDER / language).glob(ABOUT_FILE):
         shutil.copy(itself, tmp_path / "languages" / language)
     monkeypatch.setattr(translation_files, "FOLDER", tmp_path / "languages")
-    assert translators.take(Path("out.po"), Translation(language, english)) == 0
+    assert translators.read_file(Path("out.po"), Translation(language, english)) == 0
     after = Translation(language, english)
     for name in english:
         old, new = (translation.merge(name) for translation in (before, after))

@@ -63,7 +63,7 @@ class Driven(Wired):
             super().run(1)
             for event in self.uno.events[self._noticed :]:
                 self._noticed += 1
-                if event.what == "pin":
+                if event.kind == "pin":
                     self._pins[event["pin"]] = event
             left, right = self._motors
             powers = self._power("left") * left / 100, self._power("right") * right / 100

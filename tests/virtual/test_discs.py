@@ -289,7 +289,7 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     assert robot.is_running
     talk.wait(100)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
-    status = talk.until(talk.session.status()).values
+    status = talk.wait_for(talk.session.status()).values
     sentence = fault_sentence(status.fault, status.fault_at, 0, None, "en")
     side = ("left", "right")[number]
     assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")

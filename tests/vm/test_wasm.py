@@ -29,7 +29,9 @@ from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.wasm import WasmMachine
 from tools.builds import wasm
 
-needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
+needs_zig = pytest.mark.skipif(
+    bool(wasm.why_not_here()), reason=wasm.why_not_here() or "there is a compiler"
+)
 KIT = robots.load("tinibot").kit
 SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]
 

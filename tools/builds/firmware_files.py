@@ -72,7 +72,7 @@ def build(robot: Robot, target: Path, has_breakpoints: bool = False) -> Path:
     assert sources is not None, "no vm_arduino beside this folder"
     title = title_of(robot, has_breakpoints)
     path = target / file_name_of(title, robot.board.chip, sources.digest(robot, has_breakpoints))
-    path.write_bytes(building.build(sources, robot, lambda seen: None, has_breakpoints))
+    path.write_bytes(building.build(sources, robot, lambda progress: None, has_breakpoints))
     return path
 
 
@@ -89,15 +89,15 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     os.environ.update(settings_for(PROJECT, offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
-        new = Path(scratch) / "ready"
-        new.mkdir()
-        paths = [build(robot, new) for robot in shipped_robots()]
-        paths += [build(robot, new, has_breakpoints=True) for robot in halting_robots()]
-        (new / NOTICE_FILE).write_text(NOTICE_TEXT, encoding="utf-8")
-        shutil.copy(licence, new / LICENCE_NAME)
+        new_folder = Path(scratch) / "ready"
+        new_folder.mkdir()
+        paths = [build(robot, new_folder) for robot in shipped_robots()]
+        paths += [build(robot, new_folder, has_breakpoints=True) for robot in halting_robots()]
+        (new_folder / NOTICE_FILE).write_text(NOTICE_TEXT, encoding="utf-8")
+        shutil.copy(licence, new_folder / LICENCE_NAME)
         if target.exists():
             target.rename(Path(scratch) / "old")
-        new.rename(target)
+        new_folder.rename(target)
     return [target / path.name for path in paths]
 
 

@@ -33,38 +33,38 @@ from tools.generate.poster import posters
 from tools.site.documents import INDEX_PAGE
 
 COMMAND = "python -m tools.generate"
-KITS = ("tinibot", "liner", "grabber", "elegoo4", "sumo")  # that differ
-ROBOTS = ROOT / "compiler" / "tiniscript" / "robots"
+DOCUMENTED_KITS = ("tinibot", "liner", "grabber", "elegoo4", "sumo")  # that differ
+ROBOT_FOLDER = ROOT / "compiler" / "tiniscript" / "robots"
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Write the generated files.")
     parser.add_argument("--check", action="store_true", help="only say which ones are stale")
     only_check: bool = parser.parse_args(arguments).check
-    stale = 0
+    stale_count = 0
     for path, make in OUTPUTS:
         name = path.relative_to(ROOT).as_posix()
         try:
             text = make()
-        except FileNotFoundError as lacking:
-            file = Path(str(lacking.filename)).resolve()
-            lacks = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
-            sys.exit(f"{name} cannot be made: {lacks.as_posix()} is missing")
+        except FileNotFoundError as error:
+            file = Path(str(error.filename)).resolve()
+            missing_file = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
+            sys.exit(f"{name} cannot be made: {missing_file.as_posix()} is missing")
         if path.exists() and path.read_bytes() == text.encode():
             continue
-        stale += 1
+        stale_count += 1
         if only_check:
             print(f"{name} is stale. Run: {COMMAND}", file=sys.stderr)
         else:
             path.write_bytes(text.encode())
             print(f"wrote {name}")
-    return 1 if only_check and stale else 0
+    return 1 if only_check and stale_count else 0
 
 
 def shipped_robots() -> str:
     """Return `robots/shipped.py`: the profiles of its folder, ready to use, a line for each."""
     rows = []
-    for path in sorted(ROBOTS.glob("*.toml")):
+    for path in sorted(ROBOT_FOLDER.glob("*.toml")):
         try:
             robot = read(path.read_text(encoding="utf-8"), path.stem)
         except ProfileRefused as error:
@@ -87,9 +87,9 @@ def shipped_robots() -> str:
 
 def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
-    text = SPEC.read_text(encoding="utf-8")
-    for name, made in SPEC_TABLES.items():
-        text = splice(text, name, made())
+    text = SPEC_FILE.read_text(encoding="utf-8")
+    for name, make_table in SPEC_TABLES.items():
+        text = splice(text, name, make_table())
     return text
 
 
@@ -97,8 +97,8 @@ def image_table() -> str:
     rows: list[tuple[object, ...]]
     offsets = accumulate((field.size for field in image.FIELDS), initial=0)
     rows = [
-        (at, field.size, f"`{field.name}`", field.meaning)
-        for at, field in zip(offsets, image.FIELDS, strict=False)
+        (offset, field.size, f"`{field.name}`", field.meaning)
+        for offset, field in zip(offsets, image.FIELDS, strict=False)
     ]
     later_bytes = f"`header_length` - {image.HEADER_BYTES}"
     rows.append((image.HEADER_BYTES, later_bytes, "later", "Fields of later versions."))
@@ -124,7 +124,7 @@ def operand_table() -> str:
     return table(("operand", "bytes", "range", "meaning"), rows)
 
 
-def numbered(head: Sequence[str], meanings: Mapping[str, tuple[int, str]]) -> str:
+def numbered_table(head: Sequence[str], meanings: Mapping[str, tuple[int, str]]) -> str:
     return table(
         head, [(number, f"`{name}`", meaning) for name, (number, meaning) in meanings.items()]
     )
@@ -141,33 +141,42 @@ def role_table() -> str:
 def fault_table() -> str:
     rows = []
     for number, name, meaning in opcodes.FAULTS:
-        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING_OPS[name])
-        rows.append((number, f"`{name}`", meaning, faulting or "none, in verified code"))
+        instructions = ", ".join(f"`{op_name}`" for op_name in opcodes.FAULTING_OPS[name])
+        rows.append((number, f"`{name}`", meaning, instructions or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 
 
 def limit_table() -> str:
-    compiler, operand, deep = "compiler", "verifier: `BAD_OPERAND`", "verifier: `TOO_DEEP`"
+    by_compiler, by_operand, by_depth = (
+        "compiler",
+        "verifier: `BAD_OPERAND`",
+        "verifier: `TOO_DEEP`",
+    )
     for_blocks = "words: 1 for an IF, 2 for a loop"
-    both = "compiler, and verifier: `{}`"
+    by_both_format = "compiler, and verifier: `{}`"
     loops_text = "counted loops open at once, including those around a call"
     rows = (
-        ("code", limits.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
-        ("nested blocks in a text, including those around a call", limits.BLOCKS, "", compiler),
-        ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
-        ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
+        ("code", limits.CODE_BYTES, "bytes", by_both_format.format("CODE_LENGTH")),
+        ("nested blocks in a text, including those around a call", limits.BLOCKS, "", by_compiler),
+        ("stack", limits.STACK_VALUES, "values", by_both_format.format("STACK_OVERFLOW")),
+        ("variables", limits.VARIABLES, "", f"{by_compiler}, and {by_operand}"),
         (
             "sensors of a kit, and actuators",
             MOST_DEVICES,
             "",
-            f"the robot's profile, and {operand}",
+            f"the robot's profile, and {by_operand}",
         ),
-        ("tasks beside the main one", limits.TASKS, "", both.format("TOO_MANY_TASKS")),
-        (f"{loops_text}, in all tasks together", limits.COUNTERS, "", deep),
-        ("calls open at once, in all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),
-        ("procedures", limits.DEFS, "", both.format("TOO_MANY_DEFS")),
-        ("open blocks of one routine", limits.NEST_WORDS, for_blocks, deep),
-        ("open joins", limits.JOINS, "", deep),
+        ("tasks beside the main one", limits.TASKS, "", by_both_format.format("TOO_MANY_TASKS")),
+        (f"{loops_text}, in all tasks together", limits.COUNTERS, "", by_depth),
+        (
+            "calls open at once, in all tasks together",
+            limits.CALLS,
+            "",
+            by_both_format.format("TOO_DEEP"),
+        ),
+        ("procedures", limits.DEFS, "", by_both_format.format("TOO_MANY_DEFS")),
+        ("open blocks of one routine", limits.NEST_WORDS, for_blocks, by_depth),
+        ("open joins", limits.JOINS, "", by_depth),
         ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nothing: it is always so"),
     )
     return table(("what", "at most", "", "rejected by"), rows)
@@ -175,16 +184,18 @@ def limit_table() -> str:
 
 def device_table() -> str:
     rows: list[tuple[object, ...]] = []
-    for name in KITS:
+    for name in DOCUMENTED_KITS:
         kit = robots.load(name).kit
         sensor_count, reading_count = len(kit.sensors), len(kit.readings)
-        for k, (line, hashed) in enumerate(zip(kit.device_lines(), kit.hashes, strict=True)):
+        for k, (line, device_hash) in enumerate(zip(kit.device_lines(), kit.hashes, strict=True)):
             if not sensor_count <= k < reading_count:
                 number = k if k < sensor_count else k - reading_count
-                rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
-    remote = Kit(())  # the same for every robot, after its n sensors
-    for k, (line, hashed) in enumerate(zip(remote.device_lines(), remote.hashes, strict=True)):
-        rows.append(("every robot", f"n + {k}", f"`{line.rstrip()}`", f"`{hashed:04x}`"))
+                rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{device_hash:04x}`"))
+    remote_kit = Kit(())  # the same for every robot, after its n sensors
+    for k, (line, device_hash) in enumerate(
+        zip(remote_kit.device_lines(), remote_kit.hashes, strict=True)
+    ):
+        rows.append(("every robot", f"n + {k}", f"`{line.rstrip()}`", f"`{device_hash:04x}`"))
     return table(("kit of", "number", "line", "hash"), rows)
 
 
@@ -200,13 +211,13 @@ def robot_header(path: Path) -> str:
     return firmware.header(robots, f"{COMMAND} from robots/{path.name}.")
 
 
-SPEC = ROOT / "bytecode_spec.md"
+SPEC_FILE = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
-    "refusals": partial(numbered, ("number", "reason", "when"), image.REFUSALS),
+    "refusals": partial(numbered_table, ("number", "reason", "when"), image.REFUSALS),
     "instructions": instruction_table,
     "operands": operand_table,
-    "rules": partial(numbered, ("number", "rule", "rejected"), verify.RULES),
+    "rules": partial(numbered_table, ("number", "rule", "rejected"), verify.RULES),
     "roles": role_table,
     "faults": fault_table,
     "limits": limit_table,
@@ -214,45 +225,48 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 }
 
 
-MACHINE = ROOT / "vm_arduino" / "src" / "vm"
-LINK = ROOT / "vm_arduino" / "src" / "link"
-PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
-TEXT = ROOT / "vm_arduino" / "src" / "text"
+MACHINE_FOLDER = ROOT / "vm_arduino" / "src" / "vm"
+LINK_FOLDER = ROOT / "vm_arduino" / "src" / "link"
+PAYLOADS_FILE = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
+TEXT_FOLDER = ROOT / "vm_arduino" / "src" / "text"
 ALL_TEXTS, SMALL_TEXTS = "texts_all.h", "texts_small.h"
-WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
-DOCS, PICTURES = ROOT / "docs", ROOT / "docs" / "pictures"
+KIT_HEADERS = ROOT / "vm_arduino" / "src" / "boards" / "kits"
+DOCUMENT_FOLDER, PICTURE_FOLDER = ROOT / "docs", ROOT / "docs" / "pictures"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
-    (ROBOTS / "tinibot.toml", partial(with_drivers, ROBOTS / "tinibot.toml")),
-    (ROBOTS / "shipped.py", shipped_robots),
-    (SPEC, spec),
-    (MACHINE / "bytecode.h", partial(cpp_header.header, COMMAND)),
-    (MACHINE / "bytecode.cpp", partial(cpp_header.tables, COMMAND)),
-    (MACHINE / "bytecode_avr.S", partial(avr_header.header, COMMAND)),
-    (LINK / "messages.h", partial(link_header.header, COMMAND)),
-    (LINK / "messages.cpp", partial(link_header.tables, COMMAND)),
-    (TEXT / "words.h", partial(text_tables.words_header, COMMAND)),
-    (TEXT / "words.cpp", partial(text_tables.words_tables, COMMAND)),
-    (TEXT / "problems.h", partial(text_tables.problems_header, COMMAND)),
-    (TEXT / "remarks.h", partial(remark_tables.remarks_header, COMMAND)),
-    (TEXT / "texts.h", partial(remark_tables.texts_header, COMMAND)),
-    (TEXT / "texts.cpp", partial(remark_tables.texts, COMMAND, ALL_TEXTS, SMALL_TEXTS)),
-    (TEXT / ALL_TEXTS, partial(remark_tables.tables_of_texts, COMMAND, ALL_TEXTS, is_small=False)),
-    (TEXT / SMALL_TEXTS, partial(remark_tables.tables_of_texts, COMMAND, SMALL_TEXTS, True)),
+    (ROBOT_FOLDER / "tinibot.toml", partial(with_drivers, ROBOT_FOLDER / "tinibot.toml")),
+    (ROBOT_FOLDER / "shipped.py", shipped_robots),
+    (SPEC_FILE, spec),
+    (MACHINE_FOLDER / "bytecode.h", partial(cpp_header.header, COMMAND)),
+    (MACHINE_FOLDER / "bytecode.cpp", partial(cpp_header.tables, COMMAND)),
+    (MACHINE_FOLDER / "bytecode_avr.S", partial(avr_header.header, COMMAND)),
+    (LINK_FOLDER / "messages.h", partial(link_header.header, COMMAND)),
+    (LINK_FOLDER / "messages.cpp", partial(link_header.tables, COMMAND)),
+    (TEXT_FOLDER / "words.h", partial(text_tables.words_header, COMMAND)),
+    (TEXT_FOLDER / "words.cpp", partial(text_tables.words_tables, COMMAND)),
+    (TEXT_FOLDER / "problems.h", partial(text_tables.problems_header, COMMAND)),
+    (TEXT_FOLDER / "remarks.h", partial(remark_tables.remarks_header, COMMAND)),
+    (TEXT_FOLDER / "texts.h", partial(remark_tables.texts_header, COMMAND)),
+    (TEXT_FOLDER / "texts.cpp", partial(remark_tables.texts, COMMAND, ALL_TEXTS, SMALL_TEXTS)),
+    (
+        TEXT_FOLDER / ALL_TEXTS,
+        partial(remark_tables.tables_of_texts, COMMAND, ALL_TEXTS, is_small=False),
+    ),
+    (TEXT_FOLDER / SMALL_TEXTS, partial(remark_tables.tables_of_texts, COMMAND, SMALL_TEXTS, True)),
     *((ROOT / name, make) for name, make in DOCUMENTS.items()),
-    (PAYLOADS, partial(payloads, COMMAND)),
-    *((DOCS / "poster" / name, make) for name, make in posters(COMMAND).items()),
-    *((PICTURES / name, make) for name, make in fronts(COMMAND).items()),
-    (PICTURES / "worlds.svg", partial(world_picture, COMMAND)),
-    *((PICTURES / name, make) for name, make in guide_pictures(COMMAND).items()),
+    (PAYLOADS_FILE, partial(payloads, COMMAND)),
+    *((DOCUMENT_FOLDER / "poster" / name, make) for name, make in posters(COMMAND).items()),
+    *((PICTURE_FOLDER / name, make) for name, make in fronts(COMMAND).items()),
+    (PICTURE_FOLDER / "worlds.svg", partial(world_picture, COMMAND)),
+    *((PICTURE_FOLDER / name, make) for name, make in guide_pictures(COMMAND).items()),
     (
         ROOT / INDEX_PAGE,
         partial(list_of_documents, COMMAND),
     ),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     *(
-        (WIRED / f"{path.stem}.h", partial(robot_header, path))
-        for path in sorted(ROBOTS.glob("*.toml"))
+        (KIT_HEADERS / f"{path.stem}.h", partial(robot_header, path))
+        for path in sorted(ROBOT_FOLDER.glob("*.toml"))
     ),
     *((ROOT / name, make) for name, make in built.makers_of_kept().items()),
 ]

@@ -36,8 +36,8 @@ def page(language: str, command: str, table: Table) -> str:
         *_overview(language, table),
     ]
     for verb in VERBS:
-        for item in (verb, *steps_of(verb)):
-            parts += _command(item, language, table)
+        for command_or_step in (verb, *steps_of(verb)):
+            parts += _command(command_or_step, language, table)
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
 
 
@@ -57,7 +57,7 @@ def _overview(language: str, table: Table) -> Iterator[str]:
 
 def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield f"{'##' if command in VERBS else '###'} `tsc {command_words(command)}`"
-    yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
+    yield "\\\n".join(f"`{usage}`" for usage in help.usage(command, language))
     yield verb_sentence(command, "says", language)
     options = [option for option in shown_of(command) if option.verbs != "*"]
     has_virtual_section = any(option.name == "virtual" for option in options)

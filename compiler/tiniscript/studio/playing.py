@@ -338,7 +338,7 @@ class PlayedRun(Simulation):
     def _listen(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
-            is_read = event.what == "READ"
+            is_read = event.kind == "READ"
             is_shown = is_read and event.values[0] == self._shown
             if is_shown:
                 self._shown = None
