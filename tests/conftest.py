@@ -161,10 +161,10 @@ def sketch(sketches: Callable[[str], Path]) -> Path:
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits long for a robot that will not answer."""
-    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 800)
-    monkeypatch.setattr("tiniscript.library.opening.CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 800)
+    monkeypatch.setattr("tiniscript.library.opening.CABLE_ANSWER_TIMEOUT_MS", 800)
     monkeypatch.setattr("tiniscript.library.opening.LONG_QUIET_S", 0.1)
-    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 800)
+    monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 800)
 
 
 @pytest.fixture

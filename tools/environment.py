@@ -13,9 +13,9 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-NEEDED = (3, 10)
+NEEDED_VERSION = (3, 10)
 LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
-SAID = {
+TEXTS = {
     "old": (
         "TiniScript needs Python 3.10 or newer; this is {version}. {get}",
         "TiniScript necesita Python 3.10 o posterior; este es {version}. {get}",
@@ -69,15 +69,17 @@ def python_of(folder: Path, system: str = os.name) -> Path:
     return folder / "Scripts" / "python.exe" if system == "nt" else folder / "bin" / "python"
 
 
-def sentence(key: str, **gaps: str) -> str:
+def find_sentence(key: str, **values: str) -> str:
     """Return a sentence in the person's language."""
-    return in_language(SAID[key], **gaps)
+    return in_language(TEXTS[key], **values)
 
 
-def in_language(sentences: tuple[str, ...], **gaps: str) -> str:
+def in_language(sentences: tuple[str, ...], **values: str) -> str:
     """Return the sentence of the person's language, else the English one."""
-    result = language()
-    return sentences[LANGUAGES.index(result) if result in LANGUAGES else 0].format(**gaps)
+    language_code = language()
+    return sentences[LANGUAGES.index(language_code) if language_code in LANGUAGES else 0].format(
+        **values
+    )
 
 
 def say(line: str) -> None:
@@ -98,16 +100,16 @@ def make(extras: str, root: Path = ROOT) -> Path:
     # What was installed, and from where: times of files say neither in the second of a change, nor
     # where a folder has been moved or an older state of it has been taken out. While pip works, and
     # after it was cut off, nothing is.
-    stamp = root / ".venv" / "installed"
+    stamp_file = root / ".venv" / "installed"
     source = f"{hashlib.sha256((root / 'pyproject.toml').read_bytes()).hexdigest()} {root}"
-    installed_source, *done_extras = (
-        stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
+    installed_source, *installed_extras = (
+        stamp_file.read_text(encoding="utf-8").split("\n") if stamp_file.is_file() else ("",)
     )
     if installed_source != source:
-        done_extras = []
-    if extras not in done_extras:
-        stamp.unlink(missing_ok=True)
-        say(sentence("installing"))
+        installed_extras = []
+    if extras not in installed_extras:
+        stamp_file.unlink(missing_ok=True)
+        say(find_sentence("installing"))
         pip_command = [
             str(python),
             "-m",
@@ -118,49 +120,51 @@ def make(extras: str, root: Path = ROOT) -> Path:
         ]
         # Python compiles what it imports, a third of what there is.
         pip_command += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
-        completed = subprocess.run(
+        process = subprocess.run(
             pip_command,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             encoding="utf-8",
             errors="replace",
         )
-        if completed.returncode:
+        if process.returncode:
             log = root / ".venv" / "pip.log"
-            log.write_text(completed.stdout, encoding="utf-8")
-            rows = [row.strip() for row in completed.stdout.splitlines() if "ERROR:" in row]
+            log.write_text(process.stdout, encoding="utf-8")
+            rows = [row.strip() for row in process.stdout.splitlines() if "ERROR:" in row]
             _fail(
-                sentence("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:]))
+                find_sentence(
+                    "no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:])
+                )
             )
-        stamp.write_text("\n".join((source, *done_extras, extras)), encoding="utf-8")
+        stamp_file.write_text("\n".join((source, *installed_extras, extras)), encoding="utf-8")
     return python
 
 
 def check_version(version: tuple[int, int]) -> None:
     """Exit with a sentence where this Python is too old."""
-    if version < NEEDED:
-        get = sentence("get_windows" if os.name == "nt" else "get")
-        _fail(sentence("old", version=".".join(map(str, version)), get=get))
+    if version < NEEDED_VERSION:
+        get_text = find_sentence("get_windows" if os.name == "nt" else "get")
+        _fail(find_sentence("old", version=".".join(map(str, version)), get=get_text))
 
 
 def _make_empty(folder: Path) -> None:
     import shutil
 
-    say(sentence("making"))
+    say(find_sentence("making"))
     try:
         if folder.exists():
             shutil.rmtree(folder)
-    except OSError as why:  # Windows removes no program that runs
-        _fail(sentence("in_use", why=why.strerror or str(why)))
+    except OSError as error:  # Windows removes no program that runs
+        _fail(find_sentence("in_use", why=error.strerror or str(error)))
     if not _runs(Path(sys.executable), "-c", "import ensurepip"):
-        _fail(sentence("no_venv"))
+        _fail(find_sentence("no_venv"))
     if subprocess.run([sys.executable, "-m", "venv", str(folder)]).returncode:
-        _fail(sentence("no_venv"))
+        _fail(find_sentence("no_venv"))
 
 
-def _runs(python: Path, *words: str) -> bool:
+def _runs(python: Path, *arguments: str) -> bool:
     try:
-        return not subprocess.run([str(python), *words], capture_output=True).returncode
+        return not subprocess.run([str(python), *arguments], capture_output=True).returncode
     except OSError:  # there is none
         return False
 
@@ -169,7 +173,7 @@ def language() -> str:
     """Return the person's language, as `tsc` finds it."""
     sys.path.insert(0, str(ROOT / "compiler"))
     try:
-        if sys.version_info >= NEEDED:  # an older one cannot read that code
+        if sys.version_info >= NEEDED_VERSION:  # an older one cannot read that code
             from tiniscript.cli.texts import language_of
 
             return language_of([])
@@ -180,8 +184,8 @@ def language() -> str:
     return os.environ.get("LANG", "")[:2]
 
 
-def _fail(sentence: str) -> None:
-    print(sentence, file=sys.stderr)
+def _fail(find_sentence: str) -> None:
+    print(find_sentence, file=sys.stderr)
     raise SystemExit(2)
 
 

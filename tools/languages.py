@@ -29,15 +29,15 @@ from tiniscript.base.languages import (
     FOLDER,
     NAMES_CATALOGUE,
     SOURCE_LANGUAGE,
-    files,
     languages,
-    table,
+    read_table,
+    source_files,
 )
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.recovery.meanings import plain
-from tools.translation_files import Translation, heading, tell
+from tools.translation_files import Translation, about_text, print_problems
 
 PSEUDO = "qps"  # by custom: no language has this code
 ROBOT_SIGNS = 40
@@ -53,10 +53,12 @@ def sources() -> dict[str, Catalogue]:
     which is the one without a special case.
     """
     paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
-    catalogues = {path.stem: catalogue_source.load(path) for path in paths}
-    lasts = {entry.key: entry for entry in catalogues.get("messages", Catalogue()).entries.values()}
-    programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
-    for key, entry in lasts.items():
+    catalogues = {path.stem: catalogue_source.load_catalogue(path) for path in paths}
+    last_entries = {
+        entry.key: entry for entry in catalogues.get("messages", Catalogue()).entries.values()
+    }
+    programs = {key: entry.english.splitlines() for key, entry in last_entries.items()}
+    for key, entry in last_entries.items():
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
@@ -68,10 +70,11 @@ def names() -> Catalogue:
     catalogue = Catalogue()
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
-            place = path.relative_to(FOLDER.parent).as_posix()
+            file_name = path.relative_to(FOLDER.parent).as_posix()
             for english_text in _english_texts(tomllib.loads(path.read_text(encoding="utf-8"))):
                 catalogue.entries.setdefault(
-                    (english_text, english_text), Entry(english_text, english_text, notes=[place])
+                    (english_text, english_text),
+                    Entry(english_text, english_text, notes=[file_name]),
                 )
     return catalogue
 
@@ -79,21 +82,23 @@ def names() -> Catalogue:
 def _english_texts(value: object) -> Iterator[str]:
     """Yield each text that stands in English in a TOML file, in a row `en` or a table `en`."""
     if isinstance(value, dict):
-        for key, each in value.items():
-            text = each.values() if isinstance(each, dict) else [each]
-            yield from text if key == SOURCE_LANGUAGE else _english_texts(each)
+        for key, inner_value in value.items():
+            text = inner_value.values() if isinstance(inner_value, dict) else [inner_value]
+            yield from text if key == SOURCE_LANGUAGE else _english_texts(inner_value)
     elif isinstance(value, list):
-        for each in value:
-            yield from _english_texts(each)
+        for inner_value in value:
+            yield from _english_texts(inner_value)
 
 
 def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
     catalogue = Catalogue()
-    for at, entry in source.entries.items():
+    for text_key, entry in source.entries.items():
         forms = {name: _lengthened(form) for name, form in entry.forms.items()}
-        forms = entry.forms if entry.is_same and not entry.like else forms
-        catalogue.entries[at] = Entry(*at, entry.plural, forms, entry.hash, is_same=entry.is_same)
+        forms = entry.forms if entry.is_same and not entry.same_text_key else forms
+        catalogue.entries[text_key] = Entry(
+            *text_key, entry.plural, forms, entry.hash, is_same=entry.is_same
+        )
     return catalogue
 
 
@@ -111,7 +116,7 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
     folder.mkdir(exist_ok=True)
     for path in folder.glob("*.*"):
         path.unlink()
-    itself = heading(PSEUDO, PSEUDO, ("one", "other"), "n != 1")
+    itself = about_text(PSEUDO, PSEUDO, ("one", "other"), "n != 1")
     (folder / ABOUT_FILE).write_text(itself, encoding="utf-8")
     translation = Translation(PSEUDO, english)
     for name, source in english.items():
@@ -119,25 +124,29 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
     translation.write()
 
 
-def check_robot(catalogue_: Catalogue) -> Iterator[Problem]:
+def check_robot(robot_catalogue: Catalogue) -> Iterator[Problem]:
     """What a robot cannot say in its few bytes."""
-    for entry in catalogue_.entries.values():
-        for item in (entry.translation or entry.forms).values():
-            if not item.isascii() or len(item) > ROBOT_SIGNS:
-                yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {item}"
+    for entry in robot_catalogue.entries.values():
+        for form in (entry.translation or entry.forms).values():
+            if not form.isascii() or len(form) > ROBOT_SIGNS:
+                yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {form}"
 
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
     known_words = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
     for row in _rows(language):
-        meaning, bar, words = row.partition("|")
-        if not bar or not known_words.issuperset(meaning.split()[:1]) or plain(words) != words:
+        meaning, separator, words = row.partition("|")
+        if (
+            not separator
+            or not known_words.issuperset(meaning.split()[:1])
+            or plain(words) != words
+        ):
             yield row
 
 
 def _rows(language: str) -> list[str]:
-    rows = table(language, "lexicon.txt").split("\n")
+    rows = read_table(language, "lexicon.txt").split("\n")
     return [row for row in rows if row and not row.startswith("#")]
 
 
@@ -157,10 +166,10 @@ def main() -> int:
         make_pseudo(english)
         return 0
     problem_count = sum(
-        tell(files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
+        print_problems(source_files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
         for name, catalogue in english.items()
     )
-    problem_count += tell(
+    problem_count += print_problems(
         FOLDER / SOURCE_LANGUAGE / ABOUT_FILE,
         read_language(FOLDER / SOURCE_LANGUAGE / ABOUT_FILE).problems,
     )
@@ -203,9 +212,9 @@ def update_language(
     translation = Translation(language, english)
     problem_count = 0
     if not is_check:
-        for item in translation.follow():
-            print(f"languages/{language}/{item}: its English text is gone, and so it goes")
-        for unused in translation.see(seen_patterns) if seen_patterns is not None else []:
+        for gone_key in translation.follow_moved_texts():
+            print(f"languages/{language}/{gone_key}: its English text is gone, and so it goes")
+        for unused in translation.note_seen(seen_patterns) if seen_patterns is not None else []:
             print(f"{language}: there is no translation with the key {unused}")
             problem_count += 1
         translation.write()
@@ -217,8 +226,8 @@ def _heading(language: str) -> str:
     try:
         from tools.translators import language_facts
     except ImportError:
-        return heading(language, language, ("one", "other"), "n != 1")
-    return heading(*language_facts(language))
+        return about_text(language, language, ("one", "other"), "n != 1")
+    return about_text(*language_facts(language))
 
 
 def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
@@ -233,23 +242,25 @@ def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
 
 def report(translation: Translation) -> int:
     """Say what is wrong with a language, and how much of it is there; return what must not be."""
-    problem_count = sum(tell(path, problems) for path, problems in translation.problems())
+    problem_count = sum(print_problems(path, problems) for path, problems in translation.problems())
     for path in sorted(translation.folder.glob("*.toml")):
         if path.name != ABOUT_FILE and path.stem not in translation.english:
-            problem_count += tell(path, [(1, f"there is no {SOURCE_LANGUAGE}/{path.name}")])
+            problem_count += print_problems(
+                path, [(1, f"there is no {SOURCE_LANGUAGE}/{path.name}")]
+            )
     entries: list[Entry] = []
     missing_count = stale_count = 0
     for name in translation.english:
         catalogue = translation.merge(name)
         path = translation.path(name)
-        problem_count += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
+        problem_count += print_problems(path, [*check_robot(catalogue)] if name == "robot" else [])
         expected_entries = [
             entry for entry in catalogue.entries.values() if entry.seen_hash or not entry.is_same
         ]
         entries += expected_entries
         stale_entries = [entry for entry in expected_entries if entry.is_stale]
         change_text = "its English text has changed, and so it is said in English"
-        stale_count += tell(
+        stale_count += print_problems(
             path,
             [
                 (entry.line, f"{entry.key}: {change_text}: {entry.english}")
@@ -257,7 +268,7 @@ def report(translation: Translation) -> int:
             ],
         )
         if translation.language.is_complete:
-            missing_count += tell(path, [*missing_rows(expected_entries)])
+            missing_count += print_problems(path, [*missing_rows(expected_entries)])
     new_entries = [entry for entry in entries if entry.seen_hash == UNKNOWN_HASH]
     if new_entries:
         print(f"{translation.code}: {len(new_entries)} texts are new. "

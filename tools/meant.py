@@ -18,7 +18,7 @@ from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.library.compiling import compile_source
 from tiniscript.library.named_robot import robot_of
 
-MEANT = ".meant.ts"
+MEANT_SUFFIX = ".meant.ts"
 
 
 class Figures(NamedTuple):
@@ -30,7 +30,7 @@ class Figures(NamedTuple):
     harmful: tuple[str, ...] = ()
 
 
-def image(text: str) -> bytes:
+def compile_image(text: str) -> bytes:
     """Return the code of a program for the robot that it names, nothing for a wrong one."""
     robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
     return compile_source(text.encode(), robot, "", is_strict=True).image
@@ -44,17 +44,17 @@ def check(text: str) -> list[Diagnostic]:
 def figures(folder: Path) -> Figures:
     figures = Figures()
     for path in sorted(folder.rglob("*.ts")):
-        if path.name.endswith(MEANT):
+        if path.name.endswith(MEANT_SUFFIX):
             continue
-        result = image(repair_program(path.read_text(encoding="utf-8"), check).text)
-        meant_path = path.with_name(path.name.removesuffix(".ts") + MEANT)
+        repaired_image = compile_image(repair_program(path.read_text(encoding="utf-8"), check).text)
+        meant_path = path.with_name(path.name.removesuffix(".ts") + MEANT_SUFFIX)
         has_meant_program = meant_path.exists()
-        is_harmful = has_meant_program and result not in (
+        is_harmful = has_meant_program and repaired_image not in (
             b"",
-            image(meant_path.read_text(encoding="utf-8")),
+            compile_image(meant_path.read_text(encoding="utf-8")),
         )
         name = path.relative_to(folder).as_posix()
-        figures = Figures(figures.program_count + 1, figures.right_count + bool(result),
+        figures = Figures(figures.program_count + 1, figures.right_count + bool(repaired_image),
                           figures.known_count + has_meant_program,
                           (*figures.harmful, name) if is_harmful else figures.harmful)  # fmt: skip
     return figures
@@ -64,15 +64,15 @@ def main(arguments: Iterable[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Count what --fix makes of wrong programs.")
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args(None if arguments is None else [*arguments]).folder
-    result = figures(folder)
-    if not result.program_count:
+    all_figures = figures(folder)
+    if not all_figures.program_count:
         sys.exit(f"{folder} has no programs (*.ts).")
-    print(f"right after --fix: {result.right_count} of {result.program_count}")
+    print(f"right after --fix: {all_figures.right_count} of {all_figures.program_count}")
     print(
-        f"harmful: {len(result.harmful)} of {result.known_count} whose meaning is known",
-        *result.harmful,
+        f"harmful: {len(all_figures.harmful)} of {all_figures.known_count} whose meaning is known",
+        *all_figures.harmful,
     )
-    return bool(result.harmful)
+    return bool(all_figures.harmful)
 
 
 if __name__ == "__main__":

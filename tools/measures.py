@@ -27,21 +27,21 @@ def main() -> int:
     tracked = _tracked_files()
     package_paths = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
-    trees = {_name(path): ast.parse(path.read_bytes()) for path in package_paths}
-    graph = _graph(trees)
+    trees = {_import_name(path): ast.parse(path.read_bytes()) for path in package_paths}
+    graph = _import_graph(trees)
     indented_count = sum(
         is_indented for tree in trees.values() for _, is_indented in _imports(tree)
     )
     for label, count in (
-        ("tracked lines", _lines(tracked)),
+        ("tracked lines", _line_count(tracked)),
         ("tracked files", len(tracked)),
-        ("Python of the package, lines", _lines(package_paths)),
-        ("tests, lines", _lines(tests)),
-        ("modules of the package", len({_module(name) for name in graph} - {""})),
+        ("Python of the package, lines", _line_count(package_paths)),
+        ("tests, lines", _line_count(tests)),
+        ("modules of the package", len({_module_name(name) for name in graph} - {""})),
         ("arrows between them", sum(map(len, arrows(graph).values()))),
         ("circles of files", len(circles(graph))),
         ("imports that are indented", indented_count),
-        ("words of documents, by hand", _words(tracked)),
+        ("words of documents, by hand", _word_count(tracked)),
     ):
         print(f"{label:38}{count:9,}")
     return 0
@@ -49,38 +49,42 @@ def main() -> int:
 
 def arrows(graph: Graph) -> Graph:
     """Return which modules each module imports."""
-    result: Graph = {}
+    arrows_of_module: Graph = {}
     for name, targets in graph.items():
-        own = result.setdefault(_module(name), set())
-        own |= {_module(target) for target in targets} - {_module(name)}
-    return result
+        module_targets = arrows_of_module.setdefault(_module_name(name), set())
+        module_targets |= {_module_name(target) for target in targets} - {_module_name(name)}
+    return arrows_of_module
 
 
 def direct(arrows: Graph) -> Graph:
     """Return the arrows without those that a path of others replaces; there is no circle."""
     return {
         name: {target for target in targets
-               if not any(target in _reachable(arrows, other) for other in targets)}
+               if not any(target in _reachable(arrows, other_target) for other_target in targets)}
         for name, targets in arrows.items()
     }  # fmt: skip
 
 
 def imports_of(paths: Iterable[Path]) -> Graph:
     """Return which of some files of the package each of them imports."""
-    return _graph({_name(path): ast.parse(path.read_bytes()) for path in paths})
+    return _import_graph({_import_name(path): ast.parse(path.read_bytes()) for path in paths})
 
 
-def _graph(trees: dict[str, ast.Module]) -> Graph:
+def _import_graph(trees: dict[str, ast.Module]) -> Graph:
     return {
-        name: {target for each, _ in _imports(tree) for target in _targets(each, name, trees)}
+        name: {
+            target
+            for import_node, _ in _imports(tree)
+            for target in _targets(import_node, name, trees)
+        }
         for name, tree in trees.items()
     }
 
 
 def _tracked_files() -> list[Path]:
     """Return the files that git knows and that are here, in English, Spanish or no language."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
-    paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
+    process = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
+    paths = (ROOT / name for name in process.stdout.decode().split("\0") if name)
     languages = PACKAGE / "languages"
     other_languages = {path.name for path in languages.iterdir() if path.is_dir()} - {"en", "es"}
     return [
@@ -91,7 +95,7 @@ def _tracked_files() -> list[Path]:
     ]  # fmt: skip
 
 
-def _words(tracked: list[Path]) -> int:
+def _word_count(tracked: list[Path]) -> int:
     """Count those of documents without the spec, the changelog, lessons, cases and what is made."""
     not_counted = (
         ROOT / "bytecode_spec.md",
@@ -104,22 +108,22 @@ def _words(tracked: list[Path]) -> int:
         if path.suffix == ".md" and not {path, *path.parents} & set(not_counted):
             text = path.read_text(encoding="utf-8")
             text = "" if text.startswith("<!-- Generated") else text
-            result = r"<!-- begin generated.*?<!-- end generated"
-            count += len(re.sub(result, "", text, flags=re.DOTALL).split())
+            generated_pattern = r"<!-- begin generated.*?<!-- end generated"
+            count += len(re.sub(generated_pattern, "", text, flags=re.DOTALL).split())
     return count
 
 
-def _lines(paths: list[Path]) -> int:
+def _line_count(paths: list[Path]) -> int:
     return sum(path.read_bytes().count(b"\n") for path in paths)
 
 
-def _name(path: Path) -> str:
+def _import_name(path: Path) -> str:
     """Return the name of a file as Python imports it, without the package's: `link.frames`."""
     parts = path.relative_to(PACKAGE).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def _module(name: str) -> str:
+def _module_name(name: str) -> str:
     return name.partition(".")[0].removeprefix("__main__")
 
 
@@ -131,14 +135,14 @@ def _imports(tree: ast.AST, is_indented: bool = False) -> Iterator[tuple[Import,
             yield from _imports(node, True)
 
 
-def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[str]:
+def _targets(import_node: Import, name: str, files: dict[str, ast.Module]) -> Iterator[str]:
     """Yield the files of the package, other than `name`, that an import names."""
-    if isinstance(each, ast.Import):
-        names = [(alias.name, "") for alias in each.names]
+    if isinstance(import_node, ast.Import):
+        base_and_member = [(alias.name, "") for alias in import_node.names]
     else:
-        assert not each.level, f"{name}: a relative import"
-        names = [(each.module or "", alias.name) for alias in each.names]
-    for base, member in names:
+        assert not import_node.level, f"{name}: a relative import"
+        base_and_member = [(import_node.module or "", alias.name) for alias in import_node.names]
+    for base, member in base_and_member:
         top, _, inner = base.partition(".")
         if top == PACKAGE.name:
             full_name = f"{inner}.{member}".strip(".")
@@ -156,13 +160,13 @@ def circles(graph: Graph) -> set[frozenset[str]]:
 
 
 def _reachable(graph: Graph, start: str) -> set[str]:
-    result: set[str] = set()
+    reached: set[str] = set()
     names_left = [start]
     while names_left:
-        new = graph[names_left.pop()] - result
-        result |= new
+        new = graph[names_left.pop()] - reached
+        reached |= new
         names_left += new
-    return result
+    return reached
 
 
 if __name__ == "__main__":

@@ -38,11 +38,11 @@ from tools import ROOT
 
 TEST_LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAIT_LIMIT_S = 1800  # for what waits and does not work
-AT_ONCE = 2
+MUTANTS_AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
-TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
+FAILED_TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
 # What is a person's own, or being written.
-OWN = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
+NOT_COPIED = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
 
 _CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
 _HOST = "tests/firmware/test_host_firmware.py"
@@ -96,37 +96,37 @@ class Mutant(NamedTuple):
 
     file: str
     line: int
-    was: str
-    becomes: str
-    text: str
+    old_line: str
+    new_line: str
+    changed_text: str
 
     @property
     def name(self) -> str:
-        return f"{self.file}:{self.line}: {self.was}  ->  {self.becomes}"
+        return f"{self.file}:{self.line}: {self.old_line}  ->  {self.new_line}"
 
 
 # -- mutation operators ----------------------------------------------------------------------------
 
 Edit = tuple[int, int, str]  # from, to, what comes there
 
-SHARED = {
+SHARED_OPERATORS = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+",
     "*": "/", "/": "*", "%": "*", "&": "|", "|": "&", "^": "&", "<<": ">>", ">>": "<<",
     "+=": "-=", "-=": "+=", "&=": "|=", "|=": "&=", "&&": "||", "||": "&&", "===": "!==",
     "!==": "===", "??": "&&",
 }  # fmt: skip
-PYTHON = {**SHARED, "*": "//", "//": "*", "/": "*"}
-WORDS = {"and": "or", "or": "and", "True": "False", "False": "True", "break": "pass",
+PYTHON_OPERATORS = {**SHARED_OPERATORS, "*": "//", "//": "*", "/": "*"}
+WORD_OPERATORS = {"and": "or", "or": "and", "True": "False", "False": "True", "break": "pass",
          "continue": "pass"}  # fmt: skip
 OPPOSITE_BRANCHES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
                      ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
                      ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
-OPPOSITE = dict(OPPOSITE_BRANCHES) | {b: a for a, b in OPPOSITE_BRANCHES}
+OPPOSITE_INSTRUCTION = dict(OPPOSITE_BRANCHES) | {b: a for a, b in OPPOSITE_BRANCHES}
 
 OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<|>>|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
 NOT = re.compile(r"!(?=[\w(])")
 NUMBER = re.compile(r"(?<![\w.#$])(0x[0-9a-f]+|\d+)\b(?!\.)")
-IF = re.compile(r"\bif \(")
+IF_CONDITION = re.compile(r"\bif \(")
 # A call, an assignment or a way out, alone on its line; no declaration.
 STATEMENT = re.compile(
     r"^ +(?!return \w|const |let |if |else|case |using |import |export |static |get |set |#\w+ = "
@@ -138,7 +138,7 @@ _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'"
 _COMMENT = r"//[^\n]*|/\*.*?\*/"
 _ITEM = r"\\.|\[(?:[^\]\\\n]|\\.)*\]"
 _PATTERN = rf"(?<=[(,=:!&|?])\s?/(?:[^/\\\n\[ ]|{_ITEM})(?:[^/\\\n\[]|{_ITEM})*/\w*"
-STILL = {
+UNCHANGED_PARTS = {
     ".cpp": re.compile(rf"{_STRING}|{_COMMENT}|^ *#[^\n]*", re.S | re.M),
     ".js": re.compile(rf"{_STRING}|`(?:[^`\\]|\\.)*`|{_COMMENT}|{_PATTERN}", re.S),
 }
@@ -146,80 +146,80 @@ STILL = {
 
 def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     """Yield the edits of a text in C++ or JavaScript."""
-    plain = STILL[suffix].sub(lambda match: re.sub(r"[^\n]", "\0", match[0]), text)
+    plain = UNCHANGED_PARTS[suffix].sub(lambda match: re.sub(r"[^\n]", "\0", match[0]), text)
     for match in OPERATOR.finditer(plain):
-        yield match.start(), match.end(), SHARED[match[0]]
+        yield match.start(), match.end(), SHARED_OPERATORS[match[0]]
     for match in NOT.finditer(plain):
         yield match.start(), match.end(), ""
     for match in NUMBER.finditer(plain):
         yield match.start(), match.end(), str(int(match[0], 0) + 1)
-    for match in IF.finditer(plain):
+    for match in IF_CONDITION.finditer(plain):
         yield match.end(), _closing_bracket(plain, match.end()), "false"
     for match in STATEMENT.finditer(plain):
         yield match.end() - len(match[0].lstrip()), match.end(), ";"
 
 
-def _closing_bracket(text: str, at: int) -> int:
-    """Return where the bracket closes that opened right before `at`."""
+def _closing_bracket(text: str, offset: int) -> int:
+    """Return where the bracket closes that opened right before `offset`."""
     depth = 1
     while depth:
-        depth += {"(": 1, ")": -1}.get(text[at], 0)
-        at += 1
-    return at - 1
+        depth += {"(": 1, ")": -1}.get(text[offset], 0)
+        offset += 1
+    return offset - 1
 
 
 def assembly_edits(text: str) -> Iterator[Edit]:
     """Yield the edits of a text in assembly: an instruction less, or the opposite one."""
     for match in re.finditer(r"^(?:\d+:)? +([a-z]\w*)(?: [^;\n]*)?", text, re.M):
         start, end = match.span(1)
-        if match[1] in OPPOSITE:
-            yield start, end, OPPOSITE[match[1]]
+        if match[1] in OPPOSITE_INSTRUCTION:
+            yield start, end, OPPOSITE_INSTRUCTION[match[1]]
         yield start, match.end(), ""
 
 
 def python_edits(text: str) -> Iterator[Edit]:
     """Yield the edits of a text in Python. Imports, heads and annotations stay."""
-    begins = [0, *accumulate(len(line) for line in text.splitlines(keepends=True))]
-    line: list[tokenize.TokenInfo] = []
+    line_offsets = [0, *accumulate(len(tokens) for tokens in text.splitlines(keepends=True))]
+    tokens: list[tokenize.TokenInfo] = []
     depth = 0  # in a class without functions nothing happens but declarations
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type in (tokenize.COMMENT, tokenize.NL, tokenize.INDENT, tokenize.DEDENT):
             depth += (token.type == tokenize.INDENT) - (token.type == tokenize.DEDENT)
         elif token.type != tokenize.NEWLINE:
-            line.append(token)
-        elif line:
-            if line[0].string not in ("import", "from", "def", "class", "@", "async", "type"):
-                yield from _line_edits(line, begins, is_inside=depth > 0)
-            line = []
+            tokens.append(token)
+        elif tokens:
+            if tokens[0].string not in ("import", "from", "def", "class", "@", "async", "type"):
+                yield from _line_edits(tokens, line_offsets, is_inside=depth > 0)
+            tokens = []
 
 
 def _line_edits(
-    line: list[tokenize.TokenInfo], begins: Sequence[int], *, is_inside: bool
+    tokens: list[tokenize.TokenInfo], begins: Sequence[int], *, is_inside: bool
 ) -> Iterator[Edit]:
-    places = [(begins[t.start[0] - 1] + t.start[1], begins[t.end[0] - 1] + t.end[1]) for t in line]
-    words = [token.string for token in line]
+    spans = [(begins[t.start[0] - 1] + t.start[1], begins[t.end[0] - 1] + t.end[1]) for t in tokens]
+    words = [token.string for token in tokens]
     is_annotated = len(words) > 2 and words[1] == ":"
     begin = words.index("=") if is_annotated and "=" in words else len(words) * is_annotated
-    for at in range(begin, len(words)):
-        start, end = places[at]
-        before = line[at - 1] if at else None
-        follows_value = before is not None and (
-            before.type in (tokenize.NAME, tokenize.NUMBER, tokenize.STRING)
-            or before.string in (")", "]", "}")
+    for index in range(begin, len(words)):
+        start, end = spans[index]
+        previous_token = tokens[index - 1] if index else None
+        follows_value = previous_token is not None and (
+            previous_token.type in (tokenize.NAME, tokenize.NUMBER, tokenize.STRING)
+            or previous_token.string in (")", "]", "}")
         )
-        if line[at].type == tokenize.OP and words[at] in PYTHON and follows_value:
-            yield start, end, PYTHON[words[at]]
-        elif words[at] == "not" and words[at + 1] != "in":
+        if tokens[index].type == tokenize.OP and words[index] in PYTHON_OPERATORS and follows_value:
+            yield start, end, PYTHON_OPERATORS[words[index]]
+        elif words[index] == "not" and words[index + 1] != "in":
             yield start, end, ""
-        elif words[at] in WORDS:
-            yield start, end, WORDS[words[at]]
-        elif line[at].type == tokenize.NUMBER and words[at].isdecimal():
-            yield start, end, str(int(words[at]) + 1)
+        elif words[index] in WORD_OPERATORS:
+            yield start, end, WORD_OPERATORS[words[index]]
+        elif tokens[index].type == tokenize.NUMBER and words[index].isdecimal():
+            yield start, end, str(int(words[index]) + 1)
     if words[0] in ("if", "elif", "while") and words[-1] == ":":
-        yield places[1][0], places[-2][1], "False"
+        yield spans[1][0], spans[-2][1], "False"
     is_call = words[-1] == ")" and words[0] not in ("return", "yield", "raise", "assert")
-    if is_inside and line[0].type == tokenize.NAME and (is_call or words[0] == "raise"):
-        yield places[0][0], places[-1][1], "pass"
+    if is_inside and tokens[0].type == tokenize.NAME and (is_call or words[0] == "raise"):
+        yield spans[0][0], spans[-1][1], "pass"
 
 
 EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
@@ -233,39 +233,50 @@ EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
 # -- which mutants ---------------------------------------------------------------------------------
 
 
-def equivalent() -> dict[tuple[str, str, str], str]:
+def equivalent_mutants() -> dict[tuple[str, str, str], str]:
     """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
-    result = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
-    rows: dict[str, list[tuple[str, str, str]]] = json.loads(result)
-    return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
+    json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
+    rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
+    return {
+        (file, was, becomes): why
+        for why, row_of_reason in rows.items()
+        for file, was, becomes in row_of_reason
+    }
 
 
 def mutants(module: Module) -> list[Mutant]:
     """Return all mutants of a module but those that are listed as equivalent."""
-    needless = equivalent()
+    equivalent = equivalent_mutants()
     mutants = []
     for path in sorted({path for pattern in module.files for path in ROOT.glob(pattern)}):
         text = path.read_text(encoding="utf-8")
         if "enerated" in text.partition("\n")[0]:
             continue
-        for start, end, instead in EDITS[path.suffix](text):
-            changed_text = text[:start] + instead + text[end:]
+        for start, end, replacement in EDITS[path.suffix](text):
+            changed_text = text[:start] + replacement + text[end:]
             line = text.count("\n", 0, start)
-            old_line, new_line = (item.splitlines()[line].strip() for item in (text, changed_text))
+            old_line, new_line = (
+                whole_text.splitlines()[line].strip() for whole_text in (text, changed_text)
+            )
             name = path.relative_to(ROOT).as_posix()
-            if old_line != new_line and (name, old_line, new_line) not in needless:
+            if old_line != new_line and (name, old_line, new_line) not in equivalent:
                 mutants.append(Mutant(name, line + 1, old_line, new_line, changed_text))
     return mutants
 
 
 def draw(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -> list[Mutant]:
     """Draw mutants in turn from each module, the same ones for the same seed and code."""
-    rows = []
+    all_mutants = []
     for module in modules:
-        row = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
-        random.Random(f"{seed} {module.name}").shuffle(row)
-        rows.append(row)
-    mutants_in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
+        module_mutants = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
+        random.Random(f"{seed} {module.name}").shuffle(module_mutants)
+        all_mutants.append(module_mutants)
+    mutants_in_turn = [
+        mutant
+        for mutants_of_turn in zip_longest(*all_mutants)
+        for mutant in mutants_of_turn
+        if mutant is not None
+    ]
     return mutants_in_turn[:count]
 
 
@@ -282,7 +293,7 @@ def tests_of(file: str) -> list[str]:
     """Return the tests of a file's module: those first that name the file, and quick ones first."""
     stem = Path(file).stem
 
-    def far(path: Path) -> tuple[bool, int]:
+    def sort_key(path: Path) -> tuple[bool, int]:
         name, text = path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
         is_long = name in order.LONG or name.startswith(order.PAGES)
         return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
@@ -290,7 +301,7 @@ def tests_of(file: str) -> list[str]:
     tests: dict[Path, None] = {}
     for test in module_of(file).tests:
         tests |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
-    return [path.relative_to(ROOT).as_posix() for path in sorted(tests, key=far)]
+    return [path.relative_to(ROOT).as_posix() for path in sorted(tests, key=sort_key)]
 
 
 # -- trying them -----------------------------------------------------------------------------------
@@ -304,24 +315,30 @@ class Copy:
         self.tier = ["-m", "not long"] if is_first_tier else []
         # With what Python has compiled of these files, and the built page.
         shutil.copytree(
-            ROOT, folder, ignore=shutil.ignore_patterns(*OWN), symlinks=True, dirs_exist_ok=True
+            ROOT,
+            folder,
+            ignore=shutil.ignore_patterns(*NOT_COPIED),
+            symlinks=True,
+            dirs_exist_ok=True,
         )
         if (ROOT / NODE_MODULES).is_dir():
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
 
     def try_mutant(self, mutant: Mutant) -> str:
         """Return what the tests of its module say of a mutant: what fails, or nothing."""
-        result = self.notices(mutant, tests_of(mutant.file))
-        named = TEST.match(result)  # one that fails without the mutant, too, notices nothing
-        if named and (why := self.first_failure([named[1]], is_page=mutant.file.endswith(".js"))):
+        failure = self.find_noticing_test(mutant, tests_of(mutant.file))
+        match = FAILED_TEST.match(
+            failure
+        )  # one that fails without the mutant, too, notices nothing
+        if match and (why := self.first_failure([match[1]], is_page=mutant.file.endswith(".js"))):
             return f"undecided, without it, too: {why}"
-        return result
+        return failure
 
-    def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
+    def find_noticing_test(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
         path = self.folder / mutant.file
         original_bytes, status = path.read_bytes(), path.stat()
-        path.write_text(mutant.text, encoding="utf-8")
+        path.write_text(mutant.changed_text, encoding="utf-8")
         os.utime(path, (status.st_atime, status.st_mtime + 2))  # Python looks at whole seconds
         try:
             return self.first_failure(tests, is_page=path.suffix == ".js")
@@ -331,14 +348,23 @@ class Copy:
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return what fails first of the tests, or nothing."""
-        if is_page and (why := self._last_words(["-m", "tools.builds.studio", "--again"])):
+        if is_page and (why := self._run_python(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
         # A size, and what is generated or built, notice any change.
-        left_out = "not keeps_to_its_size and not generated and not same_page"
-        chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *self.tier, *tests]
-        return self._last_words(["-m", "pytest", *chosen])
+        test_filter = "not keeps_to_its_size and not generated and not same_page"
+        pytest_arguments = [
+            "-q",
+            "-x",
+            "-p",
+            "no:cacheprovider",
+            "-k",
+            test_filter,
+            *self.tier,
+            *tests,
+        ]
+        return self._run_python(["-m", "pytest", *pytest_arguments])
 
-    def _last_words(self, words: list[str]) -> str:
+    def _run_python(self, arguments: list[str]) -> str:
         environment = {
             **os.environ,
             "PYTHONPATH": str(self.folder / "compiler"),
@@ -346,7 +372,7 @@ class Copy:
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",  # importing them takes longer than most tests
         }
         process = subprocess.Popen(
-            ["sh", "-c", f'ulimit -t {TEST_LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
+            ["sh", "-c", f'ulimit -t {TEST_LIMIT_S}; exec "$@"', "sh", sys.executable, *arguments],
             cwd=self.folder, env=environment, start_new_session=True, text=True, errors="replace",
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
@@ -377,32 +403,32 @@ def main(arguments: list[str] | None = None) -> int:
         print("\n".join(mutant.name for mutant in chosen_mutants))
         return 0
     tier = "-first-tier" if options.first_tier else ""
-    results_path = cache_folder() / f"mutation-{_code()}{tier}.json"
+    results_path = cache_folder() / f"mutation-{_code_hash()}{tier}.json"
     results: dict[str, str] = (
         json.loads(results_path.read_text("utf-8")) if results_path.is_file() else {}
     )
     results_path.parent.mkdir(parents=True, exist_ok=True)
 
-    def work(mutants_left: Iterator[Mutant]) -> None:
+    def try_all(mutants_left: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            copy = Copy(Path(folder), is_first_tier=options.first_tier)
+            repository_copy = Copy(Path(folder), is_first_tier=options.first_tier)
             for mutant in mutants_left:
                 if mutant.name not in results:
-                    results[mutant.name] = copy.try_mutant(mutant)
+                    results[mutant.name] = repository_copy.try_mutant(mutant)
                     results_path.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
                 print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        list(pool.map(work, [iter(chosen_mutants)] * AT_ONCE))
+    with ThreadPoolExecutor(MUTANTS_AT_ONCE) as pool:
+        list(pool.map(try_all, [iter(chosen_mutants)] * MUTANTS_AT_ONCE))
     survivors = [mutant.name for mutant in chosen_mutants if not results[mutant.name]]
     print(f"\n{len(chosen_mutants)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
 
 
-def _code() -> str:
+def _code_hash() -> str:
     """Return which code is tried: results of other code say nothing."""
-    asked = ["sh", "-c", "git rev-parse HEAD; git diff HEAD"]
-    return hashlib.sha256(subprocess.check_output(asked, cwd=ROOT)).hexdigest()[:12]
+    command = ["sh", "-c", "git rev-parse HEAD; git diff HEAD"]
+    return hashlib.sha256(subprocess.check_output(command, cwd=ROOT)).hexdigest()[:12]
 
 
 if __name__ == "__main__":

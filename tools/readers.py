@@ -21,7 +21,7 @@ from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
 from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
 
-OF_WHOLE_LINES = (
+WHOLE_LINE_READERS = (
     "_sure_findings",
     "_likely_findings",
 )  # the readers that ask `search` what was meant
@@ -32,11 +32,11 @@ def trace(text: str) -> Iterator[str]:
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     text_left = text
     for _ in range(MOST_ROUNDS):
-        result = analyze(text_left, kit).diagnostics
-        if not any(each.is_mistake for each in result):
+        diagnostics = analyze(text_left, kit).diagnostics
+        if not any(each.is_mistake for each in diagnostics):
             break
         wrong_text = WrongText(
-            Source(text_left), result, lambda each: analyze(each, kit).diagnostics, kit
+            Source(text_left), diagnostics, lambda each: analyze(each, kit).diagnostics, kit
         )
         findings = ((reader, reader(wrong_text)) for reader in READERS)
         reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
@@ -44,32 +44,37 @@ def trace(text: str) -> Iterator[str]:
             yield f"{_line(text_left)}: no reader, so usage.py says what it knows of the mistake"
             break
         yield f"{_line(text_left)}: {reader.__name__.strip('_')}"
-        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong_text.recovery is not None
+        is_whole = reader.__name__ in WHOLE_LINE_READERS and wrong_text.recovery is not None
         candidate = (
             wrong_text.recovery.chosen_candidate if is_whole and wrong_text.recovery else None
         )
         for change in candidate.changes if candidate else ():
             for step in change.steps:
-                yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
+                yield f"  {_step_text(step)}\n    by {describe_row(step, kit)}"
         text_left = apply_edits(text_left, finding.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
-def row_of(step: Step, kit: Kit) -> str:
+def describe_row(step: Step, kit: Kit) -> str:
     """Return the example of the row that makes a rewrite, or which module makes it without one."""
     setup_length = len(setup_of(step.old_tokens))
     line = rewrites.Encoded(step.old_tokens[setup_length:], Names([step.old_tokens], kit))
     for row in rewrites.token_rows():
         for match in line.matches(row.pattern) if row.code is step.code else ():
-            result = line.apply_row(row, match)
-            if result is not None and texts(result) == texts(step.new_tokens)[setup_length:]:
+            rewritten_line = line.apply_row(row, match)
+            if (
+                rewritten_line is not None
+                and texts(rewritten_line) == texts(step.new_tokens)[setup_length:]
+            ):
                 return f"the row of {_line(' => '.join(row.example))}"
-    text = "".join((item.space or "") + (item.source or item.text) for item in step.old_tokens)
-    for sign in rewrites.sign_rows():
-        if texts(lexemes(sign.pattern.sub(sign.replacement, text, count=1))) == texts(
+    text = "".join(
+        (lexeme.space or "") + (lexeme.source or lexeme.text) for lexeme in step.old_tokens
+    )
+    for sign_row in rewrites.sign_rows():
+        if texts(lexemes(sign_row.pattern.sub(sign_row.replacement, text, count=1))) == texts(
             step.new_tokens
         ):
-            return f"the row of {_line(' => '.join(sign.example))}"
+            return f"the row of {_line(' => '.join(sign_row.example))}"
     is_word = len(step.old_tokens) == len(step.new_tokens)
     return "a word's meaning (meanings.py)" if is_word else "no row (slots.py, or a sign: lines.py)"
 

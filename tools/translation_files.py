@@ -24,8 +24,16 @@ from tiniscript.base.translations import (
 )
 
 LIST_COLUMNS = 100  # of a list in one row
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
-_SIGNS = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_ESCAPES = {
+    "\\": "\\\\",
+    '"': '\\"',
+    "\n": "\\n",
+    "\t": "\\t",
+    "\r": "\\r",
+    "\b": "\\b",
+    "\f": "\\f",
+}
 SEEN_NOTE = "# Of which English text each is a translation: python -m tools.languages --seen {}\n"
 
 
@@ -37,7 +45,7 @@ class Translation:
         self.folder = FOLDER / code
         self.english = english
         self.groups = {name: catalogue.groups() for name, catalogue in english.items()}
-        self.own = {name: read_translation_file(self.path(name)) for name in english}
+        self.own_files = {name: read_translation_file(self.path(name)) for name in english}
         self.seen, self.seen_problems = read_seen(self.folder / SEEN_FILE)
         self.language = read_language(self.folder / ABOUT_FILE)
         self._is_seen_new = False
@@ -48,12 +56,12 @@ class Translation:
     def merge(self, name: str) -> Catalogue:
         """Return the English texts of a file with those of the language."""
         return merge_translations(
-            self.english[name], name, self.own[name], self.seen, self.language
+            self.english[name], name, self.own_files[name], self.seen, self.language
         )
 
-    def follow(self) -> Iterator[str]:
+    def follow_moved_texts(self) -> Iterator[str]:
         """Put translations where their English texts are now; yield the keys of those that go."""
-        for name, translation_file in self.own.items():
+        for name, translation_file in self.own_files.items():
             is_left = name == NAMES_CATALOGUE or bool(
                 translation_file.problems or self.seen_problems
             )
@@ -82,20 +90,20 @@ class Translation:
             return
         row.key = new_keys[0]
         row.text = format_rows(row.key, texts, len(texts) > 1)
-        translation_file.texts[row.key], translation_file.lines[row.key] = texts, row.line
+        translation_file.texts[row.key], translation_file.line_of_key[row.key] = texts, row.line
         self.seen[f"{name} {row.key}"] = hashes
 
     def _follow_places(self, name: str, translation_file: TranslationFile, row: Row) -> None:
         group, texts = self.pair_texts(name, row.key), translation_file.texts[row.key]
         if group and (len(group) > 1 or len(texts) > 1):
-            if (now := _without_end([entry.translation for entry in group])) != texts:
-                translation_file.texts[row.key] = now
-                row.text = format_rows(row.key, now, len(group) > 1)
+            if (new_texts := _without_end([entry.translation for entry in group])) != texts:
+                translation_file.texts[row.key] = new_texts
+                row.text = format_rows(row.key, new_texts, len(group) > 1)
                 self._note(name, row.key, [entry.seen_hash for entry in group])
 
     def pair_texts(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
-        texts = self.own[name].texts.get(key, [])
+        texts = self.own_files[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN_HASH] * len(texts)
         hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
@@ -104,39 +112,47 @@ class Translation:
     def _note(self, name: str, key: str, hashes: list[str]) -> None:
         while hashes and hashes[-1] in ("", UNKNOWN_HASH):
             hashes.pop()
-        old = self.seen.pop(f"{name} {key}", [])
+        old_hashes = self.seen.pop(f"{name} {key}", [])
         if hashes:
-            self.seen[f"{name} {key}"] = [each or UNKNOWN_HASH for each in hashes]
-        self._is_seen_new |= old != self.seen.get(f"{name} {key}", [])
+            self.seen[f"{name} {key}"] = [hash_ or UNKNOWN_HASH for hash_ in hashes]
+        self._is_seen_new |= old_hashes != self.seen.get(f"{name} {key}", [])
 
-    def see(self, patterns: list[str]) -> list[str]:
+    def note_seen(self, patterns: list[str]) -> list[str]:
         """Note of which English texts new translations are, and stale ones of these keys; return
         the patterns that no key has. A file with a mistake in it is left alone."""
         unused = {*patterns}
-        for name, translation_file in self.own.items():
+        for name, translation_file in self.own_files.items():
             if name == NAMES_CATALOGUE or translation_file.problems:
                 continue
             for key in translation_file.texts:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.pair_texts(name, key):
-                    new = (
+                    hashes_to_note = (
                         UNKNOWN_HASH,
                         *[entry.seen_hash for entry in group if fitting and entry.seen_hash],
                     )
-                    self._note(name, key, [entry.hash if entry.seen_hash in new else entry.seen_hash
-                                           for entry in group])  # fmt: skip
+                    self._note(
+                        name,
+                        key,
+                        [
+                            entry.hash if entry.seen_hash in hashes_to_note else entry.seen_hash
+                            for entry in group
+                        ],
+                    )
             current_rows = {f"{name} {key}" for key in translation_file.texts}
-            for item in [
-                at for at in self.seen if at.startswith(f"{name} ") and at not in current_rows
+            for seen_key in [
+                key_in_file
+                for key_in_file in self.seen
+                if key_in_file.startswith(f"{name} ") and key_in_file not in current_rows
             ]:
-                self._note(name, item.removeprefix(f"{name} "), [])
+                self._note(name, seen_key.removeprefix(f"{name} "), [])
         return [pattern for pattern in patterns if pattern in unused]
 
-    def put(self, name: str, key: str, group: list[Entry]) -> None:
+    def put_entries(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
         translation_file, texts = (
-            self.own[name],
+            self.own_files[name],
             _without_end([entry.translation for entry in group]),
         )
         row = next((row for row in translation_file.rows if row.key == key), None)
@@ -144,7 +160,7 @@ class Translation:
             if row is None:
                 translation_file.rows.append(row := Row(key, None, 0, ""))
             row.text = format_rows(key, texts, len(group) > 1)
-            translation_file.texts[key], translation_file.lines[key] = texts, row.line
+            translation_file.texts[key], translation_file.line_of_key[key] = texts, row.line
         if name != NAMES_CATALOGUE:
             self._note(name, key, [entry.seen_hash for entry in group])
 
@@ -152,22 +168,24 @@ class Translation:
         """Take what these entries say of each text that somebody translates."""
         for key, group in texts.groups().items():
             if len(group) > 1 or not group[0].is_same:
-                self.put(name, key, group)
+                self.put_entries(name, key, group)
 
     def write(self) -> None:
         """Write the files that are others now."""
         self.folder.mkdir(exist_ok=True)
-        for name, translation_file in self.own.items():
-            places = {key: place for place, key in enumerate(self.groups[name])}
-            rows = sorted(translation_file.rows, key=lambda row: places.get(row.key, len(places)))
+        for name, translation_file in self.own_files.items():
+            index_of_key = {key: index for index, key in enumerate(self.groups[name])}
+            rows = sorted(
+                translation_file.rows, key=lambda row: index_of_key.get(row.key, len(index_of_key))
+            )
             text = "".join(row.text_above + row.text for row in rows) + translation_file.text_below
             if not translation_file.problems and (rows or self.path(name).is_file()):
                 _write(self.path(name), text)
         if self._is_seen_new and not self.seen_problems:
             order = [f"{name} {key}" for name, keys in self.groups.items() for key in keys]
-            rest = sorted(self.seen.keys() - {*order})
-            seen_rows = (at for at in [*order, *rest] if at in self.seen)
-            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in seen_rows]
+            unknown_keys = sorted(self.seen.keys() - {*order})
+            seen_keys = (seen_key for seen_key in [*order, *unknown_keys] if seen_key in self.seen)
+            lines = [f"{seen_key} {' '.join(self.seen[seen_key])}\n" for seen_key in seen_keys]
             _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:
@@ -178,7 +196,7 @@ class Translation:
             yield self.path(name), self.merge(name).problems
 
 
-def tell(path: Path, problems: list[Problem]) -> int:
+def print_problems(path: Path, problems: list[Problem]) -> int:
     """Print what is wrong with a file, and return how much that is."""
     shown = path.relative_to(FOLDER.parent) if path.is_relative_to(FOLDER.parent) else path
     for line, problem in problems:
@@ -198,39 +216,39 @@ def _without_end(texts: list[Forms]) -> list[Forms]:
 
 def format_rows(key: str, texts: list[Forms], is_list: bool) -> str:
     """Return the rows of a key."""
-    head = key if _BARE.fullmatch(key) else _basic(key)
+    quoted_key = key if _BARE_KEY.fullmatch(key) else _basic_string(key)
     if is_list:
         parts = [quote(text.get("", "")) for text in texts]
-        row = f"{head} = [{', '.join(parts)}]\n"
+        row = f"{quoted_key} = [{', '.join(parts)}]\n"
         if len(row) <= LIST_COLUMNS and row.count("\n") == 1:
             return row
-        return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
-    return "".join(f"{head}{'.' * bool(name)}{name} = {quote(form)}\n"
+        return f"{quoted_key} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
+    return "".join(f"{quoted_key}{'.' * bool(name)}{name} = {quote(form)}\n"
                    for text in texts for name, form in text.items())  # fmt: skip
 
 
 def quote(text: str) -> str:
     """Return a text as TOML has it, with as few signs as it can."""
     if "\n" in text:
-        rows = ["".join(_SIGNS.get(item, item) if item != '"' else item for item in row)
+        rows = ["".join(_ESCAPES.get(sign, sign) if sign != '"' else sign for sign in row)
                 for row in text.replace('"""', '""\0').split("\n")]  # fmt: skip
-        inside = _control("\n".join(rows)).replace("\0", '\\"')
-        return '"""\n' + (inside[:-1] + '\\"' if inside[-1] == '"' else inside) + '"""'
+        content = _escape_control_signs("\n".join(rows)).replace("\0", '\\"')
+        return '"""\n' + (content[:-1] + '\\"' if content[-1] == '"' else content) + '"""'
     if ('"' in text or "\\" in text) and "'" not in text and text.isprintable():
         return f"'{text}'"
-    return _basic(text)
+    return _basic_string(text)
 
 
-def _basic(text: str) -> str:
-    return '"' + _control("".join(_SIGNS.get(item, item) for item in text)) + '"'
+def _basic_string(text: str) -> str:
+    return '"' + _escape_control_signs("".join(_ESCAPES.get(sign, sign) for sign in text)) + '"'
 
 
-def _control(text: str) -> str:
+def _escape_control_signs(text: str) -> str:
     """Return a text with signs that TOML does not take as numbers."""
     return re.sub(r"[\x01-\x08\x0b-\x1f\x7f]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
-def heading(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:
+def about_text(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:
     """Return what a new language says of itself."""
     return (
         f"name = {quote(name)}  # what it calls itself\n"

@@ -18,41 +18,49 @@ from babel.messages.pofile import PoFileError, read_po, write_po
 
 from tiniscript.base.catalogue_source import Catalogue, Entry, Forms
 from tiniscript.base.languages import NAMES_CATALOGUE, languages
-from tiniscript.base.translations import NUMBERS_TRIED, Language, misfits
+from tiniscript.base.translations import NUMBERS_TRIED, Language, find_misfits
 from tiniscript.base.version import __version__
-from tools.translation_files import Translation, tell
+from tools.translation_files import Translation, print_problems
 
-END = ".po"
+FILE_ENDING = ".po"
 # Names of forms, and gettext's rule for them: what most languages have.
-SIMPLE = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"], "0"))
-BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
+SIMPLE_FORMS = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"], "0"))
+BRACES_FLAG = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 
 
 def exchange(language_or_file: str, english: dict[str, Catalogue]) -> int:
     """Write a language into a file, or read one; return 1 where something is wrong."""
-    path = Path(language_or_file if language_or_file.endswith(END) else language_or_file + END)
+    path = Path(
+        language_or_file
+        if language_or_file.endswith(FILE_ENDING)
+        else language_or_file + FILE_ENDING
+    )
     if path.stem not in languages()[1:]:
         print(f"{path.stem}: no such language. Try:  python -m tools.languages {path.stem}")
         return 1
     translation = Translation(path.stem, english)
-    problem_count = sum(tell(file, problems) for file, problems in translation.problems())
-    if problem_count or language_or_file.endswith(END):
-        return 1 if problem_count else take(path, translation)
-    count = give(path, translation)
+    problem_count = sum(print_problems(file, problems) for file, problems in translation.problems())
+    if problem_count or language_or_file.endswith(FILE_ENDING):
+        return 1 if problem_count else read_file(path, translation)
+    count = write_file(path, translation)
     print(f"{path}: {count} texts. Read it with:  python -m tools.languages --po {path}")
     return 0
 
 
-def give(path: Path, translation: Translation) -> int:
+def write_file(path: Path, translation: Translation) -> int:
     """Write the texts of a language; return their number."""
     language = translation.language
     catalog = Catalog(
-        locale=translation.code, project="TiniScript", version=__version__, fuzzy=False,
+        locale=translation.code,
+        project="TiniScript",
+        version=__version__,
+        fuzzy=False,
         charset="utf-8",
-        header_comment=f"# {language.english_name} texts of TiniScript, in {END} for translators",
+        header_comment=f"# {language.english_name} texts of TiniScript,"
+        f" in {FILE_ENDING} for translators",
         language_team=language.english_name,
-    )  # fmt: skip
-    plurals = f"nplurals={len(language.forms)}; plural=({language.rule});"
+    )
+    plurals = f"nplurals={len(language.forms)}; plural=({language.plural_rule});"
     catalog.mime_headers = [("Plural-Forms", plurals)]
     for name in translation.english:
         for entry in translation.merge(name).entries.values():
@@ -69,7 +77,7 @@ def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> N
     if entry.plural:
         english = (entry.english, entry.plural)
         translated = tuple(entry.translation.get(form, "") for form in forms)
-    flags = {BRACES} if "{" in entry.english else set()
+    flags = {BRACES_FLAG} if "{" in entry.english else set()
     message = catalog.add(
         english, translated, context=_context(name, entry.key), auto_comments=entry.notes,
         flags=flags | ({"fuzzy"} if entry.is_stale else set()),
@@ -81,7 +89,7 @@ def _context(name: str, key: str) -> str:
     return name if name == NAMES_CATALOGUE else f"{name}/{key}"
 
 
-def take(path: Path, translation: Translation) -> int:
+def read_file(path: Path, translation: Translation) -> int:
     """Read texts of a language; say what is wrong with one, and return 1 then."""
     try:
         with path.open("rb") as file:
@@ -125,10 +133,10 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     old_translation, old_seen = entry.translation, entry.seen_hash
     entry.translation, entry.seen_hash = forms, entry.hash
-    if why := misfits(entry, translation.language):
+    if why := find_misfits(entry, translation.language):
         entry.translation, entry.seen_hash = old_translation, old_seen
         return f"{message.context}: {why[0]}"
-    translation.put(name, key, group)
+    translation.put_entries(name, key, group)
     return ""
 
 
@@ -137,23 +145,25 @@ def language_facts(code: str) -> tuple[str, str, list[str], str]:
     try:
         locale = Locale.parse(code)
     except (UnknownLocaleError, ValueError):
-        return code, code, *SIMPLE[0]
-    name, english_name = (locale.get_display_name(item) or code for item in (code, "en"))
+        return code, code, *SIMPLE_FORMS[0]
+    name, english_name = (locale.get_display_name(language) or code for language in (code, "en"))
     count, rule = get_plural(code)
-    known_rules = (*SIMPLE, (_cldr_categories(count, rule, locale.plural_form), rule))
+    known_rules = (*SIMPLE_FORMS, (_cldr_categories(count, rule, locale.plural_form), rule))
     expected = [locale.plural_form(number) for number in range(NUMBERS_TRIED)]
-    fitting = (item for item in known_rules if item[0] and _forms_by(*item) == expected)
-    return name, english_name, *next(fitting, SIMPLE[0])
+    fitting_forms = (
+        language for language in known_rules if language[0] and _forms_by(*language) == expected
+    )
+    return name, english_name, *next(fitting_forms, SIMPLE_FORMS[0])
 
 
 def _forms_by(names: list[str], rule: str) -> list[str]:
     """Return the names of the forms that numbers have."""
-    form = c2py(rule)
-    return [names[form(number)] for number in range(NUMBERS_TRIED)]
+    form_index = c2py(rule)
+    return [names[form_index(number)] for number in range(NUMBERS_TRIED)]
 
 
 def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
     """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
-    form = c2py(rule)
-    category_of = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
+    form_index = c2py(rule)
+    category_of = {form_index(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
     return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

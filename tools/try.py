@@ -19,9 +19,9 @@ sys.path.insert(0, str(ROOT))
 from tools import environment
 
 PROGRAM = Path("examples") / "obstacle_until.ts"
-YES = ("1", "y", "yes", "s", "si", "sí", "sim")
-MEGABYTES = "from tiniscript.cli.page_build import megabytes; print(megabytes())"
-SAID = {
+YES_ANSWERS = ("1", "y", "yes", "s", "si", "sí", "sim")
+MEGABYTES_CODE = "from tiniscript.cli.page_build import megabytes; print(megabytes())"
+TEXTS = {
     "program": (
         "The program {program}: forward until something is within 10 cm, then beep,\n"
         "turn right and go on.",
@@ -71,20 +71,22 @@ def main() -> int:
     _say("program", program=PROGRAM.as_posix())
     rows = (ROOT / PROGRAM).read_text(encoding="utf-8").splitlines()
     print("\n".join(dropwhile(lambda row: row.startswith("//"), rows)), end="\n\n", flush=True)
-    words = ["upload", str(PROGRAM), "--virtual", "--for", "30"]
+    arguments = ["upload", str(PROGRAM), "--virtual", "--for", "30"]
     if sys.stdout.isatty() and sys.stderr.isatty() and not os.environ.get("CI"):
         _say("watch")
     else:
-        words += ["--hurry", "20"]
-    words += ["--plot", "way.png"]
-    environment.say(f"$ tsc {' '.join(words)}")
+        arguments += ["--hurry", "20"]
+    arguments += ["--plot", "way.png"]
+    environment.say(f"$ tsc {' '.join(arguments)}")
     try:
-        code = subprocess.run([str(python), "-m", "tiniscript", *words], cwd=ROOT).returncode
+        exit_code = subprocess.run(
+            [str(python), "-m", "tiniscript", *arguments], cwd=ROOT
+        ).returncode
     except KeyboardInterrupt:  # the robot has stopped, and tsc has said so
         return 2
     print(flush=True)
-    if code:
-        return code
+    if exit_code:
+        return exit_code
     _say("drawn")
     _say("now", activate=activation())
     if os.name == "nt":
@@ -93,8 +95,8 @@ def main() -> int:
         return 0
     environment.say("$ tsc studio")
     try:
-        words = [str(python), "-m", "tiniscript", "studio", "--yes"]
-        return subprocess.run(words, cwd=ROOT).returncode
+        arguments = [str(python), "-m", "tiniscript", "studio", "--yes"]
+        return subprocess.run(arguments, cwd=ROOT).returncode
     except KeyboardInterrupt:  # the studio ends so
         return 0
 
@@ -102,17 +104,22 @@ def main() -> int:
 def _ask_for_studio(python: Path) -> bool:
     """Ask whether the studio shall open, and say how much is downloaded for it."""
     try:
-        completed = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
-        size = completed.stdout.strip()
+        process = subprocess.run(
+            [str(python), "-c", MEGABYTES_CODE], capture_output=True, text=True
+        )
+        size = process.stdout.strip()
         text = f" ({size} MB)" if size not in ("", "0") else ""
-        return input(environment.in_language(SAID["studio"], size=text)).strip().lower() in YES
+        return (
+            input(environment.in_language(TEXTS["studio"], size=text)).strip().lower()
+            in YES_ANSWERS
+        )
     except (EOFError, KeyboardInterrupt):
         print()
         return False
 
 
-def _say(key: str, **gaps: str) -> None:
-    environment.say(environment.in_language(SAID[key], **gaps))
+def _say(key: str, **values: str) -> None:
+    environment.say(environment.in_language(TEXTS[key], **values))
 
 
 if __name__ == "__main__":

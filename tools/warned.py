@@ -26,16 +26,16 @@ def programs_in(folder: Path | None) -> Iterator[str]:
             yield path.read_text(encoding="utf-8")
         return
     for lesson in catalogue.folders():
-        right, _ = catalogue.answers(lesson)
-        yield from (answer.program for answer in right)
+        right_answers, _ = catalogue.answers(lesson)
+        yield from (answer.program for answer in right_answers)
 
 
 def warnings_in(program: str) -> set[str]:
     """Return the numbers of the warnings that a program gets on the robot that it names."""
     data = program.encode()
     robot = robot_of(data, robots.load(robots.DEFAULT))
-    found = compile_source(data, robot, "", is_strict=False).diagnostics
-    return {each.code.number for each in found if not each.is_mistake}
+    diagnostics = compile_source(data, robot, "", is_strict=False).diagnostics
+    return {each.code.number for each in diagnostics if not each.is_mistake}
 
 
 def main(arguments: Iterable[str] | None = None) -> int:
@@ -45,10 +45,10 @@ def main(arguments: Iterable[str] | None = None) -> int:
     programs = [*programs_in(folder)]
     if not programs:
         sys.exit(f"{folder} has no programs (*.ts).")
-    counted = Counter(number for each in programs for number in warnings_in(each))
+    counts = Counter(number for each in programs for number in warnings_in(each))
     numbers = [each.number for each in codes.CODES.values() if not each.is_mistake]
-    for number in sorted(numbers, key=lambda each: (counted[each], each)):
-        print(f"{number} {counted[number]} of {len(programs)}")
+    for number in sorted(numbers, key=lambda each: (counts[each], each)):
+        print(f"{number} {counts[number]} of {len(programs)}")
     return 0
 
 

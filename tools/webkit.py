@@ -37,7 +37,7 @@ ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 EDITOR = "document.querySelector('#editor').shadowRoot.querySelector('.cm-content')"
 
 
-class Failed(Exception):
+class StepFailed(Exception):
     """A page has not come to what a step waits for."""
 
 
@@ -47,10 +47,10 @@ class Browser:
     def __init__(self, port: int, binary: Path) -> None:
         self._base = f"http://127.0.0.1:{port}/session"
         options = {"binary": str(binary), "args": ["--automation"]}
-        wanted = {"capabilities": {"alwaysMatch": {"webkitgtk:browserOptions": options}}}
-        found = self._ask("POST", "", wanted)
-        self.version = f"WebKitGTK {found['capabilities']['browserVersion']}"
-        self._base += f"/{found['sessionId']}"
+        request = {"capabilities": {"alwaysMatch": {"webkitgtk:browserOptions": options}}}
+        session = self._ask("POST", "", request)
+        self.version = f"WebKitGTK {session['capabilities']['browserVersion']}"
+        self._base += f"/{session['sessionId']}"
 
     def _ask(self, method: str, path: str, body: Json = None) -> Json:
         data = json.dumps(body).encode() if body is not None else None
@@ -64,22 +64,24 @@ class Browser:
     def run(self, script: str, *values: Json) -> Json:
         return self._ask("POST", "/execute/sync", {"script": script, "args": list(values)})
 
-    def until(self, condition: str, what: str) -> None:
+    def wait_until(self, condition: str, what: str) -> None:
         end_s = time.monotonic() + PATIENCE_S
         while not self.run(f"return Boolean({condition})"):
             if time.monotonic() > end_s:
-                raise Failed(what)
+                raise StepFailed(what)
             time.sleep(0.1)
 
-    def data(self, name: str, value: str) -> None:
+    def wait_for_data(self, name: str, value: str) -> None:
         """Wait until the page says so of itself."""
-        self.until(f"document.documentElement.dataset['{name}'] === '{value}'", f"{name} {value}")
+        self.wait_until(
+            f"document.documentElement.dataset['{name}'] === '{value}'", f"{name} {value}"
+        )
 
     def click(self, selector: str) -> None:
-        found = self._ask("POST", "/element", {"using": "css selector", "value": selector})
-        self._ask("POST", f"/element/{found[ELEMENT]}/click", {})
+        element = self._ask("POST", "/element", {"using": "css selector", "value": selector})
+        self._ask("POST", f"/element/{element[ELEMENT]}/click", {})
 
-    def keys(self, text: str, held: str = "") -> None:
+    def type_keys(self, text: str, held: str = "") -> None:
         actions = [{"type": "keyDown", "value": held}] if held else []
         for sign in text:
             actions += [{"type": "keyDown", "value": sign}, {"type": "keyUp", "value": sign}]
@@ -90,14 +92,14 @@ class Browser:
     def write(self, text: str) -> None:
         """Replace the program as a person does."""
         self.run(f"{EDITOR}.focus()")
-        self.keys("a", CONTROL)
-        self.keys(DELETE)
-        self.keys(text.replace("\n", ENTER))
-        self.data("state", "checked")
+        self.type_keys("a", CONTROL)
+        self.type_keys(DELETE)
+        self.type_keys(text.replace("\n", ENTER))
+        self.wait_for_data("state", "checked")
 
     def fill(self, selector: str, which: int, text: str) -> None:
         self.run("document.querySelectorAll(arguments[0])[arguments[1]].focus()", selector, which)
-        self.keys(text)
+        self.type_keys(text)
 
     def text(self, selector: str) -> str:
         return str(self.run("return document.querySelector(arguments[0]).innerText", selector))
@@ -106,76 +108,76 @@ class Browser:
         self._ask("DELETE", "")
 
 
-def enter(page: Browser, address: str) -> None:
+def open_page(page: Browser, address: str) -> None:
     page.open(address)
-    page.data("state", "checked")
+    page.wait_for_data("state", "checked")
     if page.run("return document.documentElement.dataset.screen") == "start":
         page.click("#start_write")
     page.click("#view_text")
 
 
-def first_minute(page: Browser) -> None:
+def run_first_program(page: Browser) -> None:
     page.click("#run")
-    page.data("phase", "ended")
+    page.wait_for_data("phase", "ended")
 
 
-def mistake(page: Browser, language: str = "es") -> None:
+def make_mistake(page: Browser, language: str = "es") -> None:
     page.run(
         f"const it = document.querySelector('#language'); it.value = '{language}';"
         "it.dispatchEvent(new Event('change', {bubbles: true}))"
     )
-    page.until(f"document.documentElement.lang === '{language}'", language)
+    page.wait_until(f"document.documentElement.lang === '{language}'", language)
     page.write("F(2, 80)\nAVANZA\n")
-    page.until("/AVANZA/.test(document.querySelector('#messages').innerText)", "the message")
+    page.wait_until("/AVANZA/.test(document.querySelector('#messages').innerText)", "the message")
 
 
-def lesson(page: Browser) -> None:
+def solve_lesson(page: Browser) -> None:
     folder = catalogue.folders()[0]
     page.click("#side_lessons")
-    page.until("document.querySelector('#lesson:enabled')", "the lessons")
+    page.wait_until("document.querySelector('#lesson:enabled')", "the lessons")
     page.run(
         "const it = document.querySelector('#lesson'); it.value = '1';"
         "it.dispatchEvent(new Event('change', {bubbles: true}))"
     )
-    page.until("document.querySelector('#lesson_page[data-lesson=\"1\"]')", "the first lesson")
+    page.wait_until("document.querySelector('#lesson_page[data-lesson=\"1\"]')", "the first lesson")
     page.write(catalogue.answers(folder)[0][0].program)
     page.run("[...document.querySelectorAll('#lesson_steps button')].at(-1).click()")
-    page.until("document.querySelector('#lesson_check:enabled')", "its task")
+    page.wait_until("document.querySelector('#lesson_check:enabled')", "its task")
     page.click("#lesson_check")
-    page.until("document.querySelector('#lesson_said[data-verdict]')", "its verdict")
+    page.wait_until("document.querySelector('#lesson_said[data-verdict]')", "its verdict")
     if page.run("return document.querySelector('#lesson_said').dataset.verdict") != "passed":
-        raise Failed(page.text("#lesson_said"))
+        raise StepFailed(page.text("#lesson_said"))
 
 
-def joins(page: Browser, address: str, code: str) -> None:
-    enter(page, address)
+def join_class(page: Browser, address: str, code: str) -> None:
+    open_page(page, address)
     page.click("#side_real")
     page.fill("#class_pupil input", 0, code)
     page.fill("#class_pupil input", 1, "Ana")
     page.click("[data-text=class_join]")
-    page.data("pupil", "class_in")
+    page.wait_for_data("pupil", "class_in")
 
 
-def group(page: Browser, changes: Callable[[], None], has: Callable[[str], bool]) -> None:
+def join_group(page: Browser, changes: Callable[[], None], has: Callable[[str], bool]) -> None:
     page.write("F(1, 80)\nS\n")
     page.fill("#class_group input", 0, "Red")
     page.click("[data-text=group_join]")
-    page.data("group", "in")
+    page.wait_for_data("group", "in")
     page.run(f"{EDITOR}.focus()")
-    page.keys("\ue010", CONTROL)  # the end of the text
-    page.keys(f"W(2){ENTER}")
+    page.type_keys("\ue010", CONTROL)  # the end of the text
+    page.type_keys(f"W(2){ENTER}")
     end_s = time.monotonic() + PATIENCE_S
     while not has("W(2);"):
         if time.monotonic() > end_s:
-            raise Failed("the class has the line")
+            raise StepFailed("the class has the line")
         time.sleep(0.1)
     changes()
-    page.until(f"{EDITOR}.innerText.includes('BEEP(1, 440)')", "the line of another pupil")
+    page.wait_until(f"{EDITOR}.innerText.includes('BEEP(1, 440)')", "the line of another pupil")
 
 
-def stop(page: Browser, robot: PtyRobot) -> None:
+def stop_robot(page: Browser, robot: PtyRobot) -> None:
     page.click("[data-text=class_ask]")
-    page.data("robot", "connected")
+    page.wait_for_data("robot", "connected")
     page.write(FOREVER + "\n")
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
@@ -213,52 +215,58 @@ def browsers() -> Iterator[Callable[[], Browser]]:
 
 
 def main() -> int:
-    failed = 0
+    failed_count = 0
 
-    def step(name: str, act: Callable[[], None]) -> None:
-        nonlocal failed
+    def step(name: str, run_step: Callable[[], None]) -> None:
+        nonlocal failed_count
         began_s = time.monotonic()
         try:
-            act()
-            said = "works"
-        except (Failed, OSError, AssertionError) as why:
-            said, failed = f"FAILS: {why}", failed + 1
-        print(f"{name:32} {said}  ({time.monotonic() - began_s:.1f} s)", flush=True)
+            run_step()
+            outcome = "works"
+        except (StepFailed, OSError, AssertionError) as error:
+            outcome, failed_count = f"FAILS: {error}", failed_count + 1
+        print(f"{name:32} {outcome}  ({time.monotonic() - began_s:.1f} s)", flush=True)
 
-    with browsers() as opens:
-        page = opens()
+    with browsers() as open_browser:
+        page = open_browser()
         print(page.version)
         with served() as server:
-            step("opens and compiles", lambda: enter(page, server.address))
-            step("the first minute", lambda: first_minute(page))
-            step("a mistake, in Spanish", lambda: mistake(page))
-            step("a lesson", lambda: lesson(page))
-            ways = "['serial', 'bluetooth']"
-            lacks = page.run(f"return {ways}.filter((each) => !(each in navigator))")
-            print(f"{'lacks':32} {', '.join(lacks)}")
+            step("opens and compiles", lambda: open_page(page, server.address))
+            step("the first minute", lambda: run_first_program(page))
+            step("a mistake, in Spanish", lambda: make_mistake(page))
+            step("a lesson", lambda: solve_lesson(page))
+            interfaces = "['serial', 'bluetooth']"
+            missing_interfaces = page.run(
+                f"return {interfaces}.filter((each) => !(each in navigator))"
+            )
+            print(f"{'lacks':32} {', '.join(missing_interfaces)}")
         with PtyRobot(robots.load("tinibot").kit) as robot, taught([robot.port]) as school:
-            room = school.room
+            classroom = school.room
 
             def changes() -> None:
-                luz = room.answer("", "luz", {"do": "join", "code": room.code, "name": "Luz"})
+                luz = classroom.answer(
+                    "", "luz", {"do": "join", "code": classroom.code, "name": "Luz"}
+                )
                 token = luz["token"]
-                joined = room.answer(token, "luz", {"do": "group_join", "name": "Red", "text": ""})
+                joined = classroom.answer(
+                    token, "luz", {"do": "group_join", "name": "Red", "text": ""}
+                )
                 nodes = [{"id": f"{joined['page']}.1", "text": "BEEP(1, 440)"}]
                 ops = [{"do": "insert", "at": ["root", ""], "nodes": nodes}]
                 change = {"uid": f"{joined['page']}:1", "ops": ops}
-                room.answer(token, "luz", {"do": "group", "page": joined["page"], "since": -1,
+                classroom.answer(token, "luz", {"do": "group", "page": joined["page"], "since": -1,
                                            "epoch": "", "changes": [change]})  # fmt: skip
 
             def has(row: str) -> bool:
-                found = room.teach({"do": "class"})["groups"]
-                text = room.teach({"do": "class_text", "group": found[0]["key"]})["text"]
+                found = classroom.teach({"do": "class"})["groups"]
+                text = classroom.teach({"do": "class_text", "group": found[0]["key"]})["text"]
                 return row in text
 
-            step("a class", lambda: joins(page, school.server.address, room.code))
-            step("a group", lambda: group(page, changes, has))
-            step("STOP", lambda: stop(page, robot))
+            step("a class", lambda: join_class(page, school.server.address, classroom.code))
+            step("a group", lambda: join_group(page, changes, has))
+            step("STOP", lambda: stop_robot(page, robot))
         page.close()
-    return failed > 0
+    return failed_count > 0
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript.base.version import __version__ as __version__
-    from tiniscript.library.compiling import Compiled as Compiled
+    from tiniscript.library.compiling import Compilation as Compilation
     from tiniscript.library.compiling import check_text as check_text
     from tiniscript.library.compiling import compile_text as compile_text
     from tiniscript.library.connection import Receipt, RobotConnection, RobotInfo, connect
@@ -52,7 +52,7 @@ __all__ = (  # what `docs/en/api.md` promises
     "virtual_robot",
 )
 _HOMES = {
-    "library.compiling": ("Compiled", "check_text", "compile_text"),
+    "library.compiling": ("Compilation", "check_text", "compile_text"),
     "library.connection": ("Receipt", "RobotConnection", "RobotInfo", "connect"),
     "library.events": ("Ending", "RobotEvent"),
     "library.errors": (

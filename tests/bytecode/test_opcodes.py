@@ -40,8 +40,8 @@ class Nothing:
     def read(self, sensor: int) -> int | None:
         return 1
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
-        return SLOW.go_ms(way, power, turns)
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
+        return SLOW.go_ms(extent, power, is_turn)
 
     def beep(self, hertz: int, duration_ms: int) -> None: ...
     def show(self, value: int, is_yes_no: bool) -> bool:

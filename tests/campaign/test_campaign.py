@@ -32,8 +32,8 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (campaign, goals, results):
         monkeypatch.setattr(module, "GOALS", (DONE, BAD), raising=False)
     monkeypatch.setattr(campaign, "BY_NAME", {"done": DONE, "bad": BAD})
-    monkeypatch.setattr(results, "WRITTEN", tmp_path / "results.json")
-    monkeypatch.setattr(results, "commit", lambda: "a" * 10)
+    monkeypatch.setattr(results, "RESULTS_FILE", tmp_path / "results.json")
+    monkeypatch.setattr(results, "current_commit", lambda: "a" * 10)
     monkeypatch.setattr(results, "is_old", lambda goal, result: False)
     monkeypatch.setattr(campaign, "FIRST_SEED", 7)
     run = subprocess.run
@@ -45,7 +45,7 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def kept(name: str) -> Result:
-    return results.read()[name]
+    return results.read_results()[name]
 
 
 def test_it_goes_on_where_it_was(
@@ -72,7 +72,7 @@ def test_it_goes_on_where_it_was(
 
 def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
     """Have Ctrl-C come after so many pieces, once."""
-    piece, left = campaign.piece, [pieces]
+    piece, left = campaign.run_piece, [pieces]
 
     def interrupted(*given: Any) -> Result:
         left[0] -= 1
@@ -80,7 +80,7 @@ def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
             raise KeyboardInterrupt
         return piece(*given)
 
-    monkeypatch.setattr(campaign, "piece", interrupted)
+    monkeypatch.setattr(campaign, "run_piece", interrupted)
 
 
 def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFixture[str]) -> None:
@@ -94,7 +94,7 @@ def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFix
 def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted_after(monkeypatch, 2)
     campaign.main(["done"])
-    monkeypatch.setattr(results, "commit", lambda: "b" * 10)
+    monkeypatch.setattr(results, "current_commit", lambda: "b" * 10)
     interrupted_after(monkeypatch, 1)
     campaign.main(["done"])
     assert (kept("done").done, kept("done").commit) == (10, "b" * 10)
@@ -103,9 +103,9 @@ def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPa
 def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(results, "commit", lambda: "a" * 10 + "+")
+    monkeypatch.setattr(results, "current_commit", lambda: "a" * 10 + "+")
     campaign.main(["bad"])
-    assert results.read() == {}
+    assert results.read_results() == {}
 
 
 def test_a_figure_is_old_when_what_it_tried_has_changed(
@@ -131,7 +131,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     assert said("b" * 10) == said(f"{second}+") == "25, old"
     (tmp_path / "tried").write_text("3")
     assert said(first) == said(second) == "25, old"
-    results.write({"done": Result(25, 1, 7, 22, "", first)})
+    results.write_results({"done": Result(25, 1, 7, 22, "", first)})
     assert results.outdated_goals() == ["done"]
     third = committed("tried", "3")
     assert (said(second), said(third)) == ("25, old", "25")
@@ -154,8 +154,8 @@ def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatc
     is_shallow = ("rev-parse", "--is-shallow-repository")
     if not which("git") or results.git(*is_shallow).stdout.strip() != "false":
         pytest.skip("the commits of this copy are not here: nobody can tell which led to it")
-    monkeypatch.setattr(results, "WRITTEN", ROOT / "tools" / "campaign" / "results.json")
-    figures = results.read()
+    monkeypatch.setattr(results, "RESULTS_FILE", ROOT / "tools" / "campaign" / "results.json")
+    figures = results.read_results()
     assert figures
     is_there = ("merge-base", "--is-ancestor")
     lost = {name: result.commit for name, result in figures.items()
@@ -179,4 +179,4 @@ def test_each_goal_has_a_command_that_takes_its_words(
     assert not ended.value.code
     printed = capfd.readouterr().out
     assert all(word in printed for word in words if word.startswith("--"))
-    assert 0 < goal.piece <= goal.target
+    assert 0 < goal.piece_size <= goal.target

@@ -12,7 +12,7 @@ from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript.cli.robot import debugger
-from tiniscript.cli.robot.debugger import GO, STEP
+from tiniscript.cli.robot.debugger import GO_KEYS, STEP_KEYS
 from tiniscript.cli.terminal.keys import Keys, letters_of
 from tiniscript.link.messages import RESUME_STEP
 
@@ -210,7 +210,7 @@ SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS
 def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
     """F4 ends with an S. What is typed between such keys counts."""
     rng = random.Random(seed)
-    pressed = [rng.choice([*SEQUENCES, *(STEP + GO)]) for _ in range(8)]
+    pressed = [rng.choice([*SEQUENCES, *(STEP_KEYS + GO_KEYS)]) for _ in range(8)]
     assert letters_of("".join(pressed)) == "".join(key for key in pressed if len(key) == 1)
 
 
@@ -221,12 +221,12 @@ def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
     it.has_keys, it.is_halted, typed, asked = True, False, ["g", "", "s"], list[int]()
     monkeypatch.setattr(debugger.Debugger, "_resume", lambda self, how: asked.append(how))
     it.keys = Keys()
-    monkeypatch.setattr(it.keys, "read_pressed", lambda: typed.pop(0))
-    it.look()
+    monkeypatch.setattr(it.keys, "read_keys", lambda: typed.pop(0))
+    it.poll_keys()
     it.is_halted = True
-    it.look()
+    it.poll_keys()
     assert asked == []
-    it.look()
+    it.poll_keys()
     assert asked == [RESUME_STEP]
 
 

@@ -146,7 +146,7 @@ def test_only_robots_that_a_command_drives_are_stopped(
     monkeypatch.setattr(fleet.Fleet, "begin", lambda self, work: None)
     monkeypatch.setattr(fleet.Fleet, "watch", broken)
     monkeypatch.setattr(fleet.Fleet, "interrupt", lambda self: stopped.append(verb))
-    monkeypatch.setattr(opening, "CONFIRM_S", 0.0)
+    monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):
         fleet.run_together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
@@ -219,7 +219,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
         return Reply(STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
 
     monkeypatch.setattr("tiniscript.link.session.reply_of", busy)
-    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 600)
+    monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
             done = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
@@ -286,7 +286,7 @@ def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
     """What comes after it in `(tsc upload prog; echo done) | less` may wait for the reader."""
-    monkeypatch.setattr(streams, "READER_LIMIT_S", 0.0)
+    monkeypatch.setattr(streams, "READER_TIMEOUT_S", 0.0)
     end, pipe = os.pipe()
     shared = os.dup(pipe)
     if reader == "is slow":
@@ -300,7 +300,7 @@ def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
         if reader == "has gone":
             os.close(end)
         for _ in range(2):
-            streams.drop_unread()
+            streams.drop_unread_output()
             assert os.get_blocking(shared) and os.get_blocking(pipe)
         monkeypatch.undo()
     os.close(shared)

@@ -183,12 +183,12 @@ def test_who_only_looks_changes_nothing(room: Class) -> None:
 
 def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
     room = SimpleNamespace(
-        place=("h", 1), group="c", options=SimpleNamespace(verb="class"),
+        address=("h", 1), group="c", options=SimpleNamespace(verb="class"),
         broker=SimpleNamespace(attend=print),
     )  # fmt: skip
     here = [Present("00000001", "A", True), Present("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
-        options = Classroom.targets(cast(Classroom, room), here, verb)
+        options = Classroom.options_for(cast(Classroom, room), here, verb)
         assert options.verb == verb  # of an upload, who no longer reads stops the robots
         assert hasattr(options, "attend") == attends
         assert options.ports == ["mqtt://h:1/c/00000001"]
@@ -198,12 +198,12 @@ def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
     """What the class does not take is as the verb of a fleet has it where nobody gave it."""
     own = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
-        place=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
+        address=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
     )
     alone = Options("upload", "en").read([])
     assert own is not None and alone is not None
     for verb in ("class", "stop", "upload"):
-        options = vars(Classroom.targets(cast(Classroom, room), [], verb))
+        options = vars(Classroom.options_for(cast(Classroom, room), [], verb))
         lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
         assert len(lacks) > 5
         assert {name: options.get(name, "none") for name in lacks} == lacks
@@ -264,7 +264,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
     own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
                           robot=None)  # fmt: skip
     room = cast(Classroom, SimpleNamespace(
-        options=own, language="en", group="c", present=list, targets=lambda *_: own,
+        options=own, language="en", group="c", present_robots=list, options_for=lambda *_: own,
         broker=SimpleNamespace(stop=lambda _: True),
     ))  # fmt: skip
     monkeypatch.setattr(classroom, "run_together", lambda *_: code)
@@ -299,8 +299,8 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
             raise CommandError(3, "class_empty", group="c", host="h")
         return []
 
-    room = SimpleNamespace(broker=SimpleNamespace(stop=stop), group="c", present=present,
-                           language="en", targets=lambda *given: given)  # fmt: skip
+    room = SimpleNamespace(broker=SimpleNamespace(stop=stop), group="c", present_robots=present,
+                           language="en", options_for=lambda *given: given)  # fmt: skip
 
     def ask(*given: object) -> int:
         asked.append(given)
@@ -360,11 +360,14 @@ def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> N
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would help nobody."""
     told = SimpleNamespace(
-        name="Tini", begin_request=lambda make: None, failure=AssertionError, port="/dev/ttyUSB0",
+        name="Tini",
+        begin_request=lambda make: None,
+        error_for_reply=AssertionError,
+        port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
-    )  # fmt: skip
+    )
     told.request = partial(Connection.request, cast(Connection, told))
-    told.ask_or = partial(Connection.ask_or, cast(Connection, told))
+    told.request_or_raise = partial(Connection.request_or_raise, cast(Connection, told))
     with pytest.raises(CommandError) as exception_info:
         robot_broker.use_broker(cast(Connection, told), None, Namespace())
     assert "older than this tsc" in exception_info.value.sentence("en")

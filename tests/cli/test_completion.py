@@ -17,7 +17,7 @@ from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.base.languages import languages
 from tiniscript.cli.commands import completion
-from tiniscript.cli.texts.options import choosers_of
+from tiniscript.cli.texts.options import selecting_options_of
 from tiniscript.cli.texts.verbs import VERBS, command_words
 from tiniscript.diagnostics.codes import CODES
 
@@ -64,7 +64,7 @@ def test_verbs_options_and_values(tsc: Tsc) -> None:
 def test_every_option_of_every_verb(tsc: Tsc) -> None:
     for command, parser in parsers().items():
         flags = {flag for action in parser._actions for flag in action.option_strings}
-        flags |= {flag for option in choosers_of(command) for flag in option.flags.split()}
+        flags |= {flag for option in selecting_options_of(command) for flag in option.flags.split()}
         words = command_words(command).split()
         valued = [] if words[-1] in words_of(command) else ["x"]
         assert offered(tsc, *words, *valued, "-") == flags, command

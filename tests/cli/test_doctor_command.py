@@ -21,7 +21,7 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
-from tiniscript.doctor.findings import sure
+from tiniscript.doctor.findings import sure_finding
 from tiniscript.link.ports import ListedPort, open_port
 from tiniscript.link.sharing import registry
 
@@ -198,7 +198,7 @@ def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
 def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
     """A pseudo-terminal is no cable: here its name does not tell."""
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
-    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
+    monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as pty_end:
         yield pty_end
 
@@ -276,13 +276,13 @@ def test_ports_in_a_report(port: str, told: str) -> None:
 
 
 def test_values_of_others_stay_out_of_a_report() -> None:
-    finding = sure("busy", by="ModemManager, secret-tool")
+    finding = sure_finding("busy", by="ModemManager, secret-tool")
     assert report.values_of(finding) == {"by": "ModemManager, …"}
-    finding = sure("fine", name="ANA", kit="tinibot", id="12347f3a", n="20")
+    finding = sure_finding("fine", name="ANA", kit="tinibot", id="12347f3a", n="20")
     assert report.values_of(finding) == {"name": "…", "kit": "tinibot", "id": "…", "n": "20"}
-    finding = sure("port_broken", why="could not open /home/ana/x")
+    finding = sure_finding("port_broken", why="could not open /home/ana/x")
     assert report.values_of(finding) == {"why": "…"}
-    finding = sure("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")
+    finding = sure_finding("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")
     assert report.values_of(finding) == {"ports": "COM3, /dev/cu.usbserial…"}
     computer = Computer(
         "darwin", (ListedPort("/dev/cu.usbserial-A50285BI", "FT232 of ANA"),),

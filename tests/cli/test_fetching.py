@@ -220,7 +220,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
-    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEPS[2:])
+    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:])
     before, _, after = person.seen.partition(second)
     shown = before.rpartition(first)[2]
     assert after and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"

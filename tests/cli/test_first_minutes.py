@@ -16,7 +16,7 @@ from tests.support.link_events import event
 from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested_command
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, ValueCatcher, requested_command
 from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
@@ -111,7 +111,7 @@ def test_time_ends_to_the_millisecond(hurry: float) -> None:
     """The robot stands then, whatever its firmware still does, and says nothing more."""
     transports = Transports()
     simulator = Simulator(robot_in(), transports, hurry)
-    simulator.lasts_ms = 1500
+    simulator.duration_ms = 1500
     robot = simulator.robot
     Talk(robot).upload("SI|LOOP(FOREVER);F(0.3, 80);SHOW(1);END_LOOP", is_detached=True)
     assert robot.started_ms is not None
@@ -350,7 +350,7 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
     known = LiveState(robots.load("tinibot").kit)
     for before in (0, 1, 2):  # of the program's own, by chance
-        catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
+        catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
             assert catch.hold(ShownEvent(value, 0))
         assert catch.hold(DoneEvent(1))
@@ -368,14 +368,14 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
 
     known = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
-        catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
+        catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         assert not catch.hold(show(7))
         told: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
         assert [catch.hold(each) for each in told] == [True, True, False]
         catch.hold(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
-    catch = Catch(("X",), known, EventPrinter("en"), says_done=False)
+    catch = ValueCatcher(("X",), known, EventPrinter("en"), prints_done=False)
     for each in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
         catch.hold(each)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
@@ -383,7 +383,7 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [
-        bookkeeping.hides_trace(what, values)
+        bookkeeping.filter_trace_event(what, values)
         for what, values in (
             ("START", ()), ("SHOW", (1,)), ("SHOW", (BOOKKEEPING_MARK,)), ("SHOW", (5000,)),
             ("MOTORS", (0, 0)), ("DONE", ()), ("START", ()), ("SHOW", (5000,)),

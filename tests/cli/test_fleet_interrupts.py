@@ -102,7 +102,7 @@ def test_after_ctrl_c_nothing_starts(
         room.starts = room.starts or room.counted()
         room.pressed.set()
 
-    monkeypatch.setattr(Fleet, "_refuse_unread", press)
+    monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt", interrupted)
     done = inside("upload", "-e", ENDLESS, "--all").gives(2)
     assert room.pressed.is_set()
@@ -127,17 +127,18 @@ class Watched:
         self.presses_s = [*presses_s]
         self.stopped: list[float] = []  # when each robot was told
         monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
-        monkeypatch.setattr(streams, "drop_unread", lambda: None)
+        monkeypatch.setattr(streams, "drop_unread_output", lambda: None)
         options = Namespace(verb="upload", detach=True, json=False)
         self.fleet = Fleet([], options, robots.load("tinibot"), "en")
         for port in "12":
             member = Member(Target(port, "", True, True), deque())
             member.connection = cast(Any, SimpleNamespace(
-                interrupt=lambda: self.stopped.append(self.now_s), line=SimpleNamespace(robot=None)
+                interrupt=lambda: self.stopped.append(self.now_s),
+                connection=SimpleNamespace(robot=None),
             ))  # fmt: skip
             self.fleet.members.append(member)
         news = SimpleNamespace(wait=self.passes, clear=lambda: None)
-        monkeypatch.setattr(self.fleet, "_news", news)
+        monkeypatch.setattr(self.fleet, "_result_bell", news)
 
     def passes(self, seconds: float = LOOK_INTERVAL_S) -> None:
         assert self.now_s < 300, "it never ends"
@@ -158,12 +159,13 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
         times = [5.0]
         for _ in range(presses):
             times.append(
-                times[-1] + chance.uniform(LOOK_INTERVAL_S, opening.CONFIRM_S - LOOK_INTERVAL_S)
+                times[-1]
+                + chance.uniform(LOOK_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - LOOK_INTERVAL_S)
             )
         room = Watched(monkeypatch, times[:presses])
-        limit_s = opening.CONFIRM_S + 1
+        limit_s = opening.CONFIRM_TIMEOUT_S + 1
         if how == "stop":  # nobody can read the output: that is as a first Ctrl-C
-            room.presses_s, limit_s = times[1:presses], opening.CONFIRM_S
+            room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with not_passed_on():
                 room.fleet.stop()

@@ -188,34 +188,34 @@ def plain(canvas: Canvas) -> list[str]:
 ])  # fmt: skip
 def test_a_character_has_eight_dots(dot: tuple[int, int], seen: str) -> None:
     canvas = Canvas(1, 1)
-    canvas.lines([dot, dot])
+    canvas.draw_lines([dot, dot])
     assert plain(canvas) == [seen]
 
 
 def test_a_line_goes_from_dot_to_dot() -> None:
     canvas = Canvas(3, 2)
-    canvas.lines([(0, 0), (5, 0), (5, 7)])
+    canvas.draw_lines([(0, 0), (5, 0), (5, 7)])
     assert plain(canvas) == ["⠉⠉⢹", "  ⢸"]
 
 
 def test_what_lies_outside_is_not_drawn() -> None:
     canvas = Canvas(2, 1)
-    canvas.lines([(-9, 1), (90, 1)])
-    canvas.lines([(0, -5), (0, -1)])
-    canvas.lines([(0, 4), (3, 9)])
+    canvas.draw_lines([(-9, 1), (90, 1)])
+    canvas.draw_lines([(0, -5), (0, -1)])
+    canvas.draw_lines([(0, 4), (3, 9)])
     assert plain(canvas) == ["⠒⠒"]
 
 
 def test_a_line_that_is_too_long_to_be_drawn_whole_ends_soon() -> None:
     canvas = Canvas(2, 1)
-    canvas.lines([(0, 0), (10**12, 0)])
+    canvas.draw_lines([(0, 0), (10**12, 0)])
     assert plain(canvas) == ["⠁ "]
 
 
 def test_a_copy_is_another_canvas() -> None:
     canvas = Canvas(1, 1)
     copied = canvas.copy()
-    copied.lines([(0, 0), (0, 0)])
+    copied.draw_lines([(0, 0), (0, 0)])
     assert plain(canvas) == [" "]
     copied.clear()
     assert plain(copied) == [" "]
@@ -223,8 +223,8 @@ def test_a_copy_is_another_canvas() -> None:
 
 def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -> None:
     top, below = Canvas(3, 1), Canvas(3, 1)
-    top.lines([(0, 0), (0, 0)])
-    below.lines([(0, 3), (3, 3)])
+    top.draw_lines([(0, 0), (0, 0)])
+    below.draw_lines([(0, 3), (3, 3)])
     [line] = merge_layers([(top, "red"), (below, "blue")])
     assert line.plain == "⣁⣀ "
     assert [(span.start, span.end, span.style) for span in line.spans] == [

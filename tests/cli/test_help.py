@@ -161,7 +161,7 @@ def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
     )
     assert "no_port_here" in done.err and done.code == 3
     for option in OPTIONS:
-        assert set(option.silent.split()) <= set(option.verbs.split()), option
+        assert set(option.silent_verbs.split()) <= set(option.verbs.split()), option
 
 
 def test_every_command_is_a_module_and_every_module_a_command() -> None:

@@ -26,7 +26,7 @@ from tiniscript.bytecode import image as images
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
-from tiniscript.library.source_map import Map
+from tiniscript.library.source_map import SourceMap
 from tiniscript.link import keys, known_ports, met_robots
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.keys import BadKeys, KeyFile
@@ -105,7 +105,7 @@ KEPT = {
         given,
     ),
     "maps": Kept(
-        lambda number: source_map.remember(program(number), Map(LONG, (), ())),
+        lambda number: source_map.remember(program(number), SourceMap(LONG, (), ())),
         found_maps,
         source_map,
     ),

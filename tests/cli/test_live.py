@@ -10,7 +10,7 @@ from tests.support.command import Done
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript import robots
-from tiniscript.cli.robot.live_state import LiveState, Value, open_ends
+from tiniscript.cli.robot.live_state import LiveState, LiveValue, missing_ends
 
 KIT = robots.load("tinibot").kit
 
@@ -140,37 +140,42 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     ("// LOOP(2)", ""),
 ])  # fmt: skip
 def test_which_ends_are_missing(text: str, ends: str) -> None:
-    assert open_ends(text) == ends
+    assert missing_ends(text) == ends
 
 
 def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
     known = LiveState(KIT)
-    known.values = {"X": Value(5000, False), "Y": Value(1, True), "Z": Value(-1500, False)}
+    known.values = {
+        "X": LiveValue(5000, False),
+        "Y": LiveValue(1, True),
+        "Z": LiveValue(-1500, False),
+    }
     known.defs = {"HOP": "DEF HOP; F(1, Z); SKIP; END_DEF", "SKIP": "DEF SKIP; W(X); END_DEF"}
     known.defs = dict(sorted(known.defs.items(), reverse=True))  # what is called stands first
-    line = known.line("HOP", 55)
-    assert line.compiled.is_right
-    assert line.compiled.program is not None
-    assert line.compiled.program.variables == ("X", "Z")
-    assert line.shown == ()
-    line = known.line("SI|Y = NOT Y", 55)
-    assert line.shown == ("Y",)
-    assert line.compiled.source.text.strip() == "Y = NOT Y"
-    assert known.line("Y = NOT Y", 5).forgets
+    line = known.compile_line("HOP", 55)
+    assert line.compilation.is_right
+    assert line.compilation.program is not None
+    assert line.compilation.program.variables == ("X", "Z")
+    assert line.shown_variables == ()
+    line = known.compile_line("SI|Y = NOT Y", 55)
+    assert line.shown_variables == ("Y",)
+    assert line.compilation.source.text.strip() == "Y = NOT Y"
+    assert known.compile_line("Y = NOT Y", 5).loses_values
 
 
 def test_mistakes_and_warnings_are_those_of_the_line() -> None:
     known = LiveState(KIT)
-    known.values = {"X": Value(5000, False)}
-    line = known.line("X = X + 1; F(X 2)", 55)
-    (diagnostic,) = line.compiled.diagnostics
+    known.values = {"X": LiveValue(5000, False)}
+    line = known.compile_line("X = X + 1; F(X 2)", 55)
+    (diagnostic,) = line.compilation.diagnostics
     assert diagnostic.code.number == "TS017"
-    assert line.compiled.source.text[: diagnostic.span.start].endswith("F(X")
-    assert line.compiled.source.position(diagnostic.span.start)[0] == 1
-    assert known.line("A = 5", 55).compiled.diagnostics == []
-    assert known.line("DEF A; S; END_DEF", 55).compiled.diagnostics == []
-    (warning,) = known.line("LOOP(FOREVER); X = 1; END_LOOP", 55).compiled.diagnostics
+    assert line.compilation.source.text[: diagnostic.span.start].endswith("F(X")
+    assert line.compilation.source.position(diagnostic.span.start)[0] == 1
+    assert known.compile_line("A = 5", 55).compilation.diagnostics == []
+    assert known.compile_line("DEF A; S; END_DEF", 55).compilation.diagnostics == []
+    (warning,) = known.compile_line("LOOP(FOREVER); X = 1; END_LOOP", 55).compilation.diagnostics
     assert warning.code.number == "TS804"
     assert [
-        diagnostic.code.number for diagnostic in known.line("SHOW(NEW)", 55).compiled.diagnostics
+        diagnostic.code.number
+        for diagnostic in known.compile_line("SHOW(NEW)", 55).compilation.diagnostics
     ] == ["TS103"]

@@ -110,7 +110,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     assert inside("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.open_port(last.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
-        short.setattr(opening, "STOP_BUSY_S", 0.5)
+        short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
             done = inside("stop", *options, "--json")
             rows = results(done)
@@ -227,12 +227,12 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
-    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_LIMIT_S", 1.0)
+    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
     monkeypatch.setattr(ports, "list_ports", list)
-    monkeypatch.setattr(opening, "ANSWER_MS", 1000)
+    monkeypatch.setattr(opening, "ANSWER_TIMEOUT_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     inside("doctor", "--identify", "--all").gives(
         3, "Done: 4 of 5.", out=f"R9 ({known}): nothing responds"
@@ -306,7 +306,7 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
         fleet.members[1].result = Result(False, "stopped")
 
     if when == "_news":
-        monkeypatch.setattr(fleet._news, "wait", press)
+        monkeypatch.setattr(fleet._result_bell, "wait", press)
     else:
         monkeypatch.setattr(fleet, when, press)
     monkeypatch.setattr(fleet, "interrupt", interrupt)

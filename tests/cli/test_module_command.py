@@ -15,7 +15,7 @@ from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.waiting import until
 from tiniscript.cli.texts.causes import sentences_of
-from tiniscript.doctor.findings import CAUSES, WRONG, sure
+from tiniscript.doctor.findings import CAUSES, WRONG, sure_finding
 from tiniscript.link.modules import set_up, talk
 from tiniscript.link.ports import open_port
 
@@ -99,7 +99,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     with PtyEnd(end) as pty_end:
         done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert done.code == 3
-    silent = sentences_of(sure("module_silent"), "en")
+    silent = sentences_of(sure_finding("module_silent"), "en")
     assert f"WRONG  module: {silent.finding}\n" in done.out and silent.advice in done.out
     assert done.err == ""
 

@@ -16,7 +16,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import choosers_of, command_of, options_of
+from tiniscript.cli.texts.options import command_of, options_of, selecting_options_of
 from tiniscript.cli.texts.verbs import (
     COMMANDS,
     FORMER_COMMANDS,
@@ -97,7 +97,9 @@ def wrong_in(command: str) -> str | None:
     if heads and name == words[0] and re.fullmatch("[a-z]+", "".join(words[1:2])):
         return words[1]  # `tsc set` has its steps by a word
     known = {
-        flag for option in [*options_of(name), *choosers_of(name)] for flag in option.flags.split()
+        flag
+        for option in [*options_of(name), *selecting_options_of(name)]
+        for flag in option.flags.split()
     }
     flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
     given = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
@@ -227,7 +229,7 @@ def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
     for command in COMMANDS:
         verb, *words = command_words(command).split()
         assert command_of(verb, words)[0] == command
-        for flag in STEPS[command].choosers if command in STEPS else ():
+        for flag in STEPS[command].selecting_flags if command in STEPS else ():
             head = STEPS[command].head.split()[1:]
             assert command_of(verb, [*head, f"{flag}=x"])[0] == command
             assert command_of(verb, [*head, "--", flag])[0] != command

@@ -238,7 +238,9 @@ def printed(text: str, is_json: bool) -> tuple[str, str]:
     rows = io.StringIO()
     writer = csv.writer(rows, lineterminator="\n")
     add = lambda *cells: writer.writerow(cells)  # noqa: E731
-    printer = EventPrinter("en", is_json, rows=add, print_line=said.append, print_error=said.append)
+    printer = EventPrinter(
+        "en", is_json, add_row=add, print_line=said.append, print_error=said.append
+    )
     printer.tell(5, TextEvent(text.encode("utf-8", "surrogateescape")))
     return "\n".join(said), rows.getvalue()
 

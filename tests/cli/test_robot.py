@@ -35,7 +35,7 @@ def test_a_port_that_another_program_uses_is_said(
 ) -> None:
     import serial
 
-    monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
+    monkeypatch.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
         on(pty_robot, "stop").gives(3, "another program holds", "did not get through")
     assert pty_robot.heard == b""
@@ -199,7 +199,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
 ) -> None:
     from serial import SerialException
 
-    monkeypatch.setattr("tiniscript.library.opening.BUSY_LIMIT_S", 0)
+    monkeypatch.setattr("tiniscript.library.opening.BUSY_TIMEOUT_S", 0)
     for failure, word in (
         (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
         (SerialException(16, "Device or resource busy"), "another program"),

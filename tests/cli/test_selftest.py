@@ -32,7 +32,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.conversation import ANSWER_AGAIN, Conversation, NoPerson
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
-from tiniscript.library.simulated import Simulated
+from tiniscript.library.simulated import SimulatedRobot
 from tiniscript.link.messages import RESETS
 from tiniscript.link.ports import open_port
 
@@ -184,7 +184,7 @@ def test_only_the_port_of_the_self_test_is_opened(
 ) -> None:
     """The board of another group may be on the only other port: nobody has chosen it."""
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
-    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
+    monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
         done = inside("doctor", "--selftest", "--json").gives(3)
@@ -385,7 +385,7 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
     robot = robot_in(name="tinibot2", eeprom_us=0)
     if number is not None:
         Flicker(robot, number, 20)
-    running = Simulated(robot, HURRY)
+    running = SimulatedRobot(robot, HURRY)
     try:
         done = inside(
             "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"
@@ -439,11 +439,11 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
     did: list[str] = []
     typed = iter(["1\n"] * answers)
     monkeypatch.setattr(Conversation, "run_line", lambda _, line: did.append(line))
-    monkeypatch.setattr("tiniscript.cli.terminal.asking.answer", lambda _: next(typed, ""))
+    monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed, ""))
     ways: list[Callable[[Conversation], object]] = [
-        lambda talk: talk.lift(),
-        lambda talk: talk.answer("ask_free", name="X", values=""),
-        lambda talk: talk.choice("ask_learn", 2),
+        lambda talk: talk.ask_to_lift(),
+        lambda talk: talk.ask("ask_free", name="X", values=""),
+        lambda talk: talk.ask_choice("ask_learn", 2),
         lambda talk: talk.turn_motor("left"),
         lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]

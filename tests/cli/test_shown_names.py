@@ -17,7 +17,7 @@ from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.terminal.plot import STYLES, Plot
-from tiniscript.library.events import Reader
+from tiniscript.library.events import EventReader
 from tiniscript.link.outcomes import ShownEvent
 
 LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
@@ -107,8 +107,8 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
     table: list[tuple[object, ...]] = []
     found = compiled(text)
     printer = EventPrinter(
-        "en", places=mapped(found), program=checksum(found.image), print_line=said.append,
-        rows=lambda *cells: table.append(cells),
+        "en", program_map=mapped(found), checksum=checksum(found.image), print_line=said.append,
+        add_row=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):
         printer.tell(0, event(text, number))
@@ -119,10 +119,10 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
 
 def test_the_library_names_values() -> None:
     found = compiled("SHOW(DISTANCE)")
-    reader = Reader()
+    reader = EventReader()
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0, program=5))
     assert robot_event and dict(robot_event.values) == {"value": 2}
-    reader.maps[checksum(found.image)] = mapped(found)
+    reader.map_by_checksum[checksum(found.image)] = mapped(found)
     robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0))
     assert robot_event and dict(robot_event.values) == {
         "value": 2,

@@ -90,7 +90,7 @@ def test_a_stop_waits_for_a_port_longer_than_others(
             raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line
 
-    monkeypatch.setattr(opening, "_open_line", open_line)
+    monkeypatch.setattr(opening, "_open_connection", open_line)
     if is_patient:
         assert opening.connection_to("/dev/ttyUSB7", verb, 9600, 1) is line
     else:
@@ -176,7 +176,7 @@ def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRo
     holder = Command(pty_robot.port, code=LOCKS)
     holder.until("locked")
     heard = pty_robot.heard
-    with mock.patch.object(opening, "STOP_BUSY_S", 0.2):
+    with mock.patch.object(opening, "STOP_BUSY_TIMEOUT_S", 0.2):
         on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
     assert pty_robot.heard == heard and pty_robot.moves
     suspended(holder)
@@ -240,7 +240,7 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
     def busy(*_: object, **__: object) -> PortConnection:
         raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
 
-    monkeypatch.setattr(opening, "_open_line", busy)
+    monkeypatch.setattr(opening, "_open_connection", busy)
     with pytest.raises(RobotError) as failed:
         opening.connection_to("/dev/ttyUSB7", "stop", 9600, 1)
     said = str(failed.value)

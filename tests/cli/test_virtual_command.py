@@ -234,7 +234,11 @@ def colours(data: bytes) -> dict[str, int]:
         assert image.size == (1200, 1143)  # the floor, 220 cm x 200 cm, its margins and the foot
         pixels: Any = image.convert("RGB").getcolors(image.width * image.height)
     found = {}
-    for name, colour in (("way", picture.WAY), ("box", picture.BOX), ("robot", picture.ROBOT)):
+    for name, colour in (
+        ("way", picture.WAY_COLOUR),
+        ("box", picture.BOX_COLOUR),
+        ("robot", picture.ROBOT_COLOUR),
+    ):
         wanted = bytes.fromhex(colour[1:])
         found[name] = sum(  # the borders of lines are mixed
             count for count, pixel in pixels

@@ -23,7 +23,7 @@ from tiniscript.cli.robot import connect
 from tiniscript.cli.terminal import progress
 from tiniscript.flash import avrdude
 from tiniscript.flash.bootloaders import UNO
-from tiniscript.flash.ready import Ready
+from tiniscript.flash.ready import ReadyFile
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.link.requests import DeviceInfo
@@ -41,7 +41,7 @@ def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
 def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A port on which nobody is; the computer soon gives up."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
-    monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 200)
+    monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 200)
     with PtyEnd(Nobody()) as end:
         yield end.port
 
@@ -76,7 +76,7 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
         return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
-    made = Ready("tinibot", "uno", "1", Path("x"))
+    made = ReadyFile("tinibot", "uno", "1", Path("x"))
     assert firmware._write_firmware([], UNO, "/dev/x", made, "en").outcome == avrdude.DONE
 
 
@@ -93,7 +93,7 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
-    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 500)
+    monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 500)
     real = connect.Connection.meet
 
     def meet(self: connect.Connection) -> DeviceInfo:
@@ -112,7 +112,7 @@ def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks_on(monkeypatch)
-    monkeypatch.setattr(opening, "CONFIRM_S", 0.3)
+    monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
     done = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
     assert done.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
 
@@ -124,7 +124,7 @@ def test_waits_without_news_are_one_silence(
     now_s = 0.0
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    quiet = progress.Quiet("waits", is_seen=True)
+    quiet = progress.RepeatedWaitNotice("waits", is_seen=True)
 
     def waits(count: int, each_s: float) -> str:
         nonlocal now_s
@@ -133,12 +133,12 @@ def test_waits_without_news_are_one_silence(
             end_s = now_s + each_s
             while now_s < end_s:
                 now_s += 0.1
-                quiet.look()
+                quiet.poll()
         return capsys.readouterr().err
 
     assert waits(19, 0.1) == ""
     assert waits(100, 0.3) == "waits\n"
-    quiet.note_news()
+    quiet.restart()
     assert waits(50, 0.3) == ""  # once
     now_s += 1  # somebody types
     assert waits(1, 1.8) == "" and waits(2, 1.8) == "waits\n"
@@ -148,7 +148,7 @@ def test_a_bar_is_not_full_before_all_is_done(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(progress, "BLINK_INTERVAL_S", 0.0)
+    monkeypatch.setattr(progress, "DRAW_DELAY_S", 0.0)
     bar = progress.Progress("en", 200)
     for done in range(201):
         bar.draw(done)
@@ -202,7 +202,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
     """Even where the moment is over at the same time."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANGS_S)
-    silence = progress.Silence("waits")
+    silence = progress.WaitNotice("waits")
     silence.cancel()
     silence._print_wait()
     assert capsys.readouterr().err == "" and not silence.is_told

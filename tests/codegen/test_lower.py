@@ -8,14 +8,14 @@ from __future__ import annotations
 import pytest
 
 from tests.support.rows import each_row
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import rows
 
 KIT = robots.load("tinibot").kit
 
 
-def compiled(text: str) -> Compiled:
+def compiled(text: str) -> Compilation:
     found = compile_text(text, KIT)
     assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
     return found

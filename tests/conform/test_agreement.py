@@ -30,21 +30,21 @@ def answered() -> list[tuple[Run, list[str]]]:
 
 def pace_of(run: Run) -> Pace:
     (times,) = {*run.slow.values()} or {(1, 0, 0)}
-    return Pace(run.when[1][0], tuple(run.slow), *times)
+    return Pace(run.schedule[1][0], tuple(run.slow), *times)
 
 
 # -- the machine in C++ -------------------------------------------------------------------------
 
 
 def run_by_host(run: Run) -> str:
-    request = run_request(run.image, run.kit, run.inputs, begin_ms=run.when[0])
+    request = run_request(run.image, run.kit, run.senses, begin_ms=run.schedule[0])
     return ran(host().ask(b"P", pace_of(run).packed(run.kit) + request).decode()).trace
 
 
 def run_by_avr(chip: str, run: Run) -> str:
     pace = pace_of(run)
     return avr.ran_on(
-        chip, run.image, run.kit, run.inputs, pace=pace, begin_ms=run.when[0]
+        chip, run.image, run.kit, run.senses, pace=pace, begin_ms=run.schedule[0]
     ).trace  # fmt: skip
 
 
@@ -52,7 +52,7 @@ def run_by_wasm(run: Run) -> str:
     from tiniscript.vm.wasm import WasmImage
 
     machine = WasmImage(run.image, run.kit).machine
-    return trace_at(pace_of(run), machine, run.image, run.kit, run.inputs)
+    return trace_at(pace_of(run), machine, run.image, run.kit, run.senses)
 
 
 CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it has one
@@ -82,7 +82,7 @@ def test_a_machine_in_cpp_agrees(name: str) -> None:
 
 
 def is_for(name: str, run: Run, answer: list[str]) -> bool:
-    begin_ms, every_ms = run.when
+    begin_ms, every_ms = run.schedule
     if answer[-1].startswith("REFUSED") or len(every_ms) > 1:
         return False
     if name in avr.BUILT:
@@ -104,7 +104,7 @@ def test_the_oracles_say_the_same() -> None:
     spec.refuses_only = True
     judges = Counter[str]()
     for run, answer in answered():
-        if run.text and len(run.when[1]) == 1 and not run.name.startswith(UNREAD):
+        if run.text and len(run.schedule[1]) == 1 and not run.name.startswith(UNREAD):
             judges["interpreter"] += 1
             assert judged(run).splitlines() == answer, run.name
         elif answer[0].startswith("REFUSED") or not run.needs:
@@ -124,8 +124,8 @@ def judged(run: Run) -> str:
         period_ms, from_ms, to_ms = run.slow.get(sensor, (1, 0, 0))
         return from_ms <= now_ms % period_ms < to_ms
 
-    readings, max_ms, max_steps, seed = run.inputs
-    (every_ms,) = run.when[1]
+    readings, max_ms, max_steps, seed = run.senses
+    (every_ms,) = run.schedule[1]
     return interpreter.run(
         run.text, oracle_kit(run.kit), readings, max_ms, max_steps, seed, is_slow, every_ms
     )

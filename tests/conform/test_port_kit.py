@@ -148,7 +148,7 @@ def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
     with asked(pty_robot, lambda frame: frame) as robot:
         greet(robot)
-        robot.answer_ms = 10
+        robot.answer_timeout_ms = 10
         assert isinstance(robot.wire, ChangedWire)
         robot.wire.change = lambda frame: None
         found = list(verdicts(robot, all_checks(link_test_suite())))
@@ -199,7 +199,7 @@ def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said:
                                    monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
     from tiniscript.cli.commands import conform
 
-    monkeypatch.setattr(conform, "RADIO_MS", 50)
+    monkeypatch.setattr(conform, "RADIO_TIMEOUT_MS", 50)
     with server(serve) as port:
         done = tsc("doctor", "--conform", "--port", port)
     assert done.code == 3

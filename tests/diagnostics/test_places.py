@@ -8,7 +8,7 @@ import re
 import pytest
 
 from tests.diagnostics.test_rendering import KIT, LANGUAGES, gaps
-from tiniscript import Compiled, check_text
+from tiniscript import Compilation, check_text
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
@@ -132,7 +132,7 @@ def some_characters(dice: random.Random) -> str:
     return "".join(chr(dice.randint(*dice.choice(ranges))) for _ in range(dice.choice((1, 5, 300))))
 
 
-def is_told_well(found: Compiled) -> None:
+def is_told_well(found: Compilation) -> None:
     """Check all that is true of the messages for any text."""
     text, source = found.source.text, found.source
     for diagnostic in found.diagnostics:

@@ -13,7 +13,7 @@ from tests.support.simulated_wire import SimulatedWire
 from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
-from tiniscript.doctor.line import Line, diagnose_line
+from tiniscript.doctor.line import PortFacts, diagnose_line
 from tiniscript.link.modules.talk import find_module
 
 WORDS = (
@@ -70,7 +70,7 @@ def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> N
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
         findings = diagnose_line(
-            wire, Line(9600, is_radio, 1), Expectations(None, "", lambda kit: None)
+            wire, PortFacts(9600, is_radio, 1), Expectations(None, "", lambda kit: None)
         )
         assert findings and {finding.cause for finding in findings} <= set(CAUSES)
         assert wire.now_ms < LONGEST_MS
@@ -95,4 +95,4 @@ def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int
     system.owners["/dev/x"] = (20, True)
     told = diagnosis.inspect_computer(system)
     assert told.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
-    diagnosis.access(system, "/dev/x")
+    diagnosis.port_access(system, "/dev/x")

@@ -28,7 +28,7 @@ def test_a_computer_without_anything(linux: FakeComputer) -> None:
     assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: nothing is known of USB
     linux.usb("usb1", "1d6b", "0002")  # its own hub
     found = diagnosis.inspect_computer(linux)
-    assert (found.adapters, found.bluetooth, found.paired) == ((), NONE, ())
+    assert (found.adapters, found.bluetooth, found.paired_names) == ((), NONE, ())
     assert found.has_module is False
 
 
@@ -45,7 +45,7 @@ def test_an_adapter_with_and_without_its_driver(
     assert (adapter.chip, adapter.driver, adapter.has_port) == (chip, "", False)
     linux.usb("1-1", vendor, product, driver="some", tty="ttyUSB0")
     (adapter,) = diagnosis.inspect_computer(linux).adapters or ()
-    assert adapter == Adapter(chip, adapter.wants, "some", True)
+    assert adapter == Adapter(chip, adapter.wanted_driver, "some", True)
 
 
 def test_an_adapter_that_brltty_has_taken(linux: FakeComputer) -> None:
@@ -61,14 +61,14 @@ def test_bluetooth_of_linux(linux: FakeComputer) -> None:
     linux.write("/sys/class/rfkill/rfkill1/type", "wlan")
     linux.write("/sys/class/rfkill/rfkill1/soft", "1")
     found = diagnosis.inspect_computer(linux)
-    assert (found.bluetooth, found.paired, found.has_module) == (ON, None, None)
+    assert (found.bluetooth, found.paired_names, found.has_module) == (ON, None, None)
     linux.outputs["bluetoothctl", "paired-devices"] = "Device 98:D3:31:F5:00:01 HC-05\n"
     assert diagnosis.inspect_computer(linux).has_module is True
     linux.outputs["bluetoothctl", "devices", "Paired"] = (
         "Device 98:D3:31:F5:00:01 Telephone of Ana\nnonsense\n"
     )
     found = diagnosis.inspect_computer(linux)
-    assert (found.paired, found.has_module) == (("Telephone of Ana",), False)
+    assert (found.paired_names, found.has_module) == (("Telephone of Ana",), False)
     linux.write("/sys/class/rfkill/rfkill0/type", "bluetooth")
     linux.write("/sys/class/rfkill/rfkill0/hard", "1")
     assert diagnosis.inspect_computer(linux).bluetooth == OFF
@@ -79,15 +79,15 @@ def test_who_may_use_a_port_and_who_does(linux: FakeComputer) -> None:
     linux.write(port, "")
     linux.write("/etc/group", "root:x:0:\ndialout:x:20:ana\nbroken\n")
     linux.owners[port] = (20, False)
-    assert diagnosis.access(linux, port) == computer.Access(False, "dialout", False, ())
+    assert diagnosis.port_access(linux, port) == computer.Access(False, "dialout", False, ())
     linux.user_name = "ana"
-    assert diagnosis.access(linux, port).is_joined
+    assert diagnosis.port_access(linux, port).is_joined
     linux.owners[port] = (20, True)
     linux.group_numbers = {20}
     linux.program(5, "minicom", opens="/dev/ttyUSB1")
-    assert diagnosis.access(linux, port) == computer.Access(True, "dialout", False, ())
+    assert diagnosis.port_access(linux, port) == computer.Access(True, "dialout", False, ())
     linux.program(6, "ModemManager", opens=port)
-    assert diagnosis.access(linux, port).users == ("ModemManager",)
+    assert diagnosis.port_access(linux, port).using_programs == ("ModemManager",)
 
 
 def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> None:
@@ -96,11 +96,11 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     linux.owners[port] = (20, True)
     linux.program(812, "screen")
     linux.write("/run/lock/LCK..ttyUSB0", "       812\n")
-    assert diagnosis.access(linux, port).users == ("screen",)
+    assert diagnosis.port_access(linux, port).using_programs == ("screen",)
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # it has ended
-    assert diagnosis.access(linux, port).users == ()
+    assert diagnosis.port_access(linux, port).using_programs == ()
     for other in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert diagnosis.access(linux, other) == computer.FREE_ACCESS
+        assert diagnosis.port_access(linux, other) == computer.FREE_ACCESS
 
 
 # -- macOS and Windows --------------------------------------------------------------------------
@@ -149,7 +149,7 @@ def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
     system.write(port, "")
     system.owners[port] = (0, True)
     system.outputs["lsof", "-F", "c", port] = "p812\ncArduino IDE\nf7\n"
-    assert diagnosis.access(system, port) == computer.Access(True, "", False, ("Arduino IDE",))
+    assert diagnosis.port_access(system, port) == computer.Access(True, "", False, ("Arduino IDE",))
 
 
 PNPUTIL = ("pnputil", "/enum-devices", "/connected")
@@ -171,7 +171,7 @@ def test_windows_in_any_language(tmp_path: Path) -> None:
     )
     found = diagnosis.inspect_computer(system)
     assert found.adapters == (Adapter("CH340", "", "", True),)
-    assert (found.bluetooth, found.paired, found.has_module) == (ON, ("HC-05",), True)
+    assert (found.bluetooth, found.paired_names, found.has_module) == (ON, ("HC-05",), True)
     system.outputs[(*PNPUTIL, "/problem")] = CH340_HERE
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = "No devices were found.\n"
     found = diagnosis.inspect_computer(system)

@@ -17,7 +17,7 @@ from tests.support.foreign_boards import FIRMATA
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import sentences_of
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
+from tiniscript.doctor.diagnosis import Diagnosis, DoctorServices, Question, diagnose
 from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.robot import MOST_UNANSWERED
@@ -132,7 +132,9 @@ class Case:
         def share(name: str) -> AbstractContextManager[LinkConnection]:
             return nullcontext(cast(LinkConnection, self.watched))
 
-        doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
+        doors = DoctorServices(
+            self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share
+        )
         question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
         return diagnose(doors, question)
 
@@ -375,7 +377,7 @@ def test_a_robot_that_may_be_another_one_is_asked_nothing_more(case: Case, cause
         places.append(port)
         return cause
 
-    case.expected = case.expected._replace(doubts=doubts)
+    case.expected = case.expected._replace(doubt_of=doubts)
     (finding,) = case.diagnosis(RADIO).findings
     assert (finding.cause, finding.values) == (cause, {"id": "12347f3a"})
     assert places == [RADIO] and finding.is_wrong

@@ -21,7 +21,7 @@ from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding
-from tiniscript.doctor.line import BAUDS, Line, diagnose_line
+from tiniscript.doctor.line import BAUDS, PortFacts, diagnose_line
 from tiniscript.doctor.robot import WireRobot
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
@@ -56,7 +56,7 @@ def found(
     """Return what is found; `its_key` is the id of the robot whose key the computer has."""
     wire = SimulatedWire(end, baud)
     expected = Expectations(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
-    findings = diagnose_line(wire, Line(baud, is_radio, 4711), expected)
+    findings = diagnose_line(wire, PortFacts(baud, is_radio, 4711), expected)
     if is_radio:
         assert {speed for speed, _ in wire.sent} == {baud}
         assert wire.restarts == 0
@@ -155,7 +155,7 @@ def test_a_report_tells_what_a_robot_can_do(features: int, said: str) -> None:
     robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
     reply, noted = robot.hello(), dict[str, str]()
     assert reply is not None
-    list(examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, note=noted.update), 0))
+    list(examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_facts=noted.update), 0))
     assert noted["features"] == said
 
 
@@ -307,7 +307,7 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
 
     wire = Deaf(Babble(speed), BAUDS[0])
     expected = Expectations(None, "tinibot", NAMES.get)
-    (finding,) = diagnose_line(wire, Line(BAUDS[0], False, 4711), expected)
+    (finding,) = diagnose_line(wire, PortFacts(BAUDS[0], False, 4711), expected)
     assert finding.cause == "garbled"
 
 
@@ -418,4 +418,4 @@ def test_a_wire_that_is_gone_is_an_os_error() -> None:
     wire = SimulatedWire(Firmware())
     wire.close()
     with pytest.raises(OSError):
-        diagnose_line(wire, Line(9600, False, 1), Expectations(None, "", NAMES.get))
+        diagnose_line(wire, PortFacts(9600, False, 1), Expectations(None, "", NAMES.get))

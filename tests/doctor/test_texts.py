@@ -35,7 +35,9 @@ VALUES = {
 
 
 # Of a part that is looked at whole nothing more is seen; several causes may have one next step.
-OF_A_PART = [value for value, row in CAUSES.items() if row.then or (row.verdict == OK and row.part)]
+OF_A_PART = [
+    value for value, row in CAUSES.items() if row.next_key or (row.verdict == OK and row.part)
+]
 
 
 def sentences(cause: str, *kinds: str) -> Iterator[str]:
@@ -80,9 +82,9 @@ def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
 
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known = {f"found_{cause}" for cause in CAUSES}
-    known |= {f"next_{row.then or cause}" for cause, row in CAUSES.items()}
+    known |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
     known -= {f"next_{cause}" for cause in OF_A_PART}
-    known |= {f"next_{CAUSES[cause].then}" for cause in OF_A_PART if CAUSES[cause].then}
+    known |= {f"next_{CAUSES[cause].next_key}" for cause in OF_A_PART if CAUSES[cause].next_key}
     known |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
     for kind in ("found", "seen", "next"):  # those of other boards are in a catalogue of their own
         known -= {f"{kind}_{cause}" for cause in foreign.NAMES}

@@ -103,8 +103,8 @@ def test_the_virtual_robot_says_and_draws_it(
     assert [event.text for event in events][-len(said) - 1 :] == [*said, "STOP"]
     picture = Picture(profile, "en")
     for event in events:
-        if event.what != "START":
+        if event.kind != "START":
             picture.take(event)
     assert picture.settings == drawn == robot.actuators
     robot.press()
-    assert not [event for event in robot.take_events() if event.what in ("SET", "RELEASE")]
+    assert not [event for event in robot.take_events() if event.kind in ("SET", "RELEASE")]

@@ -166,7 +166,7 @@ WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
 def test_it_goes_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
     """The fault is that of the wheel. The next program is as straight as the first one."""
     robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
-    held = robot.wheels.both[1]
+    held = robot.wheels.wheels[1]
     with robot.uno:
         with mock.patch.object(held, "step", lambda has_two: 0.0):
             assert robot.drive("F(60 CM, 80)") == "FAULT"
@@ -214,12 +214,12 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
         pending_request = robot.session.ping()
         flicker(uno, hertz, 350, robot.run)  # wheels that show no edge are stuck later
         assert pending_request.outcome and pending_request.outcome.status == OK
-        assert not any(event.what in ("reset", "watchdog") for event in uno.events[begun:])
+        assert not any(event.kind in ("reset", "watchdog") for event in uno.events[begun:])
         assert [uno.pins[pin].state for pin in MOTORS] == ["pwm", "pwm"]
         begun = len(uno.events)
         uno.send(b"STOP\r")
         flicker(uno, hertz, 20, uno.run_ms)
-        ended = [event.cycle for event in uno.events[begun:] if event.what == "received"][-1]
+        ended = [event.cycle for event in uno.events[begun:] if event.kind == "received"][-1]
         for motor in MOTORS:
             change = uno.pins[motor]
             assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS
@@ -242,6 +242,9 @@ def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
             robot.uno.sonar(*eye, distance_cm)
             robot.run(milliseconds)
             seen.append(
-                tuple((wheel.wanted > 0) - (wheel.wanted < 0) for wheel in robot.wheels.both)
+                tuple(
+                    (wheel.wanted_speed > 0) - (wheel.wanted_speed < 0)
+                    for wheel in robot.wheels.wheels
+                )
             )
     assert seen == [(1, 1), (-1, -1), (1, -1), (1, 1)]

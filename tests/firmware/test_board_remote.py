@@ -13,11 +13,11 @@ import pytest
 from tiniscript import robots
 from tiniscript.link.remote import NOTHING_PRESSED
 from tools.bench.keys import (
-    AT_ONCE,
-    HELD_MOST_MS,
-    LET_GO_MOST_MS,
-    LOST_MOST_MS,
+    MOST_HELD_MS,
+    MOST_LET_GO_MS,
+    MOST_LOST_MS,
     PAD_AHEAD,
+    PAD_PROGRAM,
     Hand,
 )
 
@@ -31,8 +31,8 @@ def test_what_a_hand_holds_reaches_the_motors(
     sketch_name: str, sketches: Callable[[str], Path]
 ) -> None:
     """Also what it lets go; and a lost line lets all go."""
-    with Hand(sketches(sketch_name), BAUD, AT_ONCE) as hand:
+    with Hand(sketches(sketch_name), BAUD, PAD_PROGRAM) as hand:
         for _ in range(TRIES):
-            assert 0 < hand.change(PAD_AHEAD) <= HELD_MOST_MS[BAUD]
-            assert 0 < hand.change(NOTHING_PRESSED) <= LET_GO_MOST_MS[BAUD]
-        assert 0 < hand.lose() <= LOST_MOST_MS
+            assert 0 < hand.change(PAD_AHEAD) <= MOST_HELD_MS[BAUD]
+            assert 0 < hand.change(NOTHING_PRESSED) <= MOST_LET_GO_MS[BAUD]
+        assert 0 < hand.lose() <= MOST_LOST_MS

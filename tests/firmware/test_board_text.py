@@ -18,7 +18,7 @@ from tests.support.platformio import copied, pio
 from tiniscript import robots
 from tiniscript.flash import building
 from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
-from tools.generate.packed_texts import pack
+from tools.generate.packed_texts import pack_texts
 from tools.generate.remark_tables import rows
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -153,8 +153,8 @@ def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -
 def test_an_uno_has_the_texts_that_it_can_say(sketch: Path) -> None:
     """The reasons of a DEF, other levels and discs take no flash."""
     firmware = sketch.read_bytes()
-    assert pack(rows("en", is_small=True)).texts in firmware
-    assert pack(rows("en")).texts not in firmware
+    assert pack_texts(rows("en", is_small=True)).texts in firmware
+    assert pack_texts(rows("en")).texts not in firmware
 
 
 @pytest.mark.sampled(of="long ways of a chip")
@@ -168,7 +168,7 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
         for each in (language, other):
-            assert (pack(rows(each)).texts in elf.read_bytes()) == (each == language)
+            assert (pack_texts(rows(each)).texts in elf.read_bytes()) == (each == language)
         with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
             mega.run_ms(300)
             assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]

@@ -7,17 +7,17 @@ from struct import pack
 import pytest
 
 from tools.bench import avr_bench, workloads
-from tools.bench.machine import BUDGET
+from tools.bench.machine import JUMP_BUDGET
 from tools.bench.workloads import Work, code_of
 
-pytestmark = pytest.mark.skipif(bool(avr_bench.missing()), reason=avr_bench.missing())
+pytestmark = pytest.mark.skipif(bool(avr_bench.why_missing()), reason=avr_bench.why_missing())
 
 
 def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
     """Return what a Mega shows, and the cycles of all ticks."""
     code = code_of(work)
     readings = work.thousandths
-    request = pack(f"<BB{len(readings)}iH", BUDGET, len(readings), *readings, len(code)) + code
+    request = pack(f"<BB{len(readings)}iH", JUMP_BUDGET, len(readings), *readings, len(code)) + code
     program = avr_bench.build("cycles", avr_bench.SOURCES, *flags, chip="atmega2560")
     *shown, count, _ = avr_bench.run(program, request, "atmega2560")
     return shown, int(count.split()[1])

@@ -43,7 +43,7 @@ class Driven:
     def __init__(self, profile: Robot, motors: tuple[float, float], major: int = 2) -> None:
         board = profile.board
         assert board.discs
-        self.has_two = discs_of(board.discs).has_two
+        self.has_two = discs_of(board.discs).has_two_channels
         self.robot = Esp32Robot(profile, major=major)
         self.session = Session(1, board.baud, profile.kit.fingerprint)
         self._kit = profile.kit
@@ -59,7 +59,7 @@ class Driven:
     @property
     def pose(self) -> Pose:
         self.wheels.go_on(self.robot.now_ms)
-        return self._driving.go_on(self.robot.now_ms)
+        return self._driving.advance_to(self.robot.now_ms)
 
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
@@ -68,9 +68,11 @@ class Driven:
             powers = zip(map(int, driven.split()[2:]), self._motors, strict=True)
             self.wheels.set(self.robot.now_ms, *(power * part / 100 for power, part in powers))
             for number, side in enumerate(("left", "right")):
-                wheel = self.wheels.both[number]
-                while self._counted[number] != wheel.counted:
-                    self._step(number, side, 1 if wheel.counted > self._counted[number] else -1)
+                wheel = self.wheels.wheels[number]
+                while self._counted[number] != wheel.counted_edges:
+                    self._step(
+                        number, side, 1 if wheel.counted_edges > self._counted[number] else -1
+                    )
 
     def _step(self, number: int, side: str, step: int) -> None:
         self._counted[number] += step
@@ -118,10 +120,10 @@ def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> Non
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None:
     driven = Driven(SLOTTED, (100, 100))
-    driven.wheels.both[number].is_seen = False
+    driven.wheels.wheels[number].has_working_sensor = False
     event = driven.drive("F(20 CM, 60)")
     assert event.name == "FAULT" and event.fault == (5, 6)[number]
-    assert not any(wheel.wanted for wheel in driven.wheels.both)
+    assert not any(wheel.wanted_speed for wheel in driven.wheels.wheels)
 
 
 def test_a_counter_that_is_full_begins_again() -> None:

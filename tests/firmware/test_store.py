@@ -24,7 +24,7 @@ from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
+    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
 )
 
 # Bytes of code, or records; and the stride of the cuts in saves.

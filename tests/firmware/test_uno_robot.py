@@ -12,7 +12,7 @@ from tests.support.owners import Keys
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
 from tiniscript.library import source_map
-from tiniscript.library.shows import Finder
+from tiniscript.library.shows import ShowFinder
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
 from tiniscript.link.outcomes import Event, ShownEvent
@@ -91,7 +91,7 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     assert wired.until(wired.session.undo()) == OK
     wired.run(500)
     written = [
-        event.cycle for event in uno.events if event.what == "eeprom" and event.cycle > begun
+        event.cycle for event in uno.events if event.kind == "eeprom" and event.cycle > begun
     ]
     assert len(written) == 13
     assert written[-1] - written[0] < 60 * CYCLES_PER_MS
@@ -278,7 +278,7 @@ def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     found = compile_text(SHOWS, KIT)
     places, wired = source_map.map_of_compiled(found), computer(uno)
-    finder = Finder({checksum(found.image): places})
+    finder = ShowFinder({checksum(found.image): places})
     assert wired.until(wired.session.upload(unpack(found.image))) == OK
     events: list[Event] = []
     while not any(event.name == "DONE" for event in events):

@@ -14,7 +14,7 @@ import pytest
 
 from tiniscript import robots
 from tools.bench.firmware_stack import LEAST_FREE, measure
-from tools.bench.stops import Busy, Place, sample
+from tools.bench.stops import BusyRobot, Place, sample
 from tools.uno import CYCLES_PER_MS
 
 MOST_CYCLES = 12 * CYCLES_PER_MS // 1000
@@ -40,19 +40,19 @@ def test_a_stop_is_at_the_pins_in_12_us(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     robot = robots.load(name)
-    with Busy(
+    with BusyRobot(
         sketches(environment), robot, environment.partition("_")[0], robot.board.baud
     ) as stopped:
         places = sample(stopped, COUNT, SEED)
         if stopped.has_echo:
-            places += [Place(places[0].at, echo, True) for echo in ECHO_AT_BEST]
+            places += [Place(places[0].cycle, echo, True) for echo in ECHO_AT_BEST]
         for place in places:
             cycles = stopped.stop(place)
             assert 0 < cycles <= MOST_CYCLES, place
-        together = stopped.together()
+        together = stopped.worst_case_cycles()
     with capsys.disabled():
         slowest_us, together_us = (
-            each / CYCLES_PER_MS * 1000 for each in (max(stopped.cycles), together)
+            each / CYCLES_PER_MS * 1000 for each in (max(stopped.stop_cycles), together)
         )
         print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
     assert together <= MOST_CYCLES + more_cycles

@@ -45,7 +45,7 @@ def marks(uno: Uno, since: int) -> list[int]:
     return [
         event.cycle
         for event in uno.events
-        if event.what == "eeprom" and event["address"] in places and event["value"] not in (0, 255)
+        if event.kind == "eeprom" and event["address"] in places and event["value"] not in (0, 255)
         if event.cycle >= since
     ]
 
@@ -145,7 +145,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
             shown += [event.value for event in wired.session.events()
                       if event.name == "SHOW"]  # fmt: skip
         assert wired.session.is_running
-        kept = [event for event in uno.events if event.what == "eeprom" and event.cycle > begun]
+        kept = [event for event in uno.events if event.kind == "eeprom" and event.cycle > begun]
         left = [
             pin_change.cycle
             for pin_change in uno.pins.history("trigger")

@@ -103,7 +103,7 @@ def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
         hung(uno, limit_ms=WATCHDOG_MS)
         uno.run_ms(500)
-        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
         assert answered(uno) == (UNKNOWN, 0, 0)
         assert states(uno) == OFF
@@ -114,7 +114,7 @@ def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
         hung(uno, limit_ms=TIMER_MS)
         uno.run_ms(700)
-        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
         assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
@@ -126,7 +126,7 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
         hung(uno, limit_ms=TIMER_MS)
         uno.run_ms(1000)
-        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
         assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
@@ -138,7 +138,7 @@ def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_
         hung(uno, limit_ms=WATCHDOG_MS)
         began = len(uno.events)
         uno.run_ms(300)
-        causes = {event["cause"] for event in uno.events[began:] if event.what == "reset"}
+        causes = {event["cause"] for event in uno.events[began:] if event.kind == "reset"}
         assert causes == {"watchdog"}
         assert not is_on(uno)
         uno.reset("power-on")

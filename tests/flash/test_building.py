@@ -65,11 +65,11 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert first.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
-    kept = ready.files(ready.cache())
+    kept = ready.files(ready.firmware_cache())
     assert [(each.title, each.board) for each in kept] == [("mine", "uno")]
     again = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
     assert (again.code, again.err) == (0, "")
-    assert again.out == f"mine on uno: ready, {kept[0].bytes:,} bytes\n"
+    assert again.out == f"mine on uno: ready, {kept[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
@@ -109,7 +109,7 @@ def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_ou
     sources = building.sources()
     assert sources is not None
     for name in robots.names():
-        for robot in (robots.load(name), *firmware_build.on_boards(name, "en")):
+        for robot in (robots.load(name), *firmware_build.robots_on_boards(name, "en")):
             board, has_discs = robot.board.chip, robot.board.discs is not None
             if board in building.ENVIRONMENT_WITH_BREAKPOINTS and not has_discs:
                 assert sources.digest(robot, True) != sources.digest(robot)
@@ -135,7 +135,7 @@ def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -
         assert "no longer reads typed lines of text" in done.err
         assert done.out.startswith("tinibot on uno: ready, ")
         variables = {}  # PlatformIO could build nothing now
-    assert [each.title for each in ready.files(ready.cache())] == ["tinibot_breakpoints"]
+    assert [each.title for each in ready.files(ready.firmware_cache())] == ["tinibot_breakpoints"]
     assert "tinibot on uno: not built yet" in tsc(clone, "--list").out
 
 
@@ -165,8 +165,8 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     folder = clone / "tiniscript" / "flash" / "ready"
     folder.mkdir()
     digest = building.Sources(source_bytes(clone)).digest(robots.load("tinibot"))
-    (folder / ready.name_of("tinibot", "uno", digest)).write_text(":00000001FF\n")
-    (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
+    (folder / ready.file_name_of("tinibot", "uno", digest)).write_text(":00000001FF\n")
+    (folder / ready.file_name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
     assert rows[0] == "tinibot on uno: ready, 0 bytes"
     assert rows[1].startswith("tinibot on nano: not built yet")
@@ -180,7 +180,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
 def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
     monkeypatch: pytest.MonkeyPatch, titles: list[str], spanish: str | None, english: str | None
 ) -> None:
-    files = [ready.Ready(title, "nano", "1", Path(title)) for title in titles]
+    files = [ready.ReadyFile(title, "nano", "1", Path(title)) for title in titles]
     monkeypatch.setattr(building, "sources", lambda: None)
     monkeypatch.setattr(ready, "files", lambda: files)
     for language, wanted in (("es", spanish), ("en", english)):
@@ -213,9 +213,9 @@ ROW = ":0400000001020304F2\n"
     ("<p>no file</p>", False),
 ])  # fmt: skip
 def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
-    folder = ready.cache()
+    folder = ready.firmware_cache()
     folder.mkdir(parents=True)
-    (folder / ready.name_of("mine", "uno", "12")).write_text(text)
+    (folder / ready.file_name_of("mine", "uno", "12")).write_text(text)
     assert (ready.find("mine", "uno", "12") is not None) == whole
     assert ready.find("mine", "uno", "13") is None
     assert len(ready.files(folder)) == whole
@@ -223,11 +223,11 @@ def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
 
 def test_the_cache_does_not_grow_for_ever() -> None:
     for number in range(ready.MOST_FILES + 5):
-        kept = ready.keep("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
+        kept = ready.store("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
         os.utime(kept.path, ns=(number, number))
-    found = ready.files(ready.cache())
+    found = ready.files(ready.firmware_cache())
     assert len(found) == ready.MOST_FILES and found[-1].digest == f"{ready.MOST_FILES + 4:016x}"
-    assert {path.suffix for path in ready.cache().iterdir()} == {".hex"}
+    assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
 
 
 # -- with a PlatformIO that says what it is told
@@ -268,8 +268,8 @@ def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
     done = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
     done.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
     log = Path(done.err.split()[-1])
-    assert log.parent == ready.cache() and "Installing atmelavr" in log.read_text()
-    assert not ready.files(ready.cache())
+    assert log.parent == ready.firmware_cache() and "Installing atmelavr" in log.read_text()
+    assert not ready.files(ready.firmware_cache())
 
 
 @pytest.mark.sampled("body", "said", keep=2)
@@ -292,7 +292,7 @@ def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written
     done = built(clone, pretending(tmp_path, TOO_LARGE))
     done.gives(2, "does not fit on", "33000 > 32256", out="")
     assert "upgrade" not in done.err
-    assert not ready.files(ready.cache())
+    assert not ready.files(ready.firmware_cache())
 
 
 @pytest.mark.parametrize(
@@ -311,13 +311,13 @@ make(name, ":00000001FF\\n")
     words = ("--chip", chip, "--lang", "es")
     done = built(clone, pretending(tmp_path, body), *words).gives(0)
     assert done.err.count(f"queda {lacks}") == 1, done
-    assert len(list(ready.cache().glob("*.hex"))) == 1
+    assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":0400")'
     built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
-    assert not list(ready.cache().glob("*.hex"))
+    assert not list(ready.firmware_cache().glob("*.hex"))
 
 
 @pytest.mark.sampled("end", keep=2)
@@ -328,7 +328,7 @@ def test_a_build_that_does_not_end_well_has_made_nothing(
     """Whatever file is there then."""
     body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
     built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
-    assert not list(ready.cache().glob("*.hex"))
+    assert not list(ready.firmware_cache().glob("*.hex"))
 
 
 def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
@@ -339,7 +339,7 @@ def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
         variables[f"PLATFORMIO_{name}"] = "other"
     variables["PLATFORMIO_CORE_DIR"] = "kept"
     built(clone, variables)
-    seen = (ready.cache() / "build.log").read_text().split()[1:]
+    seen = (ready.firmware_cache() / "build.log").read_text().split()[1:]
     assert "PLATFORMIO_CORE_DIR" in seen and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in seen
     assert not [name for name in seen if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
 
@@ -357,7 +357,7 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
         text=True,
     )
     assert completed.returncode == 2
-    log = (ready.cache() / "build.log").read_text()
+    log = (ready.firmware_cache() / "build.log").read_text()
     assert "my own" not in log and "serial" in log
 
 
@@ -374,7 +374,7 @@ def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.Mo
     def held(path: object, **_: object) -> None:
         raise OSError(errno.EBUSY, "held", path)
 
-    with building._folder() as folder:
+    with building._temporary_folder() as folder:
         monkeypatch.setattr(os, "rmdir", held)
     monkeypatch.undo()
     folder.rmdir()

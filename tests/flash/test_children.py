@@ -65,7 +65,7 @@ def is_over(process: int) -> bool:
 @pytest.mark.parametrize("way", WAYS)
 def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
     end, look, failure = WAYS[way]
-    monkeypatch.setattr(children, "KILLED_AFTER_S", 0.2)
+    monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one
         noted = tmp_path / f"{round_}"
         words = ["sh", "-c", PARENT.format(end), "sh", str(noted)]

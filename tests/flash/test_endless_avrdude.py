@@ -55,13 +55,13 @@ def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
 
 def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is never silent, and its time is over all the same."""
-    monkeypatch.setattr(avrdude, "RUN_LIMIT_S", 1.0)
+    monkeypatch.setattr(avrdude, "RUN_TIMEOUT_S", 1.0)
     body = 'import time\nwhile True: print(".", flush=True); time.sleep(0.02)\n'
     assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
 def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(avrdude, "EXIT_LIMIT_S", 0.1)
+    monkeypatch.setattr(avrdude, "EXIT_TIMEOUT_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
     assert ended(tmp_path, body)[0].outcome == avrdude.ENDLESS
 

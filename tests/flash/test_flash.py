@@ -30,7 +30,7 @@ from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
-from tiniscript.flash.ready import Ready
+from tiniscript.flash.ready import ReadyFile
 from tiniscript.robots.profile import answer_languages
 from tools import CannotMake
 from tools.bench import firmware_size
@@ -150,7 +150,7 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
         uno.go()
         tsc(package, "--port", uno.pty).gives(3, f"no bootloader responds on {uno.pty}", "HC-05")
         uno.pause()
-        assert not [event for event in uno.events if event.what == "crash"]
+        assert not [event for event in uno.events if event.kind == "crash"]
 
 
 def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:
@@ -255,7 +255,7 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(avrdude, "write", write)
-    firmware = Ready("tinibot", "uno", "0", Path("x.hex"))
+    firmware = ReadyFile("tinibot", "uno", "0", Path("x.hex"))
     with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
         firmware_command._write_firmware(["x"], UNO, "x", firmware, "en")
     assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
@@ -312,7 +312,7 @@ def test_the_avrdude_of_another_program_is_found(
 ])  # fmt: skip
 def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
     for code in (1, 255, -9, -15):  # also where it was ended from outside
-        assert avrdude.outcome(code, said).outcome == how
+        assert avrdude.result_of(code, said).outcome == how
 
 
 def test_every_end_has_its_sentence() -> None:
@@ -395,7 +395,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
         ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")
     ]  # fmt: skip
     for each in files:
-        assert f"{each.title} on {each.board}: ready, {each.bytes:,} bytes" in done.out
+        assert f"{each.title} on {each.board}: ready, {each.flash_bytes:,} bytes" in done.out
     assert "liner on nano: not built yet" in done.out
 
 

@@ -9,9 +9,9 @@ import pytest
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import (
     BAR_MARKS,
-    NOBODY_LIMIT_S,
-    RUN_LIMIT_S,
-    SILENCE_LIMIT_S,
+    NO_ANSWER_TIMEOUT_S,
+    RUN_TIMEOUT_S,
+    SILENCE_TIMEOUT_S,
     StepProgress,
     WriteResult,
 )
@@ -59,7 +59,7 @@ def watched(
         passed_s = clock.now_s - began_s
         try:
             watch("".join(part for at_s, part in parts if at_s <= passed_s))
-        except avrdude._Ended as over:
+        except avrdude._GivenUp as over:
             return over.result, passed_s
         clock.now_s += LOOK_S
     percents = [each.percent + 100 * (each.phase == avrdude.READING) for each in seen if each]
@@ -71,23 +71,23 @@ def watched(
 def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
     """A Mega, and one that is as slow as may be, with pauses that are nearly too long."""
     rng = random.Random(seed)
-    parts = output(rng, rng.choice((10, MEGA_S, 200)), NOBODY_LIMIT_S - 1)
+    parts = output(rng, rng.choice((10, MEGA_S, 200)), NO_ANSWER_TIMEOUT_S - 1)
     assert watched(clock, parts, parts[-1][0] + 1) == (None, parts[-1][0] + 1)
 
 
 @pytest.mark.parametrize("seed", range(40))
 def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
-    parts = output(rng, MEGA_S, NOBODY_LIMIT_S - 1)
+    parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
     some = parts[: rng.randrange(len(parts) - 1)]
     last_s = some[-1][0] if some else 0.0
-    how, at_s = watched(clock, some, RUN_LIMIT_S + 1)
+    how, at_s = watched(clock, some, RUN_TIMEOUT_S + 1)
     assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
-    limit_s = SILENCE_LIMIT_S if len(some) > 1 else NOBODY_LIMIT_S
+    limit_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
 
 
 def test_what_only_says_something_ends(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
-    how, at_s = watched(clock, parts, RUN_LIMIT_S + 10)
-    assert how == WriteResult(avrdude.ENDLESS) and at_s < RUN_LIMIT_S + 2 * LOOK_S
+    how, at_s = watched(clock, parts, RUN_TIMEOUT_S + 10)
+    assert how == WriteResult(avrdude.ENDLESS) and at_s < RUN_TIMEOUT_S + 2 * LOOK_S

@@ -17,8 +17,8 @@ from tests.support.needs import need
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
-from tools.bench.firmware_size import SMALLER, environments
-from tools.builds.platformio_offline import ARDUINO, BOARDS, DEBIAN
+from tools.bench.firmware_size import SMALLER_ENVIRONMENTS, environments
+from tools.builds.platformio_offline import ARDUINO, BOARDS, DEBIAN_PACKAGES
 
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
 
@@ -123,7 +123,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER, "native"}
+    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board
@@ -167,7 +167,7 @@ def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
 def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
     """The bootloader's section is that of its high fuse, whatever the bootloader takes of it."""
     path = ARDUINO / "boards.txt"
-    need("" if path.exists() else f"{DEBIAN[ARDUINO]} is not installed")
+    need("" if path.exists() else f"{DEBIAN_PACKAGES[ARDUINO]} is not installed")
     rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", path.read_text("utf-8"), re.M))
     flash, least = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[rows["build.mcu"]]
     section = least << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)

@@ -41,7 +41,7 @@ SOURCES = sources()
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str, name: str) -> None:
     """And each translation is of the English text that is there now."""
-    found = languages.entries(name, language)
+    found = languages.merged_catalogue(name, language)
     assert found.problems == []
     assert [at for at, entry in found.entries.items() if entry.translation and entry.is_stale] == []
     assert [at for at, entry in found.entries.items() if entry.seen_hash == UNKNOWN_HASH] == [], (
@@ -59,7 +59,7 @@ def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
     own = Translation(language, sources())
     was = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
     assert [path for path, problems in own.problems() if problems] == []
-    assert [*own.follow()] == []
+    assert [*own.follow_moved_texts()] == []
     own.folder = tmp_path
     own.write()
     for path in tmp_path.iterdir():
@@ -135,7 +135,7 @@ def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]
 
 @pytest.mark.parametrize("language", languages.languages())
 def test_each_robot_can_say_its_texts_and_each_row_of_a_lexicon_is_known(language: str) -> None:
-    assert [*check_robot(languages.entries("robot", language))] == []
+    assert [*check_robot(languages.merged_catalogue("robot", language))] == []
     assert [*check_lexicon(language)] == []
 
 

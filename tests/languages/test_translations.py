@@ -80,10 +80,10 @@ def opened(place: Path, own: str | None = None, seen: bool = False) -> Translati
     """Return what `xx` has, as the tool sees it; `seen`: of the English texts of now."""
     if own is not None:
         write(place / "xx" / "some.toml", own)
-    english = {"some": catalogue_source.load(place / SOURCE_LANGUAGE / "some.toml")}
+    english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if seen:
-        translation.see([])
+        translation.note_seen([])
         translation.write()
     return translation
 
@@ -130,7 +130,7 @@ def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
         assert said("a") == "Read {file}."
     before = (place / "xx" / "some.toml").read_text().splitlines()
     again = opened(place)
-    assert [*again.follow()] == []
+    assert [*again.follow_moved_texts()] == []
     again.write()
     after = (place / "xx" / "some.toml").read_text().splitlines()
     assert sorted(after) == sorted(before), "it keeps what somebody must mend"
@@ -175,7 +175,7 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     write(place / "xx" / SEEN_FILE, row)
     own = opened(place, OWN)
     assert problems(own) == [(SEEN_FILE, line, why)]
-    own.see(["*"])
+    own.note_seen(["*"])
     own.write()
     assert (place / "xx" / SEEN_FILE).read_text() == row
 
@@ -217,9 +217,9 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         for each in ("some.toml", SEEN_FILE, ABOUT_FILE):
             (folder / each).write_bytes(data)
         language = read_language(folder / ABOUT_FILE)
-        assert len(language.form_of) == NUMBERS_TRIED
+        assert len(language.form_digits) == NUMBERS_TRIED
         read_seen(folder / SEEN_FILE)
-        english = catalogue_source.load(folder / "some.toml")
+        english = catalogue_source.load_catalogue(folder / "some.toml")
         merge_translations(
             english, "some", read_translation_file(folder / "some.toml"), {}, language
         )
@@ -299,7 +299,7 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
     opened(place, seen=True)
     assert said("b") == "Stop now.", "somebody has run the tool for others"
-    assert own.see(["x*", "b"]) == ["x*"]
+    assert own.note_seen(["x*", "b"]) == ["x*"]
     own.write()
     assert said("b") == "Alto."
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
@@ -316,7 +316,7 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     write(place / SOURCE_LANGUAGE / "some.toml", moved)
     if has_run:
         own = opened(place)
-        assert [*own.follow()] == []
+        assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
             'more = ["", "Ponlo.", "", "Quítalo."]\n'
@@ -343,7 +343,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     opened(place, seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
     own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
-    assert [*own.follow()] == ["some.toml: goes"]
+    assert [*own.follow_moved_texts()] == ["some.toml: goes"]
     own.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
@@ -353,7 +353,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
     assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
     again = opened(place)
-    assert [*again.follow()] == []
+    assert [*again.follow_moved_texts()] == []
     again.write()
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen
 
@@ -364,7 +364,7 @@ def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
         own = opened(place, spoilt, seen=True)
-        assert [*own.follow()] == []
+        assert [*own.follow_moved_texts()] == []
         own.write()
         assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen[:60])
         kept = (place / "xx" / "some.toml").read_text(encoding="utf-8")
@@ -417,7 +417,7 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
-    read, _, wrong = catalogue_source.rows(rows + plural)
+    read, _, wrong = catalogue_source.parse_rows(rows + plural)
     assert wrong == []
     assert {row.key: row.value for row in read} == {
         key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
@@ -441,9 +441,9 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
-    english = languages.table(SOURCE_LANGUAGE, "lexicon.txt")
+    english = languages.read_table(SOURCE_LANGUAGE, "lexicon.txt")
     tables = {SOURCE_LANGUAGE: english, "fr": "\n".join(rows)}
-    monkeypatch.setattr("tools.languages.table", lambda language, _: tables[language])
+    monkeypatch.setattr("tools.languages.read_table", lambda language, _: tables[language])
     assert [*check_lexicon("fr")] == rows[1:5]
 
 
@@ -485,7 +485,7 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
         english_name,
         forms,
     )
-    assert "".join(language.form_of[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
+    assert "".join(language.form_digits[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
     before = {path: path.read_bytes() for path in (place / code).iterdir()}
     assert whole() == 0
@@ -757,13 +757,13 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     monkeypatch.chdir(tmp_path)
     english = tool.sources()
     before = Translation(language, english)
-    translators.give(Path("out.po"), before)
+    translators.write_file(Path("out.po"), before)
     shutil.copytree(FOLDER / SOURCE_LANGUAGE, tmp_path / "languages" / SOURCE_LANGUAGE)
     (tmp_path / "languages" / language).mkdir()
     for itself in (FOLDER / language).glob(ABOUT_FILE):
         shutil.copy(itself, tmp_path / "languages" / language)
     monkeypatch.setattr(translation_files, "FOLDER", tmp_path / "languages")
-    assert translators.take(Path("out.po"), Translation(language, english)) == 0
+    assert translators.read_file(Path("out.po"), Translation(language, english)) == 0
     after = Translation(language, english)
     for name in english:
         old, new = (translation.merge(name) for translation in (before, after))

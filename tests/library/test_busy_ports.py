@@ -20,12 +20,12 @@ from tiniscript.base.version import __version__
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError
-from tiniscript.library.opening import BUSY_LIMIT_S, RETRY_INTERVAL_S
+from tiniscript.library.opening import BUSY_TIMEOUT_S, RETRY_INTERVAL_S
 from tiniscript.link.errors import PortError
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
 
-SEARCH_S = 0.5 * BUSY_LIMIT_S, BUSY_LIMIT_S + 1, 10 * BUSY_LIMIT_S
+SEARCH_S = 0.5 * BUSY_TIMEOUT_S, BUSY_TIMEOUT_S + 1, 10 * BUSY_TIMEOUT_S
 
 
 class Place:
@@ -42,7 +42,7 @@ class Place:
         monkeypatch.setattr(opening, "_resolve_address", self.resolved)
         monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
         monkeypatch.setattr(opening, "_claim", lambda *_: None)
-        monkeypatch.setattr(opening, "_open_line", self.opened)
+        monkeypatch.setattr(opening, "_open_connection", self.opened)
 
     def pass_s(self, seconds: float) -> None:
         self.now_s += seconds
@@ -70,7 +70,7 @@ def test_a_port_that_is_free_soon_is_opened(
     """Its owner may be leaving: however long the search for it took."""
     rng = random.Random(seed)
     place = Place(
-        monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_LIMIT_S - RETRY_INTERVAL_S)
+        monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_TIMEOUT_S - RETRY_INTERVAL_S)
     )
     found: object = opening.connection_to(port, "upload", 9600, 1)
     assert found is place
@@ -82,12 +82,12 @@ def test_a_port_that_is_free_soon_is_opened(
 def test_a_port_that_stays_busy_is_said_to_be(
     monkeypatch: pytest.MonkeyPatch, port: str, search_s: float
 ) -> None:
-    place = Place(monkeypatch, search_s, 100 * BUSY_LIMIT_S)
+    place = Place(monkeypatch, search_s, 100 * BUSY_TIMEOUT_S)
     began_s = place.now_s + (search_s if port == PORTS[0] else 0)
     with pytest.raises(RobotError) as busy:
         opening.connection_to(port, "upload", 9600, 1)
     assert busy.value.reason == "port_busy"
-    assert BUSY_LIMIT_S < place.now_s - began_s < BUSY_LIMIT_S + 2 * RETRY_INTERVAL_S
+    assert BUSY_TIMEOUT_S < place.now_s - began_s < BUSY_TIMEOUT_S + 2 * RETRY_INTERVAL_S
     place.reason, place.tries = "port_gone", 0
     with pytest.raises(RobotError) as gone:
         opening.connection_to(port, "upload", 9600, 1)
@@ -173,7 +173,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         if sys.platform == "linux":
             assert len(list(Path("/proc/self/fd").iterdir())) == before, why
     monkeypatch.setattr(Client, "_share", lambda *_: None)
-    line = tried().line
+    line = tried().connection
     assert Device.opened[-1].is_open
     line.close()
 

@@ -10,7 +10,7 @@ import tiniscript
 from tests.support.command import inside
 from tiniscript import robots
 from tiniscript.bytecode.image import GO, TASKS
-from tiniscript.library.known_kits import missing_need
+from tiniscript.library.known_kits import missing_need_key
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read
 from tiniscript.studio import checking
@@ -54,17 +54,21 @@ def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_
 
 
 def test_what_is_lacking_has_a_text_of_its_own() -> None:
-    assert [missing_need(needs, robots.load("liner")) for needs in (0, TASKS, GO, TASKS | GO)] == [
+    liner = robots.load("liner")
+    assert [missing_need_key(needs, liner) for needs in (0, TASKS, GO, TASKS | GO)] == [
         "", "no_tasks", "", "no_tasks"]  # fmt: skip
-    assert [name for name in robots.names() if missing_need(TASKS, robots.load(name))] == ["liner"]
+    assert [name for name in robots.names() if missing_need_key(TASKS, robots.load(name))] == [
+        "liner"
+    ]
 
 
 @pytest.mark.parametrize("robot", robots.names())
 def test_all_robots_have_them(program: Path, robot: str) -> None:
     profile = robots.load(robot)
-    assert not missing_need(GO, profile)
+    assert not missing_need_key(GO, profile)
     assert (
-        missing_need(GO, profile._replace(kit=profile.kit._replace(speed=0, turn=0))) == "no_ways"
+        missing_need_key(GO, profile._replace(kit=profile.kit._replace(speed=0, turn=0)))
+        == "no_ways"
     )
     assert checking.check(TEXT.encode(), robot, "en").image
 

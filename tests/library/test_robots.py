@@ -261,7 +261,7 @@ def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
 def test_a_stop_that_nobody_confirms_is_an_error(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(opening, "CONFIRM_S", 0.5)
+    monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.5)
     robot = tiniscript.connect(pty_robot.port)
     with pytest.raises(tiniscript.StopNotConfirmed, match="batteries") as raised, robot:
         robot.upload(FOREVER)
@@ -287,7 +287,7 @@ class ToldEvents:
 
 def client_of(line: object) -> Client:
     client = Client.__new__(Client)
-    client.line = cast(LinkConnection, line)
+    client.connection = cast(LinkConnection, line)
     return client
 
 
@@ -321,7 +321,7 @@ def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience:
     """As long as he is patient."""
     left = iter([True] * patience + [False] * 9)
     client = client_of(line := StoppedAtFirst(stops))
-    client.port, client.language, client._heed = "P", "en", lambda: None
+    client.port, client.language, client._poll = "P", "en", lambda: None
     if patience >= stops:
         assert client.meet(is_patient=lambda: next(left)) is THE_ROBOT
         return
@@ -439,7 +439,7 @@ def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
 
 
 def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 300)
+    monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 300)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
     before = threading.active_count()

@@ -11,7 +11,7 @@ import pytest
 
 from tiniscript.cli.robot import run_monitor
 from tiniscript.library import client
-from tiniscript.library.client import LOW_VOLTAGE_LIMIT_S, SAVE_LIMIT_S, Saving
+from tiniscript.library.client import LOW_VOLTAGE_TIMEOUT_S, SAVE_TIMEOUT_S, Saving
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import OK, Reply
@@ -48,11 +48,11 @@ def status(saved: int) -> StatusReply:
 def waited(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> float:
     """Let the robot say, up to each of these times, how far it is; return how long it was asked."""
     began_s = clock.now_s
-    for _ in saving.rounds():
+    for _ in saving.polls():
         passed_s = clock.now_s - began_s
-        saving.learn(status(next(saved for until_s, saved in story if passed_s < until_s)))
+        saving.update(status(next(saved for until_s, saved in story if passed_s < until_s)))
         clock.now_s += LOOK_S
-        assert passed_s <= SAVE_LIMIT_S + LOOK_S, "it waits for ever"
+        assert passed_s <= SAVE_TIMEOUT_S + LOOK_S, "it waits for ever"
     return clock.now_s - began_s
 
 
@@ -60,17 +60,17 @@ def waited(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> floa
 def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
     story, at_s = [], 0.0
-    done_s = rng.uniform(LOW_VOLTAGE_LIMIT_S, SAVE_LIMIT_S - 1)
+    done_s = rng.uniform(LOW_VOLTAGE_TIMEOUT_S, SAVE_TIMEOUT_S - 1)
     is_low = rng.random() < 0.5
     while at_s < done_s:
         at_s += (
-            rng.uniform(0.1, LOW_VOLTAGE_LIMIT_S - 2 * LOOK_S)
+            rng.uniform(0.1, LOW_VOLTAGE_TIMEOUT_S - 2 * LOOK_S)
             if is_low
             else rng.uniform(2 * LOOK_S, 1.5)
         )
         story.append((min(at_s, done_s), SAVED_LOW_SUPPLY if is_low else SAVED_SAVING))
         is_low = not is_low
-    story.append((SAVE_LIMIT_S * 9, SAVED_STORED))
+    story.append((SAVE_TIMEOUT_S * 9, SAVED_STORED))
     first = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
     clock.now_s = rng.choice((0.0, 5.0, 1e6))
     saving = Saving(receipt(first))
@@ -89,12 +89,12 @@ def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, s
         story = [
             (dip_s, SAVED_LOW_SUPPLY),
             (good_s, SAVED_SAVING),
-            (SAVE_LIMIT_S * 9, SAVED_LOW_SUPPLY),
+            (SAVE_TIMEOUT_S * 9, SAVED_LOW_SUPPLY),
         ]
         assert (
-            good_s + LOW_VOLTAGE_LIMIT_S - LOOK_S
+            good_s + LOW_VOLTAGE_TIMEOUT_S - LOOK_S
             <= waited(clock, saving, story)
-            <= good_s + LOW_VOLTAGE_LIMIT_S + 4 * LOOK_S
+            <= good_s + LOW_VOLTAGE_TIMEOUT_S + 4 * LOOK_S
         )
         assert saving.reason == "low_supply"
         clock.now_s += rng.uniform(0, 20)
@@ -103,12 +103,12 @@ def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, s
 def test_what_is_never_saved_is_given_up(clock: Clock) -> None:
     saving = Saving(receipt(SAVED_SAVING))
     assert (
-        SAVE_LIMIT_S
-        <= waited(clock, saving, [(SAVE_LIMIT_S * 9, SAVED_SAVING)])
-        <= SAVE_LIMIT_S + LOOK_S
+        SAVE_TIMEOUT_S
+        <= waited(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_SAVING)])
+        <= SAVE_TIMEOUT_S + LOOK_S
     )
     assert saving.reason == "saves_later"
-    assert waited(clock, saving, [(SAVE_LIMIT_S * 9, SAVED_STORED)]) == pytest.approx(LOOK_S)
+    assert waited(clock, saving, [(SAVE_TIMEOUT_S * 9, SAVED_STORED)]) == pytest.approx(LOOK_S)
     assert saving.reason == ""
 
 
@@ -153,7 +153,7 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
         while clock.now_s < end_s:
             if len(line.asked) > 0 and line.asked[-1].outcome is None and rng.random() > late_s:
                 line.asked[-1].outcome = Reply(OK, 0, status(saved))
-            saving.look()
+            saving.poll()
             clock.now_s += LOOK_S
     assert told == [*wanted, "SAVED"]
     assert len(line.asked) <= 1 + clock.now_s / run_monitor.STATUS_INTERVAL_S

@@ -12,8 +12,8 @@ from tiniscript.base import files
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.library import source_map
-from tiniscript.library.shows import Finder, Show, Shows
-from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.library.shows import Show, ShowFinder, Shows
+from tiniscript.library.source_map import MapLocation, SourceMap
 from tiniscript.link.outcomes import ShownEvent
 
 
@@ -21,7 +21,7 @@ def shown(text: str) -> list[Show | None]:
     """Return the SHOW of each instruction that shows, in the order of the code."""
     found = compiled(text)
     shows = Shows(mapped(found))
-    return [shows.at(row.offset) for row in rows(found.code) if row.text.startswith("SHOW")]
+    return [shows.show_at(row.offset) for row in rows(found.code) if row.text.startswith("SHOW")]
 
 
 def names(text: str) -> list[str]:
@@ -74,9 +74,9 @@ def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
     places = tuple(MapLocation(k, *at) for k, at in enumerate(
         [(9, 1, 9, 5), (1, 1, 0, 0), (1, 1, 1, 5), (1, 6, 1, 9), (1, 1, 2, 3), (1, 90, 1, 99)]
     ))  # fmt: skip
-    shows = Shows(Map("", ("SHOW(X; é", "SHOW"), places))
-    assert [shows.at(k) for k in range(len(places) + 1)] == [None] * (len(places) + 1)
-    assert Shows(Map("", (), ())).at(0) is None
+    shows = Shows(SourceMap("", ("SHOW(X; é", "SHOW"), places))
+    assert [shows.show_at(k) for k in range(len(places) + 1)] == [None] * (len(places) + 1)
+    assert Shows(SourceMap("", (), ())).show_at(0) is None
 
 
 # -- of which program -----------------------------------------------------------------------------
@@ -95,7 +95,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_program_is_found_by_its_checksum_alone() -> None:
     mine, theirs = compiled("SHOW(DISTANCE)"), compiled("SHOW(LIGHT_R)")
     at = rows(mine.code)[-1].offset
-    finder = Finder({checksum(mine.image): mapped(mine)})
+    finder = ShowFinder({checksum(mine.image): mapped(mine)})
     assert finder.show_of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
     other = event(checksum(theirs.image), at, run=2)
     assert finder.show_of(other) is None, "nobody here has it"
@@ -103,7 +103,7 @@ def test_a_program_is_found_by_its_checksum_alone() -> None:
     assert finder.show_of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
     assert finder.show_of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
     assert finder.show_of(event(checksum(mine.image), -1)) is None
-    assert Finder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
+    assert ShowFinder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
 
 
 @pytest.mark.usefixtures("cache")
@@ -112,7 +112,7 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     assert first.image == second.image
     program, at = checksum(first.image), rows(first.code)[-1].offset
     maps = {program: mapped(first)}
-    finder = Finder(maps)
+    finder = ShowFinder(maps)
     names = [finder.show_of(event(program, at))]
     maps[program] = mapped(second)
     names += [finder.show_of(event(program, at)), finder.show_of(event(program, at, run=2))]
@@ -128,10 +128,10 @@ def test_a_value_is_called_so_whatever_was_shown_before() -> None:
     events = [event(checksum(program.image), at, run) for program in programs for run in (1, 2)]
     for before in product(events, repeat=2):
         for shown_last in events:
-            finder = Finder(known)
+            finder = ShowFinder(known)
             for shown_before in before:
                 finder.show_of(shown_before)
-            assert finder.show_of(shown_last) == Finder(known).show_of(shown_last), (
+            assert finder.show_of(shown_last) == ShowFinder(known).show_of(shown_last), (
                 before,
                 shown_last,
             )
@@ -142,8 +142,8 @@ def test_a_run_keeps_the_text_that_it_began_with() -> None:
     """Where its first value comes late, and where its number was that of another run."""
     texts = [compiled(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")]
     program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
-    maps: dict[int, Map] = {}
-    finder = Finder(maps)
+    maps: dict[int, SourceMap] = {}
+    finder = ShowFinder(maps)
     for run, found in enumerate(texts):
         maps[program] = mapped(found)
         finder.begin(run % 2, program)

@@ -11,23 +11,23 @@ import pytest
 
 from tests.oracle import programs
 from tests.support.kits import KITS
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.library import source_map
-from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.library.source_map import MapLocation, SourceMap
 from tiniscript.semantics.ir import Show
 
 KIT = robots.load("tinibot").kit
 
 
-def compiled(text: str) -> Compiled:
+def compiled(text: str) -> Compilation:
     found = compile_text(text, KIT, "drive.ts")
     assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
     return found
 
 
-def mapped(found: Compiled) -> Map:
+def mapped(found: Compilation) -> SourceMap:
     return source_map.map_of_compiled(found)
 
 
@@ -38,7 +38,7 @@ def located(text: str) -> list[tuple[str, str]]:
     for row in rows(found.code):
         place = [
             source_location
-            for source_location in found.places
+            for source_location in found.locations
             if source_location.offset <= row.offset
         ][-1]
         pairs.append((row.text.split()[0], found.source[place.span]))
@@ -106,10 +106,10 @@ def test_what_is_folded_away_has_no_place() -> None:
 def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
     text = "DEF A; S; END_DEF; LOOP(3); A; IF(DISTANCE < 5); BREAK; ENDIF; END_LOOP"
     found = compiled(text)
-    offsets = [place.offset for place in found.places]
+    offsets = [place.offset for place in found.locations]
     assert offsets == sorted(set(offsets)) and offsets[0] == 0
     assert set(offsets) <= {row.offset for row in rows(found.code)}
-    spans = [place.span for place in found.places]
+    spans = [place.span for place in found.locations]
     assert all(one != other for one, other in itertools.pairwise(spans))
 
 
@@ -118,7 +118,7 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
 
 def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
     found = mapped(compiled("S; F(1, 80); W(1)"))
-    columns = [None if (place := found.at(offset)) is None else place.column
+    columns = [None if (place := found.location_at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
     assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
     assert (found.line(0), found.line(1), found.line(2)) == ("", "S; F(1, 80); W(1)", "")
@@ -128,10 +128,12 @@ def test_a_map_is_written_as_json_writes_it() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
     places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
     for found in (
-        source_map.Map(text, (text, "", "S"), places, (text, "N"), (True, False)),
-        source_map.Map("", (), ()),
+        source_map.SourceMap(text, (text, "", "S"), places, (text, "N"), (True, False)),
+        source_map.SourceMap("", (), ()),
     ):
-        fields = {"version": source_map.VERSION, **found._asdict()}
+        keys = {"locations": "places", "yes_no_flags": "yes_no"}
+        values = {keys.get(name, name): value for name, value in found._asdict().items()}
+        fields = {"version": source_map.VERSION, **values}
         assert source_map.as_json(found) == json.dumps(fields, ensure_ascii=False)
 
 
@@ -167,7 +169,7 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
         oracle_kit, kit = KITS[seed % len(KITS)]
         text = programs.program(random.Random(seed), oracle_kit)
         found = compile_text(text, kit)
-        for name, is_yes_no in zip(found.variables, found.yes_no, strict=True):
+        for name, is_yes_no in zip(found.variables, found.yes_no_flags, strict=True):
             shown = compile_text(f"{text}\nSHOW({name})", kit)
             if shown.is_right:  # else it is a value of a DEF
                 assert shown.program
@@ -180,7 +182,7 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
         "TASK; GO(TRUE, 50); END_TASK; TASK; GO(DISTANCE < 9, 60); END_TASK; GO(FALSE, 70)"
     )
     assert found.variables == ("FAST", "SPEED") * 3
-    assert found.yes_no == (True, False) * 3
+    assert found.yes_no_flags == (True, False) * 3
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -216,7 +216,7 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
 
 
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP))
     inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer what tsc needs")
     bluez.add(Echo("echo", ADDRESS))

@@ -113,7 +113,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
 
 
 def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
 
     class Flood(Peripheral):
         def begin(self) -> None:

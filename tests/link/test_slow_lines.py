@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT
 from tiniscript.bytecode.image import Image, pack, unpack
-from tiniscript.library.client import PATIENCE_MS
+from tiniscript.library.client import REQUEST_TIMEOUT_MS
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import LOST
@@ -90,7 +90,7 @@ class Talk:
         assert hello.outcome and hello.outcome.status == OK
         self.sent_bytes = 0
         request = self.session.upload(program(code_bytes), runs=False)
-        request.limit_ms = PATIENCE_MS
+        request.limit_ms = REQUEST_TIMEOUT_MS
         status = self.wait(request)
         if status == OK:
             assert self.robot.held() == pack("SI", 0, program(code_bytes).code)
@@ -142,7 +142,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
     for code_bytes in (7000, 7000) if is_large else [380] * 6:
         before = wire.losses
         request = talk.session.upload(program(code_bytes), runs=False)
-        request.limit_ms = PATIENCE_MS
+        request.limit_ms = REQUEST_TIMEOUT_MS
         status = talk.wait(request)
         most = max(most, wire.losses - before)
         assert status == OK, most

@@ -79,12 +79,12 @@ def trace_at(pace: Pace, machine_of: MachineOf, image: bytes, kit: Kit, senses: 
         robot.was_slow = False
         status = machine.tick(robot.now_ms, BUDGET)
         if status in (DONE, FAULT):
-            robot.say(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
+            robot.record(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
         else:
             wake_ms = max(machine.wake_ms, robot.now_ms + robot.was_slow)
             robot.now_ms = -(-wake_ms // pace.every_ms) * pace.every_ms
             if robot.now_ms <= senses.max_ms:
                 continue
             robot.now_ms = senses.max_ms
-            robot.say("LIMIT", (), "LIMIT")
+            robot.record("LIMIT", (), "LIMIT")
         return "".join(f"{event}\n" for event in robot.events)

@@ -34,7 +34,7 @@ QUIET = ("-m", "16M", "-nodefaults", "-display", "none", "-serial", "none", "-mo
 
 def missing(name: str) -> str:
     """Return why there is no such chip, or nothing."""
-    return chips.missing(chips.CHIPS[name], can_run=True)
+    return chips.why_missing(chips.CHIPS[name], can_run=True)
 
 
 class Emulated(Process):
@@ -84,10 +84,10 @@ def built(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
     folders = [sources / each for each in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
     code = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
-    code.append(sources / "extras/qemu" / chips.CHIPS[name].start)
+    code.append(sources / "extras/qemu" / chips.CHIPS[name].start_file)
     chip = chips.CHIPS[name]
     made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
-    words = (*chips.USUAL, *WARNINGS, *map(str, chip))
+    words = (*chips.COMMON_FLAGS, *WARNINGS, *map(str, chip))
     return kept(
         chip.compiler[0], words, made_from, lambda path: chips.build(chip, code, path, *WARNINGS)
     )

@@ -31,7 +31,7 @@ class Wired:
             self.uno.run_ms(1)
             new = self.uno.events[self._seen :]
             self._seen += len(new)
-            sent = bytes(event["byte"] for event in new if event.what == "sent")
+            sent = bytes(event["byte"] for event in new if event.kind == "sent")
             self.session.receive(sent, self.now_ms)
 
     def until(self, request: PendingRequest[Any], limit_ms: int = 20_000) -> int:

@@ -19,7 +19,7 @@ from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import task_program
 from tests.support.campaign import each_seed, wanted
 from tests.support.rows import each_row
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import unpack
 from tiniscript.syntax.formatter import format_source
@@ -35,7 +35,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,), needs:
     With the `needs` of a way it has some.
     """
     rng = random.Random(seed)
-    both: list[Compiled] = []
+    both: list[Compilation] = []
     while not both or unpack(both[0].image).needs & needs != needs:
         text, senses = task_program(rng, ways=needs != 0)
         both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]

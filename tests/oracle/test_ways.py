@@ -22,7 +22,7 @@ from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
 from tests.vm.test_agreement import same
-from tiniscript import Compiled, compile_text
+from tiniscript import Compilation, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
 from tiniscript.syntax.formatter import format_source
@@ -34,7 +34,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     """Compare the traces of one random program on some machines; return how it ended."""
     rng = random.Random(seed)
     theirs, kit = KITS[seed // 2 % 2]
-    both: list[Compiled] = []
+    both: list[Compilation] = []
     while not both or not unpack(both[0].image).needs & GO:
         text = programs.program(rng, theirs, ways=True)
         both = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]

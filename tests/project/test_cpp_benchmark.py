@@ -10,10 +10,10 @@ import pytest
 from tests.support.platformio import firmware, shared
 from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
-from tools.bench.workloads import MUST, WORKS, Work, WrongResult, check, expected_values
+from tools.bench.workloads import MOST_CYCLES, WORKS, Work, WrongResult, check, expected_values
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
+    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
 )
 
 
@@ -29,7 +29,7 @@ def test_a_wrong_value_is_an_error(work: Work) -> None:
 @needs_chip
 @pytest.mark.parametrize(
     ("work", "must"),
-    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, MUST, strict=True)],
+    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, MOST_CYCLES, strict=True)],
 )
 def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
     assert 1 < machine.per_iteration(work) <= must
@@ -44,14 +44,14 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
         pytest.skip(uno.missing())
     sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
     for work in WORKS:
-        short = work._replace(times=2000)
+        short = work._replace(loop_count=2000)
         alone = machine.per_iteration(short)
         assert alone < sketch_cycles.per_iteration(sketch, short) < 1.25 * alone
 
 
 @needs_chip
-@pytest.mark.parametrize("part", sizes.MUST)
+@pytest.mark.parametrize("part", sizes.LIMITS)
 def test_a_part_is_no_larger_than_it_may(part: str) -> None:
-    size, must = sizes.size(part), sizes.MUST[part]
+    size, must = sizes.size(part), sizes.LIMITS[part]
     assert must.flash * 0.8 < size.flash <= must.flash
     assert must.ram / 2 < size.ram <= must.ram

@@ -175,7 +175,9 @@ class Stage:
         self.folder = tmp_path / "made"
         monkeypatch.setattr(release, "_clones", self.clones)
         monkeypatch.setattr(facts, "complaints", lambda root: self.told("a fact"))
-        monkeypatch.setattr(release, "lacks", lambda parts: "".join(self.told("a tool")))
+        monkeypatch.setattr(
+            release, "find_missing_tool", lambda parts: "".join(self.told("a tool"))
+        )
         monkeypatch.setattr(Clone, "python", lambda clone, *words, **how: self.step("twine"))
         for name in PARTS:
             monkeypatch.setitem(PARTS, name, PARTS[name]._replace(make=partial(self.make, name)))
@@ -213,12 +215,12 @@ def test_a_release_fails_where_a_step_of_it_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     whole = Stage(tmp_path / "whole", monkeypatch, "")
-    assert whole.code() == 0 and (whole.folder / release.SUMS).exists()
+    assert whole.code() == 0 and (whole.folder / release.SUMS_FILE).exists()
     steps = dict.fromkeys(whole.steps)
     assert len(steps) > 3 * len(PARTS)
     for step in steps:
         stage = Stage(tmp_path / step, monkeypatch, step)
         assert stage.code() != 0, f"{step} fails, and nobody notices"
         is_compared = step.endswith("is the same")
-        assert (stage.folder / release.SUMS).exists() == is_compared, step
+        assert (stage.folder / release.SUMS_FILE).exists() == is_compared, step
     capsys.readouterr()

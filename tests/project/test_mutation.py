@@ -13,7 +13,7 @@ from tests.support.casefile import ROOT
 from tests.support.exchanged import Try
 from tests.support.needs import need
 from tools import mutation
-from tools.mutation import MODULES, Copy, Module, Mutant, equivalent, mutants
+from tools.mutation import MODULES, Copy, Module, Mutant, equivalent_mutants, mutants
 
 
 @pytest.mark.sampled("module", keep=len(MODULES) // 3)
@@ -38,7 +38,7 @@ def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
 
 
 def test_what_is_listed_as_equivalent_is_still_there() -> None:
-    for file, was, _ in equivalent():
+    for file, was, _ in equivalent_mutants():
         lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
         assert was in {line.strip() for line in lines}, f"{file}: {was}"
 
@@ -70,7 +70,7 @@ def test_known_mutants_are_noticed(tmp_path: Path) -> None:
         assert answer != exchanged.PASSES, f"no test notices {known.missing}"
         if answer != exchanged.FAILS:
             mutant = Mutant(known.file, 0, known.was, known.becomes, one.text)
-            noticed = copy.notices(mutant, [known.test])
+            noticed = copy.find_noticing_test(mutant, [known.test])
             assert noticed.startswith(f"FAILED {known.test}"), (
                 f"{known.missing}: {answer}, {noticed}"
             )

@@ -27,7 +27,7 @@ from tiniscript.codegen.sketch import statements
 from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
-from tiniscript.library.text_fitting import misfits
+from tiniscript.library.text_fitting import find_misfits
 from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.semantics import ir
@@ -120,7 +120,7 @@ def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant: 
     assert compiled.program is not None
     for level in LEVELS.values():
         lacking, as_written = (
-            [(each.code, each.values) for each in misfits(its.source, its.program, KIT, level)]
+            [(each.code, each.values) for each in find_misfits(its.source, its.program, KIT, level)]
             for its in (compiled, compile_text(meant, KIT))
             if its.program is not None
         )
@@ -167,7 +167,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
 def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
     compiled = compile_text(PROGRAM, KIT)
     assert compiled.program is not None
-    assert misfits(compiled.source, compiled.program, KIT, level) == []
+    assert find_misfits(compiled.source, compiled.program, KIT, level) == []
     assert line_of(compiled.source) == line_of(Source(MEANT))
     check_line("SI|HORN", KIT)
 

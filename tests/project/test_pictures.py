@@ -25,7 +25,7 @@ def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
 
 
 def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
-    right = front.PAD + front.LEFT_WIDTH - 16
+    right = front.PADDING + front.LEFT_WIDTH - 16
     for text in drawing.iter(f"{SVG}text"):
         if "Mono" in text.get("font-family", ""):
             shown = "".join(text.itertext())
@@ -61,7 +61,9 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
     for name, example, *_ in DRIVES:
         assert f"{name}: examples/{example}" in shown
     lines = [
-        element for element in drawing.iter(f"{SVG}polyline") if element.get("stroke") == arena.WAY
+        element
+        for element in drawing.iter(f"{SVG}polyline")
+        if element.get("stroke") == arena.WAY_COLOUR
     ]
     assert len(lines) == len(DRIVES)
     for line in lines:
@@ -79,7 +81,9 @@ def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
         assert 0 <= x <= width - float(element.get("width", 0))
         assert 0 <= y <= height - float(element.get("height", 0))
     ways = [
-        element for element in drawing.iter(f"{SVG}polyline") if element.get("stroke") == arena.WAY
+        element
+        for element in drawing.iter(f"{SVG}polyline")
+        if element.get("stroke") == arena.WAY_COLOUR
     ]
     drives = {"lesson.svg": 3, "hand.svg": 1} | {
         key: len(row[2]) for key, row in DRIVES_OF_GUIDES.items()

@@ -13,7 +13,7 @@ from tiniscript import check_text, robots
 from tiniscript.base.languages import translated_languages
 from tiniscript.base.words import WORDS
 from tools.generate import paper, poster
-from tools.generate.paper import MONO, Line
+from tools.generate.paper import MONO_FONT, Line
 
 in_both = each_row("language", translated_languages("documents", "poster/title"))
 
@@ -24,7 +24,7 @@ def lines_of(language: str) -> list[Line]:
 
 @in_both
 def test_every_word_of_the_table_is_on_it(language: str) -> None:
-    shown = " ".join(line.text for line in lines_of(language) if line.font == MONO)
+    shown = " ".join(line.text for line in lines_of(language) if line.font == MONO_FONT)
     for word in WORDS.values():
         is_there = re.search(rf"(?<!\w){word.text}(?!\w)", shown) is not None
         assert is_there == word.role.is_offered, word.text
@@ -39,7 +39,7 @@ def test_a_word_that_is_missing_is_an_error(monkeypatch: pytest.MonkeyPatch) -> 
 def test_what_it_shows_can_be_typed() -> None:
     kit = robots.load("tinibot").kit
     for line in lines_of("en"):
-        if line.font != MONO or not line.text[0].isalpha() or "..." in line.text:
+        if line.font != MONO_FONT or not line.text[0].isalpha() or "..." in line.text:
             continue
         for code in line.text.split("   "):
             if "(" in code and not re.search(r"\bA\b|ELSEIF", code) and "RANDOM" not in code:
@@ -76,9 +76,9 @@ def test_the_pdf_is_whole(language: str) -> None:
 @in_both
 def test_nothing_is_written_over_something_else(language: str) -> None:
     for line in lines_of(language):
-        letter = {MONO: 0.6}.get(line.font, 0.52) * line.size
+        letter = {MONO_FONT: 0.6}.get(line.font, 0.52) * line.size
         end = line.x + letter * len(line.text)
-        assert end <= (poster.SAYS_X if line.font == MONO else paper.WIDTH), line.text
+        assert end <= (poster.SENTENCE_X if line.font == MONO_FONT else paper.WIDTH), line.text
 
 
 def test_the_poster_names_own_words_in_its_language() -> None:

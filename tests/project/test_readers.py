@@ -9,7 +9,7 @@ from tools import readers
 
 
 def test_the_readers_that_ask_what_was_meant_are_there() -> None:
-    assert {*readers.OF_WHOLE_LINES} <= {reader.__name__ for reader in READERS}
+    assert {*readers.WHOLE_LINE_READERS} <= {reader.__name__ for reader in READERS}
 
 
 def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:

@@ -420,7 +420,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
 def test_every_sentence_of_the_first_command_has_all_languages() -> None:
     from tools import environment
 
-    for table in (environment.SAID, loaded().SAID):
+    for table in (environment.TEXTS, loaded().TEXTS):
         for said in table.values():
             assert len({*said}) == len(environment.LANGUAGES)
             assert len({frozenset(re.findall(r"\{\w+\}", each)) for each in said}) == 1

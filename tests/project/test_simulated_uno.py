@@ -130,7 +130,7 @@ def test_the_second_time_out_resets(is_off: int) -> None:
     """Also where interrupts are off, so that nobody answers the first one, and where it sleeps."""
     with Uno(built("watchdog", IsOff=is_off)) as uno:
         uno.run_ms(100)
-    resets = [event for event in uno.events if event.what == "reset"]
+    resets = [event for event in uno.events if event.kind == "reset"]
     assert [event["cause"] for event in resets] == ["power-on", "watchdog"]
     assert resets[1].ms == pytest.approx(2 * 32, abs=0.1)
     assert bool(cycles_of(uno, "D9", "high")) == (not is_off)

@@ -262,11 +262,11 @@ def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Console())
     monkeypatch.setitem(sys.modules, "msvcrt", console)
     with Keys() as keys:
-        assert keys.read_pressed() == "bq"
-        assert keys.read_pressed() == ""
+        assert keys.read_keys() == "bq"
+        assert keys.read_keys() == ""
         waiting += "\x03"
         with pytest.raises(KeyboardInterrupt):
-            keys.read_pressed()
+            keys.read_keys()
 
 
 class Kernel:

@@ -18,7 +18,7 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     checks: list[str] = []
     checked = compiling.analyze
 
-    def counted(text: str, kit: Kit, name: str = "") -> compiling.Compiled:
+    def counted(text: str, kit: Kit, name: str = "") -> compiling.Compilation:
         checks.append(text)
         return checked(text, kit, name)
 

@@ -10,7 +10,7 @@ from itertools import accumulate
 
 from tests.pupils.corpus import Entry, check
 from tests.support.rows import each_row
-from tiniscript.base.source import Edit, Span, apply_edits, overlap
+from tiniscript.base.source import Edit, Span, apply_edits, edits_overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of
@@ -68,7 +68,7 @@ def offered_wrongly(text: str) -> list[str]:
     together: list[Edit] = []
     for diagnostic in diagnostics:
         its = edits_of(diagnostic) or []
-        together += its if not overlap(its, together) else []
+        together += its if not edits_overlap(its, together) else []
     bad = []
     for diagnostic in diagnostics:
         others = [other for other in diagnostics if other is not diagnostic]

@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path
 
 from tools.builds import library
-from tools.release.packing import pack, sha256
+from tools.release.packing import pack_folder, sha256
 
 EPOCH = 1_700_000_000
 
@@ -26,9 +26,9 @@ def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
     names = ["b.sh", "a/ñ.txt", "a/b.txt"]
     one = folder(tmp_path / "one", names, EPOCH + 1)
     other = folder(tmp_path / "other place", names[::-1], 10_000)
-    first = pack(one, tmp_path / "x-1.zip", EPOCH)
+    first = pack_folder(one, tmp_path / "x-1.zip", EPOCH)
     (tmp_path / "again").mkdir()
-    second = pack(other, tmp_path / "again" / "x-1.zip", EPOCH)
+    second = pack_folder(other, tmp_path / "again" / "x-1.zip", EPOCH)
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as packed:
         assert packed.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]
@@ -36,7 +36,9 @@ def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> None:
-    path = pack(folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH)
+    path = pack_folder(
+        folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH
+    )
     with zipfile.ZipFile(path) as packed:
         rights = {row.filename: row.external_attr >> 16 & 0o777 for row in packed.infolist()}
     assert rights == {"x/b.sh": 0o755, "x/a.txt": 0o644}
@@ -47,5 +49,5 @@ def test_the_library_is_the_same_twice(tmp_path: Path) -> None:
     for place in ("one", "other place"):
         path = tmp_path / place / "TiniScript"
         assert library.main([str(path), "--url", "https://example.org/t"]) == 0
-        sums.add(sha256(pack(path, tmp_path / place / "TiniScript-1.zip", EPOCH)))
+        sums.add(sha256(pack_folder(path, tmp_path / place / "TiniScript-1.zip", EPOCH)))
     assert len(sums) == 1

@@ -19,7 +19,7 @@ from tiniscript.base.kit import Device
 from tiniscript.codegen.sketch.wiring import SketchPlan
 from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.robots import firmware
-from tiniscript.robots.driver import Driver, Part, SensorDriver
+from tiniscript.robots.driver import Driver, HeaderPart, SensorDriver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Robot, Wiring
 
@@ -120,7 +120,7 @@ def test_a_robot_without_a_buzzer_has_no_tone() -> None:
 
 def is_shield(motors: str) -> bool:
     """Whether a driver has the pins of an Uno, which an ESP32 has in other places."""
-    return any(pin.fixed is not None for pin in DRIVERS["motors", motors].pins)
+    return any(pin.fixed_number is not None for pin in DRIVERS["motors", motors].pins)
 
 
 KNOWING = [path for path in sorted((SOURCES / "src" / "boards").glob("*.cpp"))
@@ -171,7 +171,7 @@ def test_a_driver_without_a_sketch_cannot_be_made() -> None:
         used_by = "sensors number"
         pins = ()
 
-        def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
             return []
 
     with pytest.raises(TypeError, match=r"Half.*sketch"):

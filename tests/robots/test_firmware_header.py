@@ -61,15 +61,17 @@ def test_pwm_is_where_the_core_has_it(board: str) -> None:
         if name != "NOT_ON_TIMER"
     }
     assert dict(AVRS[board].compares) == found
-    assert {pin: compare.timer for pin, compare in found.items()} == dict(CHIPS[board].pwm)
+    assert {pin: compare.timer for pin, compare in found.items()} == dict(
+        CHIPS[board].timer_of_pwm_pin
+    )
 
 
 @pytest.mark.parametrize("board", sorted(AVRS))
 def test_every_pin_of_the_profile_check_has_its_registers(board: str) -> None:
     chip, avr = CHIPS[board], AVRS[board]
-    assert chip.digital <= set(avr.bits)
-    assert set(chip.pwm) == set(avr.compares)
-    assert chip.echo <= set(avr.interrupts)
+    assert chip.digital_pins <= set(avr.bits)
+    assert set(chip.timer_of_pwm_pin) == set(avr.compares)
+    assert chip.echo_pins <= set(avr.interrupts)
 
 
 # -- the header

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from tiniscript.robots.kinematics import START, STEP, Pose, Way, move_pose, points
+from tiniscript.robots.kinematics import ARC_STEP, START, Pose, Way, move_pose, points
 from tiniscript.robots.profile import Body
 
 BODY = Body(
@@ -57,12 +57,12 @@ def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: in
     if left != -right:
         for a, b in pairwise(way):
             turn = abs(b.heading - a.heading) % 360
-            assert min(turn, 360 - turn) <= STEP + 1e-9
+            assert min(turn, 360 - turn) <= ARC_STEP + 1e-9
 
 
 def test_many_rounds_are_one_circle_and_the_way_to_the_end() -> None:
     way = points(BODY, START, 20, 80, 10**9)
-    assert len(way) <= 2 * 360 / STEP
+    assert len(way) <= 2 * 360 / ARC_STEP
     assert way[-1] == move_pose(BODY, START, 20, 80, 10**9)
     assert math.dist(way[-1][:2], way[-2][:2]) < 1
 

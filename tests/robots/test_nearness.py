@@ -20,7 +20,7 @@ BATTERY = '[[kit.sensors]]\nname = "BATTERY"\nkind = "number"\nunit = "V"\nrange
 def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
     """Those that share a kit are told apart by their boards; discs are no part of a kit's words."""
     nearest = nearest_to(robots.load(name))
-    assert nearest.is_same and not nearest.only_there and not nearest.only_here
+    assert nearest.is_same and not nearest.devices_only_there and not nearest.devices_only_here
     kits = robots.load(name).kit, robots.load(nearest.name).kit
     assert kits[0].fingerprint == kits[1].fingerprint
     chips = robots.load(name).board.chip, robots.load(nearest.name).board.chip
@@ -43,7 +43,7 @@ def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
     assert nearest == ("tinibot", False, ("LIGHT_L", "DISTANCE"), ("LIGHT_R",), ("LIGHT_B",))
     range_of = TEXTS["grabber"].replace("range = [0, 180]", "range = [0, 90]")
     nearest = nearest_to(read(range_of, "mine"))
-    assert (nearest.name, nearest.only_there, nearest.only_here) == (
+    assert (nearest.name, nearest.devices_only_there, nearest.devices_only_here) == (
         "grabber", ("GRIPPER",), ("GRIPPER",),
     )  # fmt: skip
 

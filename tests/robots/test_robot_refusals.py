@@ -326,7 +326,7 @@ def test_what_is_shown_is_short_and_printable() -> None:
 
 FILES: list[tuple[str, bytes | None]] = [
     ("file_missing", None),
-    ("file_too_large", b"#" * (robots.FILE_BYTES + 1)),
+    ("file_too_large", b"#" * (robots.MOST_FILE_BYTES + 1)),
     ("file_not_utf8", b'[kit]\n# caf\xe9 = "x"\n'),
     ("file_is_directory", None),
     ("file_unreadable", None),

@@ -222,10 +222,10 @@ def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
 
 @pytest.mark.parametrize("chip", CHIPS.values(), ids=list(CHIPS))
 def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
-    every = chip.digital | chip.reading | chip.analog
+    every = chip.digital_pins | chip.reading_pins | chip.analog_pins
     assert not every & chip.link_pins
-    assert set(chip.pwm) <= chip.digital
-    assert all(chip.can(pin, "input") for pin in chip.digital | chip.reading)
+    assert set(chip.timer_of_pwm_pin) <= chip.digital_pins
+    assert all(chip.can(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
     missing = {need for need in NEEDS if not any(chip.can(pin, need) for pin in every)}
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
     assert all(chip.pin_number(_written(chip.pin_name(pin))) == pin for pin in every)

@@ -21,7 +21,7 @@ from tiniscript.bytecode.image import ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused, load_image
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.diagnostics import codes
-from tiniscript.library.compiling import Compiled, compile_text, fit_to_robot
+from tiniscript.library.compiling import Compilation, compile_text, fit_to_robot
 from tiniscript.library.runs import run
 from tiniscript.studio import block_reading
 from tiniscript.vm.runner import run as run_code
@@ -38,7 +38,7 @@ def kit_of(count: int) -> Kit:
     return Kit(sensors, (Device("LAMP", YES_NO, "", 0, 1),))
 
 
-def codes_of(compiled: Compiled) -> list[str]:
+def codes_of(compiled: Compilation) -> list[str]:
     return [diagnostic.code.number for diagnostic in compiled.diagnostics]
 
 

@@ -153,7 +153,7 @@ def test_links_lead_to_pages_and_copies() -> None:
     assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/en/materials.md", on)
     assert '<a href="../en/command.html' in page("docs/es/command.md", on)
     assert '<a href="../en/robots.html' in page("docs/es/robots.md", on), "to itself in English"
-    assert "docs/pictures/wiring/liner.en.svg" not in on.files | on.pictures
+    assert "docs/pictures/wiring/liner.en.svg" not in on.linked_files | on.pictures
     assert "![" in page("docs/en/wiring/liner.md", on)
     assert "docs/pictures/wiring/liner.en.svg" in on.pictures
 

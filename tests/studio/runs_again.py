@@ -37,7 +37,7 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
     told = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
     if profile.kit.sensors[0].is_yes_no:
         told = {}
-    settings = Settings(seed=number + 1, told=told)
+    settings = Settings(seed=number + 1, given_readings=told)
     run = Simulation(profile.name, worlds.load(world), found.image, settings=settings)
     for _ in range(rng.randint(1, 25)):
         _act(rng, run)

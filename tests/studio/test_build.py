@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.languages import SOURCE_LANGUAGE, entries, languages, plural_text
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, merged_catalogue, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -21,7 +21,7 @@ from tiniscript.studio.serving import POLICY
 from tools import CannotMake
 from tools.builds import studio
 from tools.builds.page_texts import page_texts
-from tools.studio.pack import NOT_HERE
+from tools.studio.pack import MODULES_NOT_HERE
 
 LARGEST = 6_000_000  # bytes of all files, gzipped, with one language: no browser fetches another
 GROUP_LARGEST = 35_000  # of what pupils fetch who edit together
@@ -57,7 +57,9 @@ def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
         with zipfile.ZipFile(archive) as packed:
             found += [name.replace("/", ".") for name in packed.namelist()]
     assert len(found) > 200
-    assert not [each for each in found if each.startswith(tuple(f"{name}." for name in NOT_HERE))]
+    assert not [
+        each for each in found if each.startswith(tuple(f"{name}." for name in MODULES_NOT_HERE))
+    ]
 
 
 def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +74,7 @@ def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("language", languages()[1:])
 def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
     """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
-    for entry in entries("studio", language).entries.values():
+    for entry in merged_catalogue("studio", language).entries.values():
         places = sorted(re.findall(r"%[\d%]", entry.english))
         assert all(
             sorted(re.findall(r"%[\d%]", each)) == places for each in entry.translation.values()
@@ -131,7 +133,7 @@ def test_the_page_is_small_enough(page: Path) -> None:
     files = [
         path
         for path in page.iterdir()
-        if path.name not in (studio.STAMP, studio.LICENCES, serving.FIRMWARE)
+        if path.name not in (studio.STAMP, studio.LICENCES_FILE, serving.FIRMWARE)
     ]
     weights = weights_of(page)
     assert {*weights} == {path.name for path in files}
@@ -160,7 +162,7 @@ def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:
 
 
 def test_the_page_brings_the_licences_of_what_is_in_it(page: Path) -> None:
-    found = (page / studio.LICENCES).read_text(encoding="utf-8")
+    found = (page / studio.LICENCES_FILE).read_text(encoding="utf-8")
     for name in (
         "@codemirror/view 6.",
         "@lezer/common 1.",
@@ -218,7 +220,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`tsc studio` and a static host give the same files, by the same list."""
-    brought = ready.Ready("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
+    brought = ready.ReadyFile("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
     brought.path.write_text(":0100000001FE\n:00000001FF\n")
     (tmp_path / "page").mkdir()
     monkeypatch.setattr(ready, "files", list)

@@ -13,7 +13,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
 from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.library.compiling import Compiled, compile_source
+from tiniscript.library.compiling import Compilation, compile_source
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
 
@@ -245,7 +245,7 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
     """Of a program with a hundred warnings; what the buttons do is tried when somebody pauses."""
     texts: list[bytes] = []
 
-    def counted(data: bytes, *arguments: Any, **named: Any) -> Compiled:
+    def counted(data: bytes, *arguments: Any, **named: Any) -> Compilation:
         texts.append(data)
         return compile_source(data, *arguments, **named)
 

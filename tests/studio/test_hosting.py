@@ -300,7 +300,7 @@ def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     page.beat()
     if is_silent:
         robot.switch_off()
-        monkeypatch.setattr(opening, "CONFIRM_S", 0.3)
+        monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
     hosted = hosting.robot_of(page.name)
     assert hosted
     page.news.clear()

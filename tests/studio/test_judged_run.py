@@ -13,7 +13,7 @@ from tiniscript.lessons import catalogue
 from tiniscript.studio import page_lessons
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks
-from tools.studio.pack import on_page
+from tools.studio.pack import text_on_page
 
 NUMBERS = range(1, len(catalogue.folders()) + 1)
 OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
@@ -62,7 +62,7 @@ def test_what_is_packed_of_a_page_has_the_same_steps(
         text = path.read_text(encoding="utf-8")
         if path.suffix != ".md":
             return text
-        pages.append((text, on_page(text)))
+        pages.append((text, text_on_page(text)))
         return pages[-1][1]
 
     monkeypatch.setattr(catalogue, "_text", packed)

@@ -15,7 +15,7 @@ from tools.builds import screenshot
 def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene: str) -> None:
     assert screenshot.why_stale(language, scene) == ""
     with Image.open(screenshot.picture(language, scene)) as image:
-        assert image.size == (screenshot.SIZE["width"], screenshot.SIZE["height"])
+        assert image.size == (screenshot.VIEWPORT["width"], screenshot.VIEWPORT["height"])
         assert len(json.loads(image.info[screenshot.WORDS_SCENE])) > 6
     assert screenshot.picture(language, scene).stat().st_size < 80_000
     name = screenshot.picture(language, scene).name

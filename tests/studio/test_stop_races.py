@@ -85,11 +85,11 @@ class Meeting:
         self.attending.latch()
         self.go(500)
         assert self.attending.last_stop == CONFIRMED
-        stood = self.robot.driving.look(self.robot.now_ms)
+        stood = self.robot.driving.pose_at(self.robot.now_ms)
         for _ in range(7):
             self.go(max(1, late_ms // 5), 10)
             assert not self.robot.is_running
-            assert self.robot.driving.look(self.robot.now_ms) == stood
+            assert self.robot.driving.pose_at(self.robot.now_ms) == stood
         assert self.answer(numbers[-1])  # an older one that comes later is a lost one
 
 

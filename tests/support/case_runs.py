@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.machines import Senses
 from tests.support.casefile import Case
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.cli.options import decimal
 from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.robots.profile import Robot
@@ -29,6 +29,6 @@ def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
     return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))
 
 
-def compiled(case: Case) -> Compiled:
+def compiled(case: Case) -> Compilation:
     robot, _ = robot_and_senses(case)
     return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)

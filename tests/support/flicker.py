@@ -12,8 +12,8 @@ class Flicker:
     def __init__(self, robot: VirtualRobot, number: int, hertz: float) -> None:
         discs = robot.profile.board.discs
         assert robot.wheels and discs
-        self.wheel, self.wheels = robot.wheels.both[number], robot.wheels
-        self.has_two = discs_of(discs).has_two
+        self.wheel, self.wheels = robot.wheels.wheels[number], robot.wheels
+        self.has_two = discs_of(discs).has_two_channels
         self.period_ms = 1000 / hertz
         self.edges = robot.wheels.edges
         self.shown = 0
@@ -26,6 +26,6 @@ class Flicker:
             self.next_ms = now_ms + self.period_ms
         while self.next_ms <= now_ms:
             self.next_ms += self.period_ms
-            self.wheel.counted += -1 if self.has_two and self.shown % 2 else 1
+            self.wheel.counted_edges += -1 if self.has_two and self.shown % 2 else 1
             self.shown += 1
         return self.edges(now_ms)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from tests.machines import Senses
 from tests.oracle import interpreter, programs
 from tests.support.kits import KITS
-from tiniscript import Compiled, compile_text
+from tiniscript import Compilation, compile_text
 from tiniscript.base.kit import Kit
 
 MAX_MS, MAX_STEPS = 20_000, 20_000
@@ -22,8 +22,8 @@ class RandomProgram(NamedTuple):
     kit: Kit
     senses: Senses
     want: str
-    short: Compiled
-    plain: Compiled  # not optimised
+    short: Compilation
+    plain: Compilation  # not optimised
 
 
 def random_program(seed: int) -> RandomProgram:

@@ -37,8 +37,14 @@ class Driven(Wired):
         super().__init__(uno, Session(seed, board.baud, ROBOT.kit.fingerprint))
         self._motors = motors
         self._driving = Driving(ROBOT.body, (), Pose(0, 0, 0))
-        self.wheels = Wheels(ROBOT.body, board.discs, discs_of(board.discs).has_two, rough, seed,
-                             self._driving.set_motors)  # fmt: skip
+        self.wheels = Wheels(
+            ROBOT.body,
+            board.discs,
+            discs_of(board.discs).has_two_channels,
+            rough,
+            seed,
+            self._driving.set_motors,
+        )
         self._discs = [f"D{board.discs.pins[side]}" for side in ("left", "right")]
         self._levels = [False, False]
         self._noticed = 0  # events of the board
@@ -50,20 +56,20 @@ class Driven(Wired):
     @property
     def pose(self) -> Pose:
         self.wheels.go_on(self.now_ms)
-        return self._driving.go_on(self.now_ms)
+        return self._driving.advance_to(self.now_ms)
 
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
             super().run(1)
             for event in self.uno.events[self._noticed :]:
                 self._noticed += 1
-                if event.what == "pin":
+                if event.kind == "pin":
                     self._pins[event["pin"]] = event
             left, right = self._motors
             powers = self._power("left") * left / 100, self._power("right") * right / 100
             self.wheels.set(self.now_ms, *powers)
-            for number, wheel in enumerate(self.wheels.both):
-                level = wheel.counted % 2 == 1
+            for number, wheel in enumerate(self.wheels.wheels):
+                level = wheel.counted_edges % 2 == 1
                 if level != self._levels[number]:
                     self._levels[number] = level
                     self.uno.drive(self._discs[number], level)

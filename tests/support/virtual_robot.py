@@ -34,7 +34,7 @@ def robot_in(
 
 def trace(events: Sequence[Event]) -> list[str]:
     """Return what a robot did in its last run as `tsc run` prints it."""
-    starts = [k for k, event in enumerate(events) if event.what == "START"]
+    starts = [k for k, event in enumerate(events) if event.kind == "START"]
     began_ms = events[starts[-1]].time_ms
     return [f"{event.time_ms - began_ms} {event.text}" for event in events[starts[-1] + 1 :]]
 
@@ -48,7 +48,7 @@ class Talk(Computer):
     def upload(
         self, text: str, runs: bool = True, is_detached: bool = False
     ) -> Reply[ReceiptReply]:
-        self.until(self.session.hello())
+        self.wait_for(self.session.hello())
         kit = self.robot.profile.kit
         image = image_of(text, kit)
-        return self.until(self.session.upload(image, runs, True, is_detached))
+        return self.wait_for(self.session.upload(image, runs, True, is_detached))

@@ -6,7 +6,7 @@ from zlib import crc32
 
 import pytest
 
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.library.compiling import compile_source
 from tiniscript.syntax.checksums import checksum_of, with_checksum
@@ -17,7 +17,7 @@ LINE = "SI|F(2, 80)"
 CHECKED = f"{LINE}~B77E7BD9"
 
 
-def found(text: str) -> Compiled:
+def found(text: str) -> Compilation:
     return compile_text(text, TINIBOT.kit)
 
 

@@ -14,7 +14,7 @@ import pytest
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.interpreter import Kit as OracleKit
 from tests.oracle.programs import WIDE_KIT, broken, program
-from tiniscript import Compiled, compile_text
+from tiniscript import Compilation, compile_text
 from tiniscript.base import kit
 from tiniscript.base.source import Source
 from tiniscript.base.words import ALIASES
@@ -200,11 +200,11 @@ def check_compiled(text: str, of: kit.Kit) -> None:
     before, then = compile_text(text, of), compile_text(check(text), of)
     assert before.is_right and then.is_right
     assert before.image and then.image == before.image
-    assert len(then.places) == len(before.places)
+    assert len(then.locations) == len(before.locations)
     assert codes_of(then) == codes_of(before)
 
 
-def codes_of(compiled: Compiled) -> list[codes.Code]:
+def codes_of(compiled: Compilation) -> list[codes.Code]:
     """Return the codes; what is said of a note alone may go, because notes are joined."""
     of_notes = (codes.IN_A_NOTE, codes.EMPTY_BLOCK)  # a note alone keeps a block from being empty
     return [

@@ -15,9 +15,9 @@ from tiniscript.base.words import SECONDS, WORDS, Role, Word
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.library.text_fitting import misfits
+from tiniscript.library.text_fitting import find_misfits
 from tiniscript.robots.boards import CHIPS
-from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, UNREAD, Level
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, UNREAD_WORDS, Level
 from tiniscript.syntax.lexer import scan
 from tools.generate import text_tables
 
@@ -28,7 +28,7 @@ UNO = LEVELS["uno"]
 def lacking(text: str, level: Level = UNO) -> list[Diagnostic]:
     found = compile_text(text, TINIBOT)
     assert found.program is not None and found.is_right, found.diagnostics
-    return misfits(found.source, found.program, TINIBOT, level)
+    return find_misfits(found.source, found.program, TINIBOT, level)
 
 
 def problems_of(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str, str]]]:
@@ -177,7 +177,7 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         oracle_kit, kit = KITS[seed % len(KITS)]
         found = compile_text(programs.program(random.Random(seed), oracle_kit), kit)
         tokens = scan(found.source.text).tokens
-        if UNREAD & {token.text for token in tokens}:
+        if UNREAD_WORDS & {token.text for token in tokens}:
             continue
         reader = Reader(tokens, kit, 2)
         reader.program()
@@ -232,7 +232,7 @@ def test_a_word_that_no_level_reads_is_kept_from_names_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """It is no command of the reader, but one of the words of later versions."""
-    monkeypatch.setattr(text_tables, "UNREAD", UNREAD | {"BEEP"})
+    monkeypatch.setattr(text_tables, "UNREAD_WORDS", UNREAD_WORDS | {"BEEP"})
     words = text_tables.words_in_order()
     assert words.index(WORDS["BEEP"]) > words.index(WORDS["SI"])
     packed, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]

@@ -9,8 +9,8 @@ from tools.generate.packed_texts import (
     FIRST_LETTER,
     MOST_NESTED_PAIRS,
     Pair,
-    pack,
-    unpack,
+    pack_texts,
+    unpack_texts,
 )
 from tools.generate.remark_tables import rows
 
@@ -19,8 +19,8 @@ from tools.generate.remark_tables import rows
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
     said = rows(language, is_small)
-    data = pack(said)
-    assert unpack(data) == said
+    data = pack_texts(said)
+    assert unpack_texts(data) == said
     assert data.size < 0.75 * sum(len(text) + 1 for text in said)
 
 
@@ -40,13 +40,13 @@ def test_what_a_small_robot_never_says() -> None:
     [[""], ["", "A", ""], ["AAAAAAA", "AAA"], ["~"], ["abc" * 20, "bcab" * 9], ["x" * 200, "|}"]],
 )
 def test_texts_come_back(texts: list[str]) -> None:
-    assert unpack(pack(texts)) == texts
+    assert unpack_texts(pack_texts(texts)) == texts
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_pairs_in_pairs_are_not_too_deep(language: str) -> None:
     """The robot's stack holds a call for each. No pair has an end."""
-    data = pack(rows(language))
+    data = pack_texts(rows(language))
 
     def depth(code: int) -> int:
         return 0 if code >= FIRST_LETTER else 1 + max(map(depth, pair_of(code)))

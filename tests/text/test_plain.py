@@ -18,7 +18,7 @@ from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
 from tests.vm.test_agreement import same
 from tests.vm.test_cases import CASES, having
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.opcodes import BY_NAME, OPS
@@ -180,7 +180,7 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     assert named & known <= PLAIN | {"AND", "OR"}  # which are words of the language, too
 
 
-def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
+def check_same(found: Compilation, kit: Kit, senses: Senses) -> None:
     """The plain code of a program passes the verifier and does what its other code does."""
     assert found.program is not None
     code = plain_code(found.program)

@@ -15,7 +15,7 @@ from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import MOST_CHARACTERS, PROBLEMS
-from tiniscript.robots.text_levels import LEVELS, OF_TASKS_AND_WAYS, UNREAD
+from tiniscript.robots.text_levels import LEVELS, TASK_AND_EXTENT_WORDS, UNREAD_WORDS
 from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
@@ -257,7 +257,7 @@ def test_a_reader_without_defs_reads_all_else() -> None:
     lacks = LEVELS["uno"].lacks
     texts = [
         text % word
-        for word in sorted(OF_TASKS_AND_WAYS)
+        for word in sorted(TASK_AND_EXTENT_WORDS)
         for text in ("%s", "X=1;%s=2", "F(5 %s,60)")
     ]
     for text in ("DEF A; F(1, 50); END_DEF; A", "def", "DEF=1", "X=1; DEF A", *texts):
@@ -267,7 +267,7 @@ def test_a_reader_without_defs_reads_all_else() -> None:
     cases = [case.parts.get("tiniscript", "S") for case in all_cases()]
     for text in (*texts, *WRONG, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
-        if text in texts or not (lacks | UNREAD) & words:
+        if text in texts or not (lacks | UNREAD_WORDS) & words:
             other = large.read(text.encode())  # whose FOREVER waits for tasks
             assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
         else:

@@ -31,8 +31,8 @@ from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader as Model
 from tiniscript.diagnostics.codes import LEVEL_VALUES
 from tiniscript.library.compiling import analyze
-from tiniscript.library.text_fitting import misfits
-from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
+from tiniscript.library.text_fitting import find_misfits
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD_WORDS
 from tiniscript.syntax.lexer import scan
 from tiniscript.vm.runner import run
 
@@ -77,7 +77,7 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     if right and CONTROL.search(data):  # on a wire it is noise
         assert not answer.is_program, f"{answer}\n{data!r}"
         return None
-    if right and UNREAD & {token.text for token in scan(decode(data)).tokens}:
+    if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
         # a word with fixed values is right where `line_of` writes it out
         assert answer.problem in ("FULL", "RESERVED"), f"{answer}\n{data!r}"
         return None
@@ -99,7 +99,7 @@ def lacks_values(data: bytes, kit: Kit) -> bool:
     """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
     found = compile_text(decode(data), kit)
     assert found.program is not None
-    diagnostics = misfits(found.source, found.program, kit, LEVELS["mega"])
+    diagnostics = find_misfits(found.source, found.program, kit, LEVELS["mega"])
     return any(diagnostic.code is LEVEL_VALUES for diagnostic in diagnostics)
 
 

@@ -85,8 +85,10 @@ def test_who_looks_changes_nothing(seed: int) -> None:
         for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
             driving.set_motors(ms, left, right)
             for at in sorted(watch.sample(range(ms, until), min(looks, until - ms))):
-                driving.look(at) if watch.random() < 0.5 else driving.go_on(at)
-        ends.append((driving.go_on(9000), rivals_of(driving), driving.bumps, driving.has_fallen))
+                driving.pose_at(at) if watch.random() < 0.5 else driving.advance_to(at)
+        ends.append(
+            (driving.advance_to(9000), rivals_of(driving), driving.bumps, driving.has_fallen)
+        )
     assert ends[0] == ends[1] == ends[2]
 
 
@@ -119,7 +121,7 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
     for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
         driving.set_motors(ms, left, right)
         for at in range(ms, until, 7):
-            driving.go_on(at)
+            driving.advance_to(at)
             bodies = driving.bodies()
             for k, (hull, pose) in enumerate(bodies):
                 for other, place in bodies[:k]:
@@ -139,12 +141,14 @@ def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int
     driving = bout(RING + ASLEEP.replace("180", str(heading)))
     [before] = driving.rivals
     driving.set_motors(0, power, power)
-    driving.go_on(6000 * 20 // power)
+    driving.advance_to(6000 * 20 // power)
     [after] = driving.rivals
     assert after.x_cm > before.x_cm + 2
     free = bout(RING + ASLEEP.replace("x_cm = 100\ny_cm = 100", "x_cm = 100\ny_cm = 20"))
     free.set_motors(0, power, power)
-    assert driving.driven_cm < free.go_on(6000 * 20 // power).x_cm - 60 - 2, "it is slowed down"
+    assert driving.driven_cm < free.advance_to(6000 * 20 // power).x_cm - 60 - 2, (
+        "it is slowed down"
+    )
 
 
 @pytest.mark.parametrize("speed", [20, 45, 90])
@@ -155,8 +159,8 @@ def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int)
     rival = HEAD_ON.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
     driving = bout(RING.replace("x_cm = 60", "x_cm = 80") + rival)
     driving.set_motors(0, mine, mine)
-    met = driving.go_on(900)
-    later = driving.go_on(1500)
+    met = driving.advance_to(900)
+    later = driving.advance_to(1500)
     way = later.x_cm - met.x_cm
     assert (way > 0.5) == (mine > its) and (way < -0.5) == (mine < its)
 
@@ -170,22 +174,22 @@ def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
         driving = bout(far)
         driving.set_motors(0, left, right)
         expected = move_pose(SUMO.body, Pose(30, 100, 0), left, right, 400)
-        assert driving.go_on(400) == pytest.approx(expected, abs=1e-6)
+        assert driving.advance_to(400) == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_rival_begins_when_the_robot_first_moves() -> None:
     driving = bout(RING + HEAD_ON.format(60))
     before = rivals_of(driving)
-    driving.go_on(3000)
+    driving.advance_to(3000)
     driving.set_motors(3000, 0, 0)
-    driving.go_on(4000)
+    driving.advance_to(4000)
     assert rivals_of(driving) == before
     driving.set_motors(4000, 10, 0)
-    driving.go_on(4500)
+    driving.advance_to(4500)
     assert rivals_of(driving) != before
     driving.rest()
     before = rivals_of(driving)
-    driving.go_on(9000)
+    driving.advance_to(9000)
     assert rivals_of(driving) == before, "its time is over"
 
 
@@ -198,7 +202,7 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
         driving.has_fallen = True  # and that ends nothing here
         driving.set_motors(0, 1, 0)
         for at in range(0, 20_000, 50):
-            driving.go_on(at)
+            driving.advance_to(at)
             [rival] = driving.rivals
             assert math.dist(rival[:2], (100, 100)) < 80
 
@@ -214,7 +218,10 @@ def test_a_distance_sensor_sees_where_a_rival_is() -> None:
         text = RING + f"[[rivals]]\nx_cm = {x:.3f}\ny_cm = {y:.3f}\n"
         driving = bout(text)
         pose = Pose(draw.uniform(30, 170), draw.uniform(30, 170), draw.uniform(0, 360))
-        reading = Sensing(SUMO, read(text, "ring"), others=driving.others).look(2, pose) / 1000
+        reading = (
+            Sensing(SUMO, read(text, "ring"), other_outlines=driving.other_outlines).peek(2, pose)
+            / 1000
+        )
         along = math.radians(pose.heading)
         eye = (pose.x_cm + 5 * math.cos(along), pose.y_cm + 5 * math.sin(along))
         far = math.dist(eye, (x, y)) - 5.5
@@ -240,9 +247,9 @@ def test_what_is_black_and_what_is_white() -> None:
         white = SUMO.body._replace(
             places={"LINE_L": SUMO.body.places["LINE_L"]._replace(x_cm=0, y_cm=0)}
         )
-        assert Sensing(liner._replace(body=black), world).look(0, pose) == is_black
-        assert Sensing(SUMO._replace(body=white), world).look(0, pose) == (not is_black)
-        assert Sensing(SUMO._replace(body=white), world).look(0, Pose(x_cm, 20, 0)) == 0
+        assert Sensing(liner._replace(body=black), world).peek(0, pose) == is_black
+        assert Sensing(SUMO._replace(body=white), world).peek(0, pose) == (not is_black)
+        assert Sensing(SUMO._replace(body=white), world).peek(0, Pose(x_cm, 20, 0)) == 0
 
 
 @pytest.mark.parametrize("power", [40, 60, 100])
@@ -263,12 +270,12 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
         driving.set_motors(0, power, power)
         seen_ms = next(
             at for at in range(0, 20_000, 10)
-            if sensing.look(0, pose := driving.go_on(at)) or sensing.look(1, pose)
+            if sensing.peek(0, pose := driving.advance_to(at)) or sensing.peek(1, pose)
         )  # fmt: skip
         assert seen_ms > 300 and not driving.has_fallen
-        driving.go_on(seen_ms + 150)
+        driving.advance_to(seen_ms + 150)
         assert not driving.has_fallen, "150 ms are enough for a program and its motors"
-        driving.go_on(seen_ms + 4000)
+        driving.advance_to(seen_ms + 4000)
         assert driving.has_fallen
 
 

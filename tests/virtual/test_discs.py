@@ -47,7 +47,7 @@ def started_robot(
 ) -> tuple[VirtualRobot, Talk]:
     """A robot with uneven motors in the middle of a floor, whose program has just begun."""
     world = floor(size=500, start="x_cm = 250\ny_cm = 250")
-    settings = Settings(seed=seed, motors=UNEVEN[seed % 2], rough=Roughness(slip))
+    settings = Settings(seed=seed, motors=UNEVEN[seed % 2], roughness=Roughness(slip))
     robot = VirtualRobot(profile, world, settings)
     talk = Talk(robot)
     assert talk.upload(text, is_detached=is_detached).status == OK
@@ -62,7 +62,7 @@ def gone(robot: VirtualRobot) -> tuple[float, float, float]:
 
 def wheel(robot: VirtualRobot, number: int) -> Wheel:
     assert robot.wheels
-    return robot.wheels.both[number]
+    return robot.wheels.wheels[number]
 
 
 def is_still(robot: VirtualRobot) -> bool:
@@ -145,7 +145,7 @@ def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
     talk.wait(60)
     assert not robot.is_running
     for _ in range(30):
-        assert not any(wheel(robot, number).wanted for number in (0, 1))
+        assert not any(wheel(robot, number).wanted_speed for number in (0, 1))
         talk.wait(20)
     assert is_still(robot)
 
@@ -259,8 +259,8 @@ def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float,
         for number in numbers:
             Flicker(robot, number, hertz)
         driven_ms = 0
-        while not any(event.what == "SHOW" for event in robot.take_events()):
-            if any(wheel(robot, number).wanted for number in (0, 1)):
+        while not any(event.kind == "SHOW" for event in robot.take_events()):
+            if any(wheel(robot, number).wanted_speed for number in (0, 1)):
                 driven_ms = robot.now_ms
             talk.wait(10)
             assert robot.fault == "" and robot.now_ms < 8000
@@ -284,12 +284,12 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     number: int, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     robot, talk = started_robot(text)
-    monkeypatch.setattr(wheel(robot, number), "is_seen", False)
+    monkeypatch.setattr(wheel(robot, number), "has_working_sensor", False)
     talk.wait(480)
     assert robot.is_running
     talk.wait(100)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
-    status = talk.until(talk.session.status()).values
+    status = talk.wait_for(talk.session.status()).values
     sentence = fault_sentence(status.fault, status.fault_at, 0, None, "en")
     side = ("left", "right")[number]
     assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
@@ -308,7 +308,7 @@ def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
     robot, talk = started_robot(WAY)
     talk.wait(600)
     for number, later_ms in ((1, 120), (0, 0)):
-        monkeypatch.setattr(wheel(robot, number), "is_seen", False)
+        monkeypatch.setattr(wheel(robot, number), "has_working_sensor", False)
         talk.wait(later_ms)
     talk.wait(520)
     assert robot.fault == "STUCK" and not robot.is_running
@@ -325,9 +325,9 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     step = one.step
 
     def back(has_two: bool) -> float:
-        before = one.counted
+        before = one.counted_edges
         speed = step(has_two)
-        one.counted = 2 * before - one.counted
+        one.counted_edges = 2 * before - one.counted_edges
         return speed
 
     monkeypatch.setattr(one, "step", back)
@@ -354,7 +354,7 @@ def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
 
 
 def noise(talk: Talk) -> tuple[int, ...]:
-    return tuple(talk.until(talk.session.status()).values.noise)
+    return tuple(talk.wait_for(talk.session.status()).values.noise)
 
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
@@ -386,7 +386,7 @@ def test_edges_of_wheels_that_turn_and_roll_are_no_noise(text: str) -> None:
     for seed in (1, 2, 3):
         robot, talk = started_robot(text, seed)
         talk.wait(8000)
-        assert noise(talk) == (0, 0) and wheel(robot, 0).counted > 20
+        assert noise(talk) == (0, 0) and wheel(robot, 0).counted_edges > 20
 
 
 def test_a_robot_without_discs_tells_no_noise() -> None:
@@ -418,7 +418,7 @@ def test_whatever_has_ended_a_way_the_next_program_goes_straight(
         if how == "lost":
             robot.step(robot.now_ms + 1500)
         talk.session.stop(robot.now_ms)
-        talk.until(talk.session.clear())
+        talk.wait_for(talk.session.clear())
         talk.wait(1000)
         before = robot.pose
         assert talk.upload("F(100 CM, 80)").status == OK
@@ -467,7 +467,7 @@ def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
 def test_counts_that_wrap_around() -> None:
     robot, talk = started_robot("W(0.1); F(30 CM, 60)")
     for number in (0, 1):
-        wheel(robot, number).counted = (1 << 16) - 7
+        wheel(robot, number).counted_edges = (1 << 16) - 7
     talk.wait(4000)
     assert abs(gone(robot)[0] - 30) < 1.5
 
@@ -486,19 +486,19 @@ def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> Non
 def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
     """And it stops for one at once, while it goes a way."""
     robot, talk = started_robot("F(60 CM, 60); SHOW(1)", is_detached=True)
-    hello_reply = talk.until(talk.session.hello()).values
+    hello_reply = talk.wait_for(talk.session.hello()).values
     assert TEXT_LEVELS[hello_reply.features & TEXT_LEVEL][0] == "NONE"
     talk.wait(300)
     for line in (b"SI|R(1, 80)\r\n", b"HELP\r\n", b"PING|check_connection\r\n", b"\xff\n"):
         assert b"//" not in robot.step(robot.now_ms + 200, line)
     assert robot.is_running and robot.fault == ""
     robot.step(robot.now_ms + 30, b"STOP\r\n")
-    assert not robot.is_running and not any(wheel(robot, number).wanted for number in (0, 1))
+    assert not robot.is_running and not any(wheel(robot, number).wanted_speed for number in (0, 1))
 
 
 def test_a_mega_with_discs_reads_text() -> None:
     talk = Talk(VirtualRobot(robots.load("tinibot2", "mega"), floor()))
-    hello_reply = talk.until(talk.session.hello()).values
+    hello_reply = talk.wait_for(talk.session.hello()).values
     assert TEXT_LEVELS[hello_reply.features & TEXT_LEVEL][0] == "MEGA"
 
 
@@ -517,14 +517,14 @@ def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> No
     assert talk.upload(text).status == OK
     talk.wait(6000)
     assert trace(robot.take_events()) == traced(text, name)
-    assert talk.until(talk.session.status()).values.saved == SAVED_STORED
+    assert talk.wait_for(talk.session.status()).values.saved == SAVED_STORED
 
 
 @each_row("name", robots.names())
 def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
     profile = robots.load(name)
-    go_ms = profile.kit.go_ms(20_000, 60, turns=False)
-    turn_ms = profile.kit.go_ms(90_000, 60, turns=True)
+    go_ms = profile.kit.go_ms(20_000, 60, is_turn=False)
+    turn_ms = profile.kit.go_ms(90_000, 60, is_turn=True)
     assert go_ms is not None and turn_ms is not None
     assert move_pose(profile.body, START, 60, 60, go_ms).x_cm == pytest.approx(20, abs=0.05)
     assert move_pose(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
@@ -539,8 +539,8 @@ def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
     assert unpack(image).needs == needs
     assert talk.upload(text, runs=False).status == OK
     talk.wait(2000)
-    assert talk.until(talk.session.fetch()).values.image == image
-    assert talk.until(talk.session.live(unpack(image).code)).status == OK
+    assert talk.wait_for(talk.session.fetch()).values.image == image
+    assert talk.wait_for(talk.session.live(unpack(image).code)).status == OK
     talk.wait(6000)
     assert trace(robot.take_events()) == traced(text, "tinibot32")
 
@@ -549,12 +549,12 @@ def test_without_numbers_it_never_comes_there() -> None:
     """A profile without `speed` is not asked for such programs; whoever sends one sees a fault."""
     robot = robot_in(name="grabber")
     kit = robot.profile.kit
-    assert kit.go_ms(20_000, 60, turns=False)
+    assert kit.go_ms(20_000, 60, is_turn=False)
     robot.profile = robot.profile._replace(kit=Kit(kit.sensors, kit.actuators))
     robot.power_cycle()
     talk = Talk(robot)
-    talk.until(talk.session.hello())
+    talk.wait_for(talk.session.hello())
     image = unpack(compile_text("W(0.1); F(20 CM, 60)", kit).image)
-    assert talk.until(talk.session.upload(image, True, True)).status == OK
+    assert talk.wait_for(talk.session.upload(image, True, True)).status == OK
     talk.wait(3000)
     assert robot.fault == "NO_POWER"

@@ -14,7 +14,14 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.robots.kinematics import Pose, move_pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull
-from tiniscript.virtual.geometry import Point, Segment, crosses, gap_between, nearest, nearest_seen
+from tiniscript.virtual.geometry import (
+    Point,
+    Segment,
+    crosses,
+    gap_between,
+    nearest_point,
+    nearest_seen,
+)
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.world import World
 
@@ -30,9 +37,9 @@ ACROSS = Segment(Point(10, -5), Point(10, 5))
 
 
 def test_the_nearest_point_is_inside_or_an_end() -> None:
-    assert nearest(ACROSS, 3, 2) == (10, 2)
-    assert nearest(ACROSS, 3, 9) == (10, 5)
-    assert nearest(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
+    assert nearest_point(ACROSS, 3, 2) == (10, 2)
+    assert nearest_point(ACROSS, 3, 9) == (10, 5)
+    assert nearest_point(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
 
 
 def test_segments_cross_or_have_a_distance() -> None:
@@ -76,19 +83,19 @@ def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
         found.set_motors(now_ms, left, right)
         now_ms += duration_ms
         pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
-        assert found.go_on(now_ms) == pytest.approx(pose, abs=1e-6)
+        assert found.advance_to(now_ms) == pytest.approx(pose, abs=1e-6)
     assert found.bumps == 0
 
 
 def test_a_robot_stops_at_a_wall_that_it_drives_into() -> None:
     found = driving(floor())
     found.set_motors(0, 100, 100)
-    pose = found.go_on(10_000)
+    pose = found.advance_to(10_000)
     assert pose == pytest.approx((200 - NOSE_CM, 100, 0), abs=0.01)
     assert found.bumps == 1
     assert found.driven_cm == pytest.approx(100 - NOSE_CM, abs=0.1)
     found.set_motors(10_000, -100, -100)
-    assert found.go_on(11_000).x_cm == pytest.approx(200 - NOSE_CM - 45, abs=0.01)
+    assert found.advance_to(11_000).x_cm == pytest.approx(200 - NOSE_CM - 45, abs=0.01)
 
 
 @pytest.mark.parametrize("heading", [30, -30, 2])
@@ -96,7 +103,7 @@ def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
     """Its nose is pushed aside, though both motors get the same."""
     found = driving(floor(start=f"x_cm = 150\ny_cm = 100\nheading = {heading}"))
     found.set_motors(0, 100, 100)
-    pose = found.go_on(2400)
+    pose = found.advance_to(2400)
     assert pose.heading == pytest.approx(math.copysign(90, heading), abs=2)
     assert pose.x_cm == pytest.approx(200 - found.hull.radius_cm, abs=0.1)
     assert 15 < abs(pose.y_cm - 100) < 90
@@ -108,7 +115,7 @@ def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
     robot = TINIBOT._replace(body=TINIBOT.body._replace(turn_s=turn_s))
     found = driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
     found.set_motors(0, 100, 100)
-    poses = [found.go_on(now_ms) for now_ms in range(0, 2400, 10)]
+    poses = [found.advance_to(now_ms) for now_ms in range(0, 2400, 10)]
     aside_cm = 0.0
     for (x, y, heading), (next_x, next_y, next_heading) in pairwise(poses):
         along = math.radians(heading + next_heading) / 2
@@ -122,7 +129,7 @@ def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: flo
     end = 100 + aside
     found = driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
     found.set_motors(0, 60, 60)
-    assert found.go_on(4000).x_cm > 150
+    assert found.advance_to(4000).x_cm > 150
     assert found.bumps >= 1
 
 
@@ -135,9 +142,9 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
     for heading in range(0, 360, 40):
         found = driving(world, Pose(60, 100, heading), robot)
         found.set_motors(0, *powers)
-        before = found.go_on(0)
+        before = found.advance_to(0)
         for now_ms in range(250, 15_000, 250):
-            pose = found.go_on(now_ms)
+            pose = found.advance_to(now_ms)
             contact = found.hull.contact(pose, found.obstacles)
             assert contact and contact.gap_cm > -0.01
             assert not any(
@@ -156,8 +163,8 @@ def test_looking_changes_nothing() -> None:
         )
         found.set_motors(0, 90, 80)
         for now_ms in looks:
-            found.look(now_ms)
-        ends.append(found.go_on(8000))
+            found.pose_at(now_ms)
+        ends.append(found.advance_to(8000))
     assert ends[0] == ends[1] == ends[2]
 
 
@@ -166,11 +173,11 @@ def test_the_way_has_no_gaps_and_few_corners() -> None:
     found.set_motors(0, 50, 50)
     found.set_motors(3000, 30, -30)
     found.set_motors(4000, 50, 50)
-    found.go_on(20_000)
+    found.advance_to(20_000)
     assert len(found.corners) < 300
     length_cm = sum(math.dist(a[:2], b[:2]) for a, b in pairwise(found.corners))
     assert length_cm == pytest.approx(found.driven_cm, rel=1e-6)
-    assert found.corners[-1][:2] == found.go_on(20_000)[:2]
+    assert found.corners[-1][:2] == found.advance_to(20_000)[:2]
 
 
 def test_the_hull_reaches_to_the_sensors() -> None:
@@ -245,10 +252,10 @@ def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -
     pose = Pose(100, 100, 0)
     assert read(floor(), 3, pose, LINER) == 5  # BATTERY, 0 to 10 V
     assert read(floor(), 1, pose, GRABBER) == 20  # TEMPERATURE
-    sensing = Sensing(LINER, floor(), told={3: [7000, 6500], 0: [1]})
+    sensing = Sensing(LINER, floor(), given_readings={3: [7000, 6500], 0: [1]})
     assert [sensing.read(3, pose) for _ in range(3)] == [7000, 6500, 6500]
     assert sensing.read(0, pose) == 1
-    assert sensing.look(3, pose) == 6500
+    assert sensing.peek(3, pose) == 6500
 
 
 def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
@@ -257,4 +264,4 @@ def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
     readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]
     spread = math.sqrt(sum((reading - 1) ** 2 for reading in readings) / len(readings))
     assert 0.04 < spread < 0.06
-    assert sensing.look(DISTANCE, pose) == 87_000
+    assert sensing.peek(DISTANCE, pose) == 87_000

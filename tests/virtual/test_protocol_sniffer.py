@@ -155,7 +155,7 @@ def until_let_go(simulator: Simulator, client: socket.socket) -> None:
 
 
 def _has_moved(simulator: Simulator) -> bool:
-    return any(event.what == "MOTORS" for event in simulator.robot.take_events())
+    return any(event.kind == "MOTORS" for event in simulator.robot.take_events())
 
 
 def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
@@ -167,7 +167,7 @@ def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator:
                 simulator.turn(0.01)
             if header:
                 until_let_go(simulator, client)
-                assert simulator.transports.visits == 0
+                assert simulator.transports.visit_count == 0
                 assert simulator.robot.take_events() == []
             else:
                 until(simulator, lambda: _has_moved(simulator))
@@ -176,7 +176,7 @@ def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator:
 def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulator) -> None:
     with visit(simulator) as first:
         first.sendall(PING)
-        until(simulator, lambda: simulator.transports.visits == 1)
+        until(simulator, lambda: simulator.transports.visit_count == 1)
         with visit(simulator) as page:
             page.sendall(NOT_FOR_ROBOTS["post"] + program())
             simulator.turn(0.01)
@@ -192,7 +192,7 @@ def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) ->
             for _ in range(3):
                 simulator.turn(0.01)
         until_answered(simulator, client, b"\n")
-        assert simulator.transports.visits == 1
+        assert simulator.transports.visit_count == 1
 
 
 # -- many of them -------------------------------------------------------------------------------
@@ -236,8 +236,8 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
 def test_whoever_says_nothing_has_to_leave(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(limits, "SILENT_S", 0.05)
-    monkeypatch.setattr(limits, "OPENING_S", 0.0)
+    monkeypatch.setattr(limits, "SILENCE_TIMEOUT_S", 0.05)
+    monkeypatch.setattr(limits, "OPENING_TIMEOUT_S", 0.0)
     for says in (b"", b"GE"):
         with visit(simulator) as client:
             client.sendall(says)
@@ -249,14 +249,14 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
 ) -> None:
     with visit(simulator) as first, visit(simulator) as second:
         first.sendall(PING)
-        until(simulator, lambda: simulator.transports.visits == 1)
-        monkeypatch.setattr(limits, "PATIENCE_S", 1000.0)
+        until(simulator, lambda: simulator.transports.visit_count == 1)
+        monkeypatch.setattr(limits, "REFUSAL_DELAY_S", 1000.0)
         second.sendall(PING)
         for _ in range(20):
             simulator.turn(0.01)
-        assert simulator.transports.visits == 1
-        monkeypatch.setattr(limits, "IDLE_S", 0.0)
-        until(simulator, lambda: simulator.transports.visits == 2)
+        assert simulator.transports.visit_count == 1
+        monkeypatch.setattr(limits, "IDLE_TIMEOUT_S", 0.0)
+        until(simulator, lambda: simulator.transports.visit_count == 2)
         until_answered(simulator, second)
 
 

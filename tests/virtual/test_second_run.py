@@ -95,11 +95,11 @@ def check(seed: int) -> str:
     talk.wait(rng.choice((0, 1, 30, 300, 900)))
     ends = rng.choice([*ENDS])
     ENDS[ends](talk)
-    assert ends not in OFF or (not robot.is_running and robot.at is None), seed
+    assert ends not in OFF or (not robot.is_running and robot.offset is None), seed
     robot.step(robot.now_ms + 20, b"\0S\n")
     robot.step(robot.now_ms + 1500)  # until it stands
     pose = robot.pose
-    is_done = "DONE" in [event.what for event in robot.take_events()][-2:]
+    is_done = "DONE" in [event.kind for event in robot.take_events()][-2:]
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)

@@ -9,8 +9,8 @@ from tests.support.rows import each_row
 from tests.support.virtual_robot import robot_in
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
-from tiniscript.library.shows import Finder
-from tiniscript.library.source_map import Map
+from tiniscript.library.shows import ShowFinder
+from tiniscript.library.source_map import SourceMap
 from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.virtual import worlds
@@ -34,15 +34,15 @@ class Desk:
     def __init__(self, robot: str, baud: int) -> None:
         self.robot = robot_in(worlds.load("free"), robot, baud=baud)
         self.computer = Computer(self.robot, 1)
-        self.maps: dict[int, Map] = {}
-        self.finder = Finder(self.maps)
+        self.maps: dict[int, SourceMap] = {}
+        self.finder = ShowFinder(self.maps)
 
     def send(self, text: str) -> None:
         found = compile_text(text, robots.load(self.robot.profile.name).kit)
         assert found.is_right and found.image
         self.maps[checksum(found.image)] = mapped(found)
         request = self.computer.session.upload(unpack(found.image), runs=True)
-        assert self.computer.until(request).status == OK
+        assert self.computer.wait_for(request).status == OK
 
     def shown(self, limit_ms: int) -> list[tuple[int, str]]:
         """Return values and their names, until a program ends or for so long."""
@@ -112,6 +112,6 @@ def test_the_robot_s_own_trace_says_the_same(kind: str) -> None:
     desk.shown(60_000)
     [places] = desk.maps.values()
     for event in desk.robot.take_events():
-        if event.what == "SHOW":
-            at = places.at(event.at)
+        if event.kind == "SHOW":
+            at = places.location_at(event.offset)
             assert at and NAMES[event.values[0] // 1000] in places.line(at.line)

@@ -11,7 +11,13 @@ import pytest
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
-from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
+from tiniscript.virtual.simulator import (
+    HEARTBEAT_MS,
+    MOST_WAITING_BYTES,
+    SILENCE_S,
+    Heartbeat,
+    Simulator,
+)
 
 PING = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, 1, 0))
 REST = b"the rest"
@@ -52,15 +58,15 @@ def test_a_flood_waits_outside(simulator: Simulator) -> None:
             with contextlib.suppress(BlockingIOError):
                 sent += client.send(flood)
             simulator.turn(0.01)
-            most = max(most, simulator.waiting)
+            most = max(most, simulator.waiting_bytes)
         assert sent > 100_000
-        assert FULL_BYTES < most < FULL_BYTES + limits.READ_BYTES + 100
+        assert MOST_WAITING_BYTES < most < MOST_WAITING_BYTES + limits.READ_BYTES + 100
 
 
 def test_a_client_who_does_not_read_loses_what_it_does_not_read(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(limits, "KEPT_BYTES", 500)
+    monkeypatch.setattr(limits, "MOST_UNSENT_BYTES", 500)
     with visit(simulator) as client:
         client.sendall(PING)
         until(simulator, lambda: simulator.transports.is_connected)
@@ -76,7 +82,7 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
             client.sendall(PING)
             until(simulator, lambda: simulator.transports.is_connected)
         until(simulator, lambda: not simulator.transports.is_connected)
-    assert simulator.transports.visits == 30
+    assert simulator.transports.visit_count == 30
     assert simulator.transports._server.getsockname()[0] == "127.0.0.1"  # only this computer
 
 
@@ -108,16 +114,16 @@ def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
     """On a bad line, whose bytes come late."""
     for _ in range(3):
         assert REST not in heard_by_a_client(simulator, 1)
-        simulator.back.put(REST, simulator.robot.now_ms + late_ms)
+        simulator.from_robot.put(REST, simulator.robot.now_ms + late_ms)
     assert REST not in heard_by_a_client(simulator, 2 * late_ms)
 
 
 def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
     """Return what somebody hears who comes, asks for something, and leaves after a while."""
-    visits, end_ms = simulator.transports.visits, simulator.robot.now_ms + stays_ms
+    visits, end_ms = simulator.transports.visit_count, simulator.robot.now_ms + stays_ms
     with visit(simulator) as client:
         client.sendall(PING)
-        until(simulator, lambda: simulator.transports.visits > visits)
+        until(simulator, lambda: simulator.transports.visit_count > visits)
         heard = bytearray()
         until(simulator, lambda: b"\0" in received(client, heard))
         until(simulator, lambda: simulator.robot.now_ms > end_ms)
@@ -129,35 +135,35 @@ def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
 
 def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
     heart = Heartbeat()
-    assert heart.due(10_000, 5.0) == b""  # there was none
+    assert heart.bytes_due(10_000, 5.0) == b""  # there was none
     heart.on_bytes(b"\0" + PING[:3], 5.0)
-    assert heart.due(10_000, 5.0) == b""  # one is on its way
+    assert heart.bytes_due(10_000, 5.0) == b""  # one is on its way
     heart.on_bytes(PING[3:], 5.0)
-    assert heart.due(10_000, 5.0) == PING
-    assert heart.due(10_000 + HEARTBEAT_MS - 1, 5.0) == b""
-    assert heart.due(10_000 + HEARTBEAT_MS, 5.0) == PING
-    assert heart.due(20_000, 5.0 + SILENT_S + 0.1) == b""  # the computer itself is silent
+    assert heart.bytes_due(10_000, 5.0) == PING
+    assert heart.bytes_due(10_000 + HEARTBEAT_MS - 1, 5.0) == b""
+    assert heart.bytes_due(10_000 + HEARTBEAT_MS, 5.0) == PING
+    assert heart.bytes_due(20_000, 5.0 + SILENCE_S + 0.1) == b""  # the computer itself is silent
     heart.on_bytes(b"\0\0\0", 7.0)
-    assert heart.due(30_000, 7.0) == PING
+    assert heart.bytes_due(30_000, 7.0) == PING
     heart.forget()
-    assert heart.due(40_000, 7.0) == b""
+    assert heart.bytes_due(40_000, 7.0) == b""
 
 
 def test_a_new_client_does_not_speak_with_the_words_of_the_one_before(simulator: Simulator) -> None:
     with visit(simulator) as client:
         client.sendall(PING + b"\5half")
-        until(simulator, lambda: bool(simulator._heartbeat._open))
+        until(simulator, lambda: bool(simulator._heartbeat._unfinished))
     with visit(simulator) as client:
         client.sendall(b"\0\0\0\0\0")
-        until(simulator, lambda: simulator.transports.visits == 2)
-        until(simulator, lambda: not simulator._heartbeat._open)
-        assert simulator._heartbeat.due(10**6, simulator._heartbeat._heard_s) == b""
+        until(simulator, lambda: simulator.transports.visit_count == 2)
+        until(simulator, lambda: not simulator._heartbeat._unfinished)
+        assert simulator._heartbeat.bytes_due(10**6, simulator._heartbeat._received_s) == b""
 
 
 def test_the_heartbeat_keeps_nothing_endless() -> None:
     heart = Heartbeat()
     for _ in range(1000):
         heart.on_bytes(b"x" * 1000, 1.0)
-    assert len(heart._open) < 200
+    assert len(heart._unfinished) < 200
     heart.on_bytes(b"\0", 1.0)
-    assert heart.due(10_000, 1.0) == b""
+    assert heart.bytes_due(10_000, 1.0) == b""

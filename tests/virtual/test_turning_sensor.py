@@ -39,8 +39,8 @@ def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> N
         body = necked.body._replace(places={"DISTANCE": fixed})
         turned, looks = Sensing(necked, world), Sensing(necked._replace(body=body), world)
         turned.turn(0, value * 1000)
-        assert turned.look(0, pose) == looks.look(0, pose)
-        seen.add((turned.look(0, pose), Sensing(necked, world).look(0, pose)))
+        assert turned.peek(0, pose) == looks.peek(0, pose)
+        seen.add((turned.peek(0, pose), Sensing(necked, world).peek(0, pose)))
     assert sum(a != b for a, b in seen) > 30, "it turns, and sees something else"
 
 
@@ -48,20 +48,20 @@ def test_it_stays_as_it_is_when_its_servo_is_released() -> None:
     """A stop lets go of the servo, which nothing then turns back."""
     robot = VirtualRobot(with_neck(), worlds.load("maze"), Settings(1))
     talk = Talk(robot)
-    ahead = robot.sensing.look(0, robot.pose)
+    ahead = robot.sensing.peek(0, robot.pose)
     talk.upload("SI|GRIPPER(0);W(0.2)", is_detached=True)
     robot.step(robot.now_ms + 1000)
     robot.actuators_off(robot.now_ms)
     assert robot.actuators == {}
-    assert robot.sensing.turned == {"GRIPPER": -90.0}
-    assert robot.sensing.look(0, robot.pose) != ahead
+    assert robot.sensing.turn_of_actuator == {"GRIPPER": -90.0}
+    assert robot.sensing.peek(0, robot.pose) != ahead
     talk.upload("SI|GRIPPER(90);W(0.2)", is_detached=True)
     robot.step(robot.now_ms + 1000)
-    assert robot.sensing.look(0, robot.pose) == ahead
+    assert robot.sensing.peek(0, robot.pose) == ahead
 
 
 def test_another_actuator_turns_no_sensor() -> None:
     robot = VirtualRobot(robots.load("grabber"), worlds.load("maze"), Settings(1))
     Talk(robot).upload("SI|GRIPPER(0);LED(TRUE);W(0.2)", is_detached=True)
     robot.step(robot.now_ms + 100)
-    assert robot.sensing.turned == {}
+    assert robot.sensing.turn_of_actuator == {}

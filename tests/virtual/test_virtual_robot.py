@@ -56,12 +56,12 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
     talk = Talk(robot)
     assert talk.upload(PROGRAMS[name]).status == 0
     talk.wait(20_000)
-    assert robot.at is None  # nothing runs
+    assert robot.offset is None  # nothing runs
     events = robot.take_events()
     said = trace(events)
     readings: dict[int, list[int]] = {}
     for event in events:
-        if event.what == "READ":
+        if event.kind == "READ":
             readings.setdefault(event.values[0], []).append(event.values[1])
     code = unpack(compile_text(PROGRAMS[name], KIT).image).code
     expected = [str(event) for event in run(code, KIT, Senses(KIT, readings))
@@ -88,7 +88,7 @@ def test_unequal_motors_drive_a_curve_and_their_trim_makes_it_straight() -> None
     for trim, heading in ((Trim(), -0.1 / 2 * 360 * 0.9), (Trim(balance=10), 0)):
         robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
         talk = Talk(robot)
-        assert talk.until(talk.session.trim(trim.data())).status == 0
+        assert talk.wait_for(talk.session.trim(trim.data())).status == 0
         talk.upload("SI|F(2, 100)")
         robot.step(robot.now_ms + 900)
         assert robot.pose.heading == pytest.approx(heading, rel=0.1, abs=0.5)
@@ -114,7 +114,7 @@ def test_the_line_example_stays_on_its_line() -> None:
     for _ in range(300):
         robot.step(robot.now_ms + 100)
         places.append(robot.pose)
-        off += not any(robot.sensing.look(number, robot.pose) for number in (0, 1))
+        off += not any(robot.sensing.peek(number, robot.pose) for number in (0, 1))
     assert off < 30
     assert robot.driving.driven_cm > 400
     assert max(place.x_cm for place in places) > 150  # all around
@@ -166,7 +166,7 @@ def test_a_program_that_another_one_ends_ends_before_it() -> None:
     robot.take_events()
     talk.session.start(True)
     robot.step(robot.now_ms + 500, talk.session.poll(robot.now_ms))  # all in one step
-    assert [event.what for event in robot.take_events()] == ["STOP", "START", "MOTORS"]
+    assert [event.kind for event in robot.take_events()] == ["STOP", "START", "MOTORS"]
 
 
 def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -183,9 +183,9 @@ def test_each_task_that_has_not_ended_has_a_place() -> None:
     robot = robot_in()
     Talk(robot).upload(text, is_detached=True)
     robot.step(robot.now_ms + 50)
-    assert len(robot.places) == 3
+    assert len(robot.task_offsets) == 3
     robot.step(robot.now_ms + 500)
-    assert len(robot.places) == len(set(robot.places)) == 2
+    assert len(robot.task_offsets) == len(set(robot.task_offsets)) == 2
 
 
 def test_a_saved_program_is_there_after_a_power_cycle() -> None:
@@ -260,7 +260,7 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
         assert request.outcome.status == 0
     for _ in range(3000):
         wait()
-    assert there.faults + back.faults > 1
+    assert there.fault_count + back.fault_count > 1
     said = trace(robot.take_events())
     assert [each.split(" ", 1)[1] for each in said][-1] == "DONE"
     assert [each.split()[2] for each in said if " MOTORS " in each][:3] == ["1", "2", "3"]
@@ -304,7 +304,7 @@ def test_a_running_robot_goes_on_by_itself() -> None:
 ])  # fmt: skip
 def test_it_says_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level: str) -> None:
     talk = Talk(robot_in(name=name))
-    hello_reply = talk.until(talk.session.hello()).values
+    hello_reply = talk.wait_for(talk.session.hello()).values
     assert (hello_reply.largest, hello_reply.window) == sizes
     assert list(LEVELS)[(hello_reply.features & 3) - 1] == level
     assert hello_reply.room >= talk.robot.profile.board.program_bytes
@@ -316,29 +316,29 @@ def test_it_keeps_what_its_board_promises_and_what_it_says_itself(name: str, is_
     robot = robot_in(name=name)
     assert robot.profile.board.program_bytes == LARGEST[name]
     talk = Talk(robot)
-    room = talk.until(talk.session.hello()).values.room
+    room = talk.wait_for(talk.session.hello()).values.room
     image = pack("SI", 0, large_upload.program(room if is_all else LARGEST[name]).code)
-    assert talk.until(talk.session.upload(unpack(image), runs=False)).status == OK
+    assert talk.wait_for(talk.session.upload(unpack(image), runs=False)).status == OK
     talk.wait(20_000)
-    assert talk.until(talk.session.status()).values.saved == SAVED_STORED
+    assert talk.wait_for(talk.session.status()).values.saved == SAVED_STORED
     robot.power_cycle()
     again = Talk(robot, nonce=6)
-    assert again.until(again.session.hello()).values.program == unpack(image).checksum
-    assert again.until(again.session.fetch()).values.image == image
+    assert again.wait_for(again.session.hello()).values.program == unpack(image).checksum
+    assert again.wait_for(again.session.fetch()).values.image == image
 
 
 def test_what_it_does_not_hold_is_refused() -> None:
     talk = Talk(robot_in(name="grabber"))
-    room = talk.until(talk.session.hello()).values.room
+    room = talk.wait_for(talk.session.hello()).values.room
     image = unpack(pack("SI", 0, large_upload.program(room + 1).code))
-    assert talk.until(talk.session.upload(image, runs=False)).status == TOO_LARGE
+    assert talk.wait_for(talk.session.upload(image, runs=False)).status == TOO_LARGE
     assert len(talk.robot.memory) == 4096  # bytes of a Mega's EEPROM
 
 
 def test_it_runs_a_long_live_line() -> None:
     talk = Talk(robot_in(name="tinibot32"))
-    talk.until(talk.session.hello())
-    assert talk.until(talk.session.live(large_upload.program(240).code)).status == OK
+    talk.wait_for(talk.session.hello())
+    assert talk.wait_for(talk.session.live(large_upload.program(240).code)).status == OK
     assert talk.robot.is_running
 
 
@@ -346,7 +346,7 @@ def test_it_runs_a_long_live_line() -> None:
 
 
 def owner_of(talk: Talk) -> str:
-    talk.until(talk.session.hello())
+    talk.wait_for(talk.session.hello())
     assert talk.session.robot
     return ownership_of(talk.session.robot)
 
@@ -360,7 +360,7 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
     robot.press()
     talk.wait(held_ms)
     robot.let_go()
-    assert talk.until(request).status == STATUSES[status]
+    assert talk.wait_for(request).status == STATUSES[status]
     if status == "OK":
         assert [key.uses_seals for key in keys.found] == [True]
         robot.power_cycle()
@@ -371,13 +371,13 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
 def test_it_is_seen_and_heard_which_one_it_is() -> None:
     robot = robot_in()
     talk = Talk(robot)
-    assert talk.until(talk.session.identify()).status == 0
+    assert talk.wait_for(talk.session.identify()).status == 0
     lights = []
     for _ in range(35):
         talk.wait(100)
         lights.append(robot.is_lit)
     assert sum(was != now for was, now in pairwise(lights)) >= 10
-    assert [event.what for event in robot.take_events()] == ["BEEP"] * 3
+    assert [event.kind for event in robot.take_events()] == ["BEEP"] * 3
 
 
 def test_a_long_push_of_the_simulator_lasts(

@@ -28,8 +28,8 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
         client.sendall(RUNS)
         until(simulator, lambda: simulator.robot.is_running)
         client.sendall(b"F(1,")
-        until(simulator, lambda: bool(simulator.waiting))
-    until(simulator, lambda: not simulator.waiting)
+        until(simulator, lambda: bool(simulator.waiting_bytes))
+    until(simulator, lambda: not simulator.waiting_bytes)
     with visit(simulator) as client:
         client.sendall(b"S\n")
         until(simulator, lambda: not simulator.robot.is_running)
@@ -54,7 +54,7 @@ def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, wo
     with visit(simulator) as client:
         client.sendall(word)
         until(simulator, lambda: not simulator.robot.is_running)
-        assert simulator.transports.visits == 1, "it lets nobody in"
+        assert simulator.transports.visit_count == 1, "it lets nobody in"
 
 
 def test_the_host_knows_such_lines_as_a_robot_does() -> None:

@@ -66,7 +66,7 @@ def test_a_world_is_read() -> None:
     )
     assert (world.width_cm, world.height_cm, world.has_border) == (200, 100, True)
     assert world.start == (50, 50, 90)
-    assert world.ambient == 0.125
+    assert world.ambient_light == 0.125
     assert world.walls == (((10, 20), (30.5, 20), (30.5, 0)),)
     [box] = world.boxes
     corners = [(round(x, 9), round(y, 9)) for x, y in box]

@@ -24,7 +24,7 @@ BLOCK, BLOCKS = 500, 50  # of one seed
 NO_BLOCK = 0xFFFF
 
 needs_chip = pytest.mark.skipif(
-    bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
+    bool(avr_bench.why_missing()), reason=avr_bench.why_missing() or "there is a simulated chip"
 )
 
 

@@ -30,8 +30,8 @@ from tiniscript.base.source import Source
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
+    CONDITION,
     MOVES,
-    QUESTION,
     UNIT_OF,
     VALUE,
     WORDS,
@@ -205,7 +205,7 @@ def edges(argument: Argument) -> Iterator[str]:
     for values in range(STACK_VALUES - 2, STACK_VALUES + 2):
         for value in ("V", "1"):
             is_question = argument in (
-                QUESTION,
+                CONDITION,
                 *WORDS["WHILE"].arguments,
                 *WORDS["WHEN"].arguments,
             )

@@ -68,7 +68,7 @@ def trace_with(text: str, robot: TracedRobot, senses: Senses, budget: int) -> li
         if not machine.in_turn:
             assert not machine.task.stack
         if status in (DONE, FAULT):
-            robot.say(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
+            robot.record(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
         elif status == WAITING and machine.wake_ms <= senses.max_ms:
             robot.now_ms = max(robot.now_ms, machine.wake_ms)
             continue
@@ -76,7 +76,7 @@ def trace_with(text: str, robot: TracedRobot, senses: Senses, budget: int) -> li
             continue
         else:
             robot.now_ms = senses.max_ms
-            robot.say("LIMIT", (), "LIMIT")
+            robot.record("LIMIT", (), "LIMIT")
         return [f"{event}\n" for event in robot.events]
 
 
@@ -166,7 +166,7 @@ class DeafRobot(TracedRobot):
         return False
 
     def off(self) -> None:
-        self.say("OFF", (), "OFF")
+        self.record("OFF", (), "OFF")
 
 
 @pytest.mark.parametrize("state", STATES)

@@ -29,7 +29,9 @@ from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.wasm import WasmMachine
 from tools.builds import wasm
 
-needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
+needs_zig = pytest.mark.skipif(
+    bool(wasm.why_not_here()), reason=wasm.why_not_here() or "there is a compiler"
+)
 KIT = robots.load("tinibot").kit
 SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]
 
@@ -233,7 +235,7 @@ class Slow:
     def read(self, sensor: int) -> int | None:
         return (sensor % 3 - 1) * 2_147_483_000 if self.is_ready() else None
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
         raise AssertionError
 
     def beep(self, hertz: int, duration_ms: int) -> None:

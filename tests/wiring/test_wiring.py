@@ -24,7 +24,7 @@ from tiniscript.robots.profile import Place, Robot, Wiring
 from tiniscript.robots.reader import read
 from tiniscript.robots.wiring import parts
 from tiniscript.robots.wiring.drawing import _width, drawing_of
-from tiniscript.robots.wiring.finished import _Finished, finished_of
+from tiniscript.robots.wiring.finished import _FinishedDrawing, finished_of
 from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
@@ -53,13 +53,13 @@ def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) ->
     settings = {setting.key: setting.default for setting in driver.settings}
     for key, need, is_optional, fixed, _ in driver.pins:
         if fixed is not None:
-            if driver.chosen_by(key, settings):
+            if driver.choosing_key(key, settings):
                 pins[key] = fixed
                 taken.add(fixed)
             continue
         if is_optional and not is_whole:
             continue
-        every = sorted(chip.digital | chip.analog, key=lambda pin: (-pin % 7, pin))
+        every = sorted(chip.digital_pins | chip.analog_pins, key=lambda pin: (-pin % 7, pin))
         pins[key] = next(pin for pin in every if chip.can(pin, need) and pin not in taken)
         taken.add(pins[key])
     return Wiring(driver.name, pins, settings)
@@ -144,7 +144,7 @@ def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
                     f"{where} has pins that are not drawn"
                 )
                 assert shape.icon in ICONS
-                assert all(has_text(note) for note in (*shape.notes, shape.need_key) if note)
+                assert all(has_text(note) for note in (*shape.note_keys, shape.need_key) if note)
 
 
 def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:
@@ -152,7 +152,7 @@ def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:
         chip = CHIPS[name]
         drawn = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
         drawn |= set(range(22, 54)) if name == "mega" else set()
-        assert drawn == chip.digital | chip.analog | chip.link_pins
+        assert drawn == chip.digital_pins | chip.analog_pins | chip.link_pins
 
 
 # -- every pin, in both languages
@@ -233,7 +233,7 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
 
 def _sentences(name: str) -> list[str]:
     blocks = page_of(plan_of(robots.load(name), "en"))
-    return [" ".join([block.words, *(" ".join(row) for row in block.rows)]) for block in blocks]
+    return [" ".join([block.text, *(" ".join(row) for row in block.rows)]) for block in blocks]
 
 
 def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
@@ -248,13 +248,16 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
 def test_no_pin_gets_more_than_it_takes(name: str) -> None:
     """What comes from a part with 5 V and goes to the pin, by the resistors on its way.
 
-    Seen from the pin there is `series`, then `to_ground`, then `beyond`: nothing flows through
-    `series`, so the pin has the volts of the middle.
+    Seen from the pin there is `series_resistor`, then `ground_resistor`, then `far_resistor`:
+    nothing flows through `series_resistor`, so the pin has the volts of the middle.
     """
     plan = plan_of(robots.load(name), "en")
     is_3v3 = robots.load(name).board.chip.startswith("esp32")
     for echo in [each for part in plan.parts for each in part.ends if each.name == "ECHO"]:
-        ohms = [float(each.removesuffix(" kΩ") or 0) for each in (echo.to_ground, echo.beyond)]
+        ohms = [
+            float(each.removesuffix(" kΩ") or 0)
+            for each in (echo.ground_resistor, echo.far_resistor)
+        ]
         volts = 5.0 * ohms[0] / sum(ohms) if all(ohms) else 5.0
         assert volts <= (3.4 if is_3v3 else 5.0)
         assert volts >= (2.5 if is_3v3 else 5.0), "a yes is above three quarters of the supply"
@@ -484,7 +487,7 @@ def test_two_servos_share_the_front_edge() -> None:
     plan = plan_of(robots.load("grabber"), "en")
     servo = next(part for part in plan.parts if part.is_device and part.shape.icon == "servo")
     bare = plan._replace(body=plan.body._replace(places={}), parts=(*plan.parts, servo))
-    middle, half = _Finished(bare).x, _Finished(bare).breadth / 2
+    middle, half = _FinishedDrawing(bare).x, _FinishedDrawing(bare).breadth / 2
     boxes = [element.attrib for element in Tree.fromstring(finished_of(bare)).iter(f"{SVG}rect")]
     found = [
         float(box["x"]) + 26 - middle
@@ -509,7 +512,7 @@ def test_the_longest_names_stay_in_the_finished_drawing() -> None:
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:
-    return _Finished(plan).at(place.x_cm, place.y_cm)
+    return _FinishedDrawing(plan).at(place.x_cm, place.y_cm)
 
 
 def test_left_is_left_and_ahead_is_up() -> None:

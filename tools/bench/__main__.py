@@ -19,29 +19,34 @@ PAGE = Path(__file__).parent.parent.parent / "docs" / "en" / "figures.md"
 def commands() -> list[list[str]]:
     """Return the name of each benchmark of the page and its arguments, in the page's order."""
     text = " ".join(PAGE.read_text(encoding="utf-8").split())
-    result = re.findall(r"`python -m tools\.bench\.(\w+(?: [^`]+)?)`", text)
-    return [command.split() for command in dict.fromkeys(result)]
+    matches = re.findall(r"`python -m tools\.bench\.(\w+(?: [^`]+)?)`", text)
+    return [command.split() for command in dict.fromkeys(matches)]
 
 
 def main(arguments: list[str] | None = None) -> int:
     rows = commands()
-    names_known = list(dict.fromkeys(name for name, *_ in rows))
+    known_names = list(dict.fromkeys(name for name, *_ in rows))
     parser = argparse.ArgumentParser(
         prog="python -m tools.bench", description="Print the figures of docs/en/figures.md."
     )
-    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {names_known}")
-    names: list[str] = parser.parse_args(arguments).names or names_known
-    unknown_names = [name for name in names if name not in names_known]
+    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {known_names}")
+    names: list[str] = parser.parse_args(arguments).names or known_names
+    unknown_names = [name for name in names if name not in known_names]
     if unknown_names:
         parser.error(f"no such benchmark: {', '.join(unknown_names)}")
     failed_names = []
-    for name, *rest in rows:
+    for name, *more_arguments in rows:
         if name not in names:
             continue
-        print("\n# python -m", " ".join([f"tools.bench.{name}", *rest]), end="\n\n", flush=True)
-        command = [sys.executable, "-m", f"tools.bench.{name}", *rest]
+        print(
+            "\n# python -m",
+            " ".join([f"tools.bench.{name}", *more_arguments]),
+            end="\n\n",
+            flush=True,
+        )
+        command = [sys.executable, "-m", f"tools.bench.{name}", *more_arguments]
         if subprocess.run(command, check=False).returncode:
-            failed_names.append(" ".join([name, *rest]))
+            failed_names.append(" ".join([name, *more_arguments]))
     if failed_names:
         print(f"\nnot within its limits, or not done: {', '.join(failed_names)}", file=sys.stderr)
     return 1 if failed_names else 0

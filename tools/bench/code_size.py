@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tests.support.casefile import documents, read
-from tiniscript import Compiled, compile_text, robots
+from tiniscript import Compilation, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.semantics.ir import all_statements
 from tools import ROOT
@@ -24,18 +24,18 @@ BYTES_IN_ISA_1_0 = 1066  # bytes of the same programs in the instruction set 1.0
 STATEMENTS = 259  # that they had when BYTES_IN_ISA_1_0 was measured
 
 
-class Measured(NamedTuple):
+class Measurement(NamedTuple):
     program_count: int
     statement_count: int
     code_bytes: int
     opcodes: Counter[str]
 
     @property
-    def per_statement(self) -> float:
+    def bytes_per_statement(self) -> float:
         return self.code_bytes / self.statement_count
 
 
-def corpus() -> Iterator[Compiled]:
+def corpus() -> Iterator[Compilation]:
     """Yield the compiled programs of the documents and examples."""
     robot_of_text: dict[str, str] = {}  # the robot, or nothing, of each text
     for path in (*documents(), *sorted(LESSONS.glob("*/*.md"))):
@@ -47,9 +47,9 @@ def corpus() -> Iterator[Compiled]:
         robot_of_text.setdefault(path.read_text(encoding="utf-8"), "")
     for text, robot in robot_of_text.items():
         for name in [robot] if robot else [robots.DEFAULT, *robots.names()]:
-            compiled = compile_text(text, robots.load(name).kit)
-            if compiled.is_right:
-                yield compiled
+            compilation = compile_text(text, robots.load(name).kit)
+            if compilation.is_right:
+                yield compilation
                 break
 
 
@@ -61,22 +61,22 @@ def _robot_of(parts: dict[str, str]) -> str:
     return ""
 
 
-def measure() -> Measured:
-    programs = statements = code_bytes = 0
+def measure() -> Measurement:
+    program_count = statement_count = code_bytes = 0
     opcodes: Counter[str] = Counter()
-    for compiled in corpus():
-        assert compiled.program is not None
-        programs += 1
-        statements += len(compiled.program.procedures) + len(compiled.program.tasks)
-        statements += sum(1 for _ in all_statements(compiled.program))
-        code_bytes += len(compiled.code)
-        opcodes.update(row.op.name for row in rows(compiled.code) if row.op)
-    return Measured(programs, statements, code_bytes, opcodes)
+    for compilation in corpus():
+        assert compilation.program is not None
+        program_count += 1
+        statement_count += len(compilation.program.procedures) + len(compilation.program.tasks)
+        statement_count += sum(1 for _ in all_statements(compilation.program))
+        code_bytes += len(compilation.code)
+        opcodes.update(row.op.name for row in rows(compilation.code) if row.op)
+    return Measurement(program_count, statement_count, code_bytes, opcodes)
 
 
 def main() -> None:
-    result = measure()
-    print(f"A statement takes {result.per_statement:.1f} bytes.")
+    measurement = measure()
+    print(f"A statement takes {measurement.bytes_per_statement:.1f} bytes.")
 
 
 if __name__ == "__main__":

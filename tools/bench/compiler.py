@@ -25,15 +25,17 @@ ROWS = *(f"`{text}`" for text in PROGRAMS[:2]), "the paper's obstacle program"
 
 
 def main() -> None:
-    sizes()
-    processes()
+    print_sizes()
+    print_start_ratio()
 
 
-def sizes() -> None:
+def print_sizes() -> None:
     size_rows = []
     for name, text in zip(ROWS, PROGRAMS, strict=True):
-        ours = compile_text(text, KIT)
-        size_rows.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
+        compilation = compile_text(text, KIT)
+        size_rows.append(
+            (name, *(f"{len(data)} bytes" for data in (compilation.code, compilation.image)))
+        )
     page.show("compiler", size_rows)
 
 
@@ -43,32 +45,32 @@ def median_pair(
     """Return the median times of both, in seconds, and of their ratio; taken in turn."""
     pairs = []
     for _ in range(run_count):
-        times = []
-        for item in (own_work, other_work):
+        durations_s = []
+        for work in (own_work, other_work):
             start = time.perf_counter()
-            item()
-            times.append(time.perf_counter() - start)
-        pairs.append((times[0], times[1], times[0] / times[1]))
+            work()
+            durations_s.append(time.perf_counter() - start)
+        pairs.append((durations_s[0], durations_s[1], durations_s[0] / durations_s[1]))
     return [statistics.median(column) for column in zip(*pairs, strict=True)]
 
 
-def processes() -> None:
+def print_start_ratio() -> None:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "obstacle.ts"
         program.write_text(OBSTACLE, encoding="utf-8")
-        nothing = [sys.executable, "-c", "pass"]
+        python_command = [sys.executable, "-c", "pass"]
 
         def start(*arguments: str) -> Callable[[], object]:
             command = [sys.executable, "-m", "tiniscript", *arguments]
             environ = {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder}
             return lambda: subprocess.run(command, check=True, capture_output=True, env=environ)
 
-        def bare() -> object:
-            return subprocess.run(nothing, check=True, capture_output=True)
+        def start_python() -> object:
+            return subprocess.run(python_command, check=True, capture_output=True)
 
         command = start("compile", str(program))
         command()  # what is cached is cached now
-        ratio = median_pair(command, bare, 21)[-1]
+        ratio = median_pair(command, start_python, 21)[-1]
     print(f"A whole `tsc compile` takes about {ratio:.1f} times as long as `python -c pass`.")
 
 

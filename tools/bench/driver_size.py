@@ -21,30 +21,30 @@ from tiniscript.robots.profile import Robot, Wiring
 from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
-USED = "l298n"  # by tinibot
+OWN_DRIVER = "l298n"  # by tinibot
 ENVIRONMENT = "uno"
-DRIVERS_IN_ORDER = sorted(drivers_for("motors"), key=lambda name: name != USED)
+DRIVERS_IN_ORDER = sorted(drivers_for("motors"), key=lambda name: name != OWN_DRIVER)
 ROWS = [f"`{name}`" for name in DRIVERS_IN_ORDER]
-BESIDE_A_SHIELD = {"trigger": 16, "echo": 17}  # A2, A3
+SHIELD_SENSOR_PINS = {"trigger": 16, "echo": 17}  # A2, A3
 
 
-def wired(name: str, robot: Robot) -> Wiring:
+def motor_wiring(name: str, robot: Robot) -> Wiring:
     """Return the motors of a driver, on the first pins that fit and that nothing else has."""
     chip, driver = CHIPS[robot.board.chip], DRIVERS["motors", name]
     settings = {setting.key: setting.default for setting in driver.settings}
     used_pins = {*chip.link_pins, 11, 13, robot.board.start_button}
     pins = {}
-    for key, ability, _, fixed, _ in driver.pins:
-        if fixed is None:
-            can = (
+    for key, ability, _, fixed_number, _ in driver.pins:
+        if fixed_number is None:
+            usable_pins = (
                 pin
-                for pin in sorted(chip.digital)
+                for pin in sorted(chip.digital_pins)
                 if chip.can(pin, ability) and pin not in used_pins
             )
-            pins[key] = next(can)
+            pins[key] = next(usable_pins)
             used_pins.add(pins[key])
-        elif driver.chosen_by(key, settings):
-            pins[key] = fixed
+        elif driver.choosing_key(key, settings):
+            pins[key] = fixed_number
     return Wiring(name, pins, settings)
 
 
@@ -52,8 +52,8 @@ def flash_with(name: str, project: Path, environment: str = ENVIRONMENT) -> int:
     """Return the bytes of the firmware of a tinibot with these motors."""
     tinibot = robots.load("tinibot")
     *lights, distance = tinibot.board.sensors
-    sensors = (*lights, distance._replace(pins=BESIDE_A_SHIELD))
-    motors = wired(name, tinibot)
+    sensors = (*lights, distance._replace(pins=SHIELD_SENSOR_PINS))
+    motors = motor_wiring(name, tinibot)
     board = tinibot.board._replace(motors=motors, sensors=sensors, bluetooth_state=None)
     changed_robot = tinibot._replace(board=board)
     header_path = project / "src" / "boards" / "kits" / "own.h"
@@ -70,9 +70,9 @@ def main() -> int:
         for driver in DRIVERS_IN_ORDER:
             try:
                 flash, note = flash_with(driver, project), ""
-            except RuntimeError as why:
-                if "greater than maximum allowed" not in str(why):
-                    print(why, file=sys.stderr)
+            except RuntimeError as error:
+                if "greater than maximum allowed" not in str(error):
+                    print(error, file=sys.stderr)
                     return 2
                 smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
                 flash = flash_with(driver, project, smaller)

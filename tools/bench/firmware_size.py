@@ -23,7 +23,7 @@ PROJECT = ROOT / "vm_arduino"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 NEW_NANO = "nano_new"
 # Not what a shipped robot gets.
-SMALLER = (
+SMALLER_ENVIRONMENTS = (
     *(name for name, _ in building.SMALLER_FIRMWARE.values()),
     *building.ENVIRONMENT_WITH_BREAKPOINTS.values(),
 )
@@ -45,7 +45,7 @@ def environments() -> list[str]:
     Those of a Nano with a new bootloader build what the others of a Nano do.
     """
     config = config_of(PROJECT)
-    return [name for name in config.envs() if not name.startswith((NEW_NANO, *SMALLER))
+    return [name for name in config.envs() if not name.startswith((NEW_NANO, *SMALLER_ENVIRONMENTS))
             and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 
@@ -60,14 +60,14 @@ def row_of(robot: str, board: str) -> str:
     return f"`{robot}`, {board.capitalize()}"
 
 
-def short_of_room() -> list[str]:
+def small_board_environments() -> list[str]:
     """Return the environments for an ATmega328P: an Uno, or a Nano."""
     return [name for name in environments() if parts_of(name)[1] in ("uno", "nano")]
 
 
 def page_rows() -> list[str]:
     """Return the rows of the page's table."""
-    return [row_of(*parts_of(name)) for name in short_of_room()]
+    return [row_of(*parts_of(name)) for name in small_board_environments()]
 
 
 def measure(name: str, project: Path = PROJECT) -> Sketch:
@@ -91,25 +91,25 @@ def measure(name: str, project: Path = PROJECT) -> Sketch:
 
 def main() -> int:
     try:
-        sketches = [measure(name) for name in short_of_room()]
-    except RuntimeError as why:
-        print(why, file=sys.stderr)
+        sketches = [measure(name) for name in small_board_environments()]
+    except RuntimeError as error:
+        print(error, file=sys.stderr)
         return 2
-    is_enough = True
+    has_room = True
     size_rows = []
     for sketch in sketches:
-        is_enough &= sketch.flash <= sketch.capacity
-        free = "-"
+        has_room &= sketch.flash <= sketch.capacity
+        free_text = "-"
         if not uno.missing():
             stack = firmware_stack.measure(sketch.firmware, robots.load(sketch.robot), sketch.board)
-            is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
-            free = f"{stack.least_free:,}"
+            has_room &= stack.least_free >= firmware_stack.LEAST_FREE
+            free_text = f"{stack.least_free:,}"
         sizes = [f"{size:,}" for size in (sketch.flash, sketch.capacity, sketch.ram)]
-        size_rows.append([row_of(sketch.robot, sketch.board), *sizes, free])
+        size_rows.append([row_of(sketch.robot, sketch.board), *sizes, free_text])
     page.show("firmware_size", size_rows)
     if uno.missing():
         print(uno.missing())
-    return int(not is_enough)
+    return int(not has_room)
 
 
 if __name__ == "__main__":

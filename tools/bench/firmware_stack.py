@@ -31,7 +31,7 @@ BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for 
 CALLS_AT_ONCE = 8  # at once
 MOST_STEPS = 40
 # What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
-TYPED = (
+TYPED_LINES = (
     "HELP\n",
     "PING|CHECK_CONNECTION\n",
     "SI|X=" + "1+(" * 14 + "RANDOM(1,2)" + ")" * 14 + ";SHOW(0-X/3)\n",
@@ -44,8 +44,8 @@ TYPED = (
     "SI|LOOP(FOREVER);SHOW(-2147483.647);X=1/0.0;END_LOOP\n",
 )
 ANSWERS = ("END_LOOP", ", kit ", "// -5", "// TRUE", "// 2", "1: ", "-2147483.647", "FAULT DIVIDE")
-FLICKERS, IN_INTERRUPT_CYCLES = 200, 40
-SEEN_BITS = 9.5625  # from the start bit of a byte until the chip has it
+FLICKER_COUNT, IN_INTERRUPT_CYCLES = 200, 40
+SAMPLE_BITS = 9.5625  # from the start bit of a byte until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
@@ -60,7 +60,7 @@ def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = Fa
         firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
     ) as uno:
         surround(uno, robot)
-        wear_out(connect(uno, robot, keys=Keys()), robot, has_breakpoints)
+        run_deep(connect(uno, robot, keys=Keys()), robot, has_breakpoints)
         return uno.stack(heap_start(firmware))
 
 
@@ -88,11 +88,11 @@ def surround(uno: Uno, robot: Robot) -> None:
 
 def pin(robot: Robot, number: int) -> str:
     """Return the name of a pin of the profile, whose numbers are those of its own board."""
-    digital = 54 if robot.board.chip == "mega" else 14
-    return f"D{number}" if number < digital else f"A{number - digital}"
+    first_analog = 54 if robot.board.chip == "mega" else 14
+    return f"D{number}" if number < first_analog else f"A{number - first_analog}"
 
 
-def wear_out(wired: Wired, robot: Robot, has_breakpoints: bool) -> None:
+def run_deep(wired: Wired, robot: Robot, has_breakpoints: bool) -> None:
     uno, session, kit = wired.uno, wired.session, robot.kit
     button = pin(robot, robot.board.start_button)
     require_ok(wired, session.hello())
@@ -162,13 +162,13 @@ def type_deep(uno: Uno, kit: Kit) -> None:
     """
     uno.run_ms(4000)
     byte_count_before = len(uno.sent_bytes)
-    for text in TYPED:
+    for text in TYPED_LINES:
         uno.send(text.encode())
         uno.run_ms(2 * len(text) + 400)
-    sentence = bytes(byte.value for byte in uno.sent_bytes[byte_count_before:]).decode("latin-1")
+    output = bytes(byte.value for byte in uno.sent_bytes[byte_count_before:]).decode("latin-1")
     for answer in ANSWERS:
-        if answer not in sentence:
-            raise RuntimeError(f"the robot has not said {answer} but {sentence}")
+        if answer not in output:
+            raise RuntimeError(f"the robot has not said {answer} but {output}")
 
 
 def drive_a_way(wired: Wired, robot: Robot) -> None:
@@ -179,13 +179,13 @@ def drive_a_way(wired: Wired, robot: Robot) -> None:
     require_ok(wired, wired.session.live(image_of(text, robot.kit).code))
     discs = robot.board.discs
     assert discs
-    uno, bit = wired.uno, HERTZ / robot.board.baud
-    begin = uno.cycle + CYCLES_PER_MS
-    uno.send(b"noise" * (FLICKERS // 5) + b"\0", begin)
-    for k in range(FLICKERS):
-        at = begin + round((10 * k + SEEN_BITS) * bit) - k
+    uno, bit_cycles = wired.uno, HERTZ / robot.board.baud
+    begin_cycle = uno.cycle + CYCLES_PER_MS
+    uno.send(b"noise" * (FLICKER_COUNT // 5) + b"\0", begin_cycle)
+    for k in range(FLICKER_COUNT):
+        cycle = begin_cycle + round((10 * k + SAMPLE_BITS) * bit_cycles) - k
         for number, name in enumerate(discs.pins.values()):
-            uno.drive(pin(robot, name), k % 2 == 0, at=at + number * IN_INTERRUPT_CYCLES)
+            uno.drive(pin(robot, name), k % 2 == 0, at=cycle + number * IN_INTERRUPT_CYCLES)
     wired.run(1500)
 
 

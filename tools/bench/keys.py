@@ -22,7 +22,7 @@ from tools.bench.firmware_stack import connect, require_ok
 from tools.bench.link import KIT, MOTORS, ROBOT, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
-AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
+PAD_PROGRAM = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
 EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
 PAD_AHEAD = Pressed(0, 0, 80)
 PWM_PINS = MOTORS[:2]
@@ -33,16 +33,16 @@ RECONNECT_MS = 400  # after a loss, until words arrive
 LOST_MS = HOLD_MS + 50  # it stays attached
 # At most, at the slowest, where the program looks at once, by baud. What is let go may come just
 # after what is held was said anew, and waits for the answer or for GAP_MS.
-HELD_MOST_MS = {9600: 25.0, 115_200: 4.0}
-LET_GO_MOST_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
-LOST_MOST_MS = HOLD_MS + 3  # the clock and the program look after that time
+MOST_HELD_MS = {9600: 25.0, 115_200: 4.0}
+MOST_LET_GO_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
+MOST_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
     "stick held, to the motor pins",
     "stick released, to the motor pins",
     "stick held, to the motor pins, with `examples/remote.ts`, which looks 20 times a second",
     f"lost line, to motors off, in {TRY_COUNT} of {TRY_COUNT}",
 )
-FORMS = (".1f", ".1f", ".1f", ".0f")
+FORMATS = (".1f", ".1f", ".1f", ".0f")
 
 
 class Hand:
@@ -50,7 +50,7 @@ class Hand:
 
     def __init__(self, firmware: Path, baud: int, text: str) -> None:
         """Switch it on, and send it a program that reads a stick."""
-        self._chance = random.Random(1)
+        self._random_source = random.Random(1)
         self._board = Uno(firmware, baud=baud, tells_sleep=False)
         self._wired = connect(self._board, robots.load(ROBOT), baud)
         require_ok(self._wired, self._wired.session.hello())
@@ -76,19 +76,19 @@ class Hand:
             self._wired.session.poll(self._wired.now_ms)
             self._board.run_ms(1)
         received_cycles = [
-            event.cycle for event in self._board.events[event_count:] if event.what == "received"
+            event.cycle for event in self._board.events[event_count:] if event.kind == "received"
         ]
         return self._ms_from(max([begin_cycle, *received_cycles]), event_count, False)
 
     def _hold(self, pressed: Pressed, more_ms: int = 0) -> None:
-        for ms in range(more_ms + self._chance.randint(*HELD_MS)):
+        for ms in range(more_ms + self._random_source.randint(*HELD_MS)):
             if ms % SAY_INTERVAL_MS == 0:  # who says nothing for a while holds nothing
                 self._wired.session.press(*pressed)
             self._wired.run(1)
 
     def _begin(self) -> tuple[int, int]:
         """Return some cycle within the millisecond, and how many events there were before."""
-        self._board.run_to(self._board.cycle + self._chance.randrange(CYCLES_PER_MS))
+        self._board.run_to(self._board.cycle + self._random_source.randrange(CYCLES_PER_MS))
         return self._board.cycle, len(self._board.events)
 
     def _ms_from(self, begin_cycle: int, event_count: int, are_on: bool) -> float:
@@ -96,24 +96,26 @@ class Hand:
         motor_events = [
             event
             for event in self._board.events[event_count:]
-            if event.what == "pin" and event["pin"] in MOTORS
+            if event.kind == "pin" and event["pin"] in MOTORS
         ]
-        last = {event["pin"]: event["is"] for event in motor_events}
-        if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
-            raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
+        last_state = {event["pin"]: event["is"] for event in motor_events}
+        if {last_state.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
+            raise RuntimeError(
+                f"the motors have not gone {'on' if are_on else 'off'}: {last_state}"
+            )
         return (motor_events[-1].cycle - begin_cycle) / CYCLES_PER_MS
 
 
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
-    with Hand(firmware, baud, AT_ONCE) as hand:
+    with Hand(firmware, baud, PAD_PROGRAM) as hand:
         changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRY_COUNT)]
         losses = [hand.lose() for _ in range(TRY_COUNT)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
-        pause_ms = [
+        example_ms = [
             (hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRY_COUNT)
         ]
-    return [*map(list, zip(*changes, strict=True)), pause_ms, losses]
+    return [*map(list, zip(*changes, strict=True)), example_ms, losses]
 
 
 def main() -> int:
@@ -123,21 +125,30 @@ def main() -> int:
 def print_figures(figures_by_baud: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
     by_row = zip(*figures_by_baud.values(), strict=True)
-    page.show("keys", [
-        (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in figures))
-        for row, form, figures in zip(ROWS, FORMS, by_row, strict=True)
-    ])  # fmt: skip
-    return all(is_kept(baud, *rows) for baud, rows in figures_by_baud.items())
+    page.show(
+        "keys",
+        [
+            (
+                row,
+                *(
+                    f"{statistics.median(ms):{format_spec}} and {max(ms):{format_spec}} ms"
+                    for ms in figures
+                ),
+            )
+            for row, format_spec, figures in zip(ROWS, FORMATS, by_row, strict=True)
+        ],
+    )
+    return all(is_within_limits(baud, *rows) for baud, rows in figures_by_baud.items())
 
 
-def is_kept(
+def is_within_limits(
     baud: int, held_ms: list[float], let_go_ms: list[float], _: list[float], lost_ms: list[float]
 ) -> bool:
     """Return whether the slowest are as they must be."""
     return (
-        max(held_ms) <= HELD_MOST_MS[baud]
-        and max(let_go_ms) <= LET_GO_MOST_MS[baud]
-        and max(lost_ms) <= LOST_MOST_MS
+        max(held_ms) <= MOST_HELD_MS[baud]
+        and max(let_go_ms) <= MOST_LET_GO_MS[baud]
+        and max(lost_ms) <= MOST_LOST_MS
     )
 
 

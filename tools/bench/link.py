@@ -28,15 +28,15 @@ BAUDS = (9600, 115_200)
 MOTORS = ("D5", "D6", "D7", "D8", "D9", "D10")
 ROBOT = firmware_size.DEFAULT
 KIT = robots.load(ROBOT).kit
-SHORT = PROGRAMS[0]
+SHORT_PROGRAM = PROGRAMS[0]
 
 # At most: ms from the first start bit to the pins, by baud; us.
-MUST_MS = {9600: 25.0, 115_200: 4.0}
-LIVE_US = 100
-STOP_US = 12
-TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
+MOST_START_MS = {9600: 25.0, 115_200: 4.0}
+MOST_LIVE_US = 100
+MOST_STOP_US = 12
+MOST_TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
 ROWS = (
-    f"first start bit of `{SHORT}` to the motor pins",
+    f"first start bit of `{SHORT_PROGRAM}` to the motor pins",
     "last byte of the same line, sent by `tsc live`, to the motor pins",
     "last byte of a stop to motors off, in a busy robot: the slowest",
     "the same: the median",
@@ -58,7 +58,7 @@ class Figures(NamedTuple):
 
     start_ms: float
     live_us: float
-    stop: stops.Slowest
+    stop: stops.StopTimes
 
 
 def copy_project(project: Path) -> Path:
@@ -105,16 +105,16 @@ def measure_start(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple
     The frame is PROGRAM, or LIVE, which nothing runs before.
     """
     board, session = wired.uno, wired.session
-    image = image_of(SHORT, KIT)
+    image = image_of(SHORT_PROGRAM, KIT)
     if is_live:
         require_ok(wired, session.clear())
     board.run_to(board.cycle + wait_ms * PHASE_CYCLES)
-    began = board.cycle
+    begin_cycle = board.cycle
     require_ok(wired, session.live(image.code) if is_live else session.upload(image))
-    move_cycle = first_move(board, began)
+    move_cycle = first_move(board, begin_cycle)
     bytes_before_move = [byte for byte in board.received_bytes if byte.cycle <= move_cycle]
-    ends = [k for k, byte in enumerate(bytes_before_move[:-1]) if byte.value == 0]
-    frame = bytes_before_move[ends[-1] + 1 :]
+    frame_ends = [k for k, byte in enumerate(bytes_before_move[:-1]) if byte.value == 0]
+    frame = bytes_before_move[frame_ends[-1] + 1 :]
     session.stop(wired.now_ms)
     wired.run(wait_ms)
     return (
@@ -124,12 +124,12 @@ def measure_start(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple
 
 
 def on_each_baud(
-    measure: Callable[[Path, int], T], are_kept: Callable[[dict[int, T], Path], bool]
+    measure: Callable[[Path, int], T], print_and_check: Callable[[dict[int, T], Path], bool]
 ) -> int:
     """Build the firmware for each baud, and measure it; return the exit code.
 
-    `are_kept` prints what was found, by baud, and returns whether it is within its limits; it may
-    build more in the folder that it gets.
+    `print_and_check` prints what was found, by baud, and returns whether it is within its limits;
+    it may build more in the folder that it gets.
     """
     if why := uno.missing():
         print(why, file=sys.stderr)
@@ -137,9 +137,9 @@ def on_each_baud(
     with tempfile.TemporaryDirectory() as name:
         try:
             figures_by_baud = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
-            return int(not are_kept(figures_by_baud, Path(name)))
-        except RuntimeError as failed:
-            print(failed, file=sys.stderr)
+            return int(not print_and_check(figures_by_baud, Path(name)))
+        except RuntimeError as error:
+            print(error, file=sys.stderr)
             return 2
 
 
@@ -162,29 +162,35 @@ def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
         (row, f"{stop_of_sketch[name].us:.1f} µs", f"{stop_of_sketch[name].together_us:.1f} µs")
         for name, row in OTHER_BOARDS.items()
     ], position=1)  # fmt: skip
-    late_sketches = [name for name, stop in stop_of_sketch.items() if stop.us > STOP_US]
+    late_sketches = [name for name, stop in stop_of_sketch.items() if stop.us > MOST_STOP_US]
     if late_sketches:
-        print(f"stops later than after {STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr)
+        print(
+            f"stops later than after {MOST_STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr
+        )
     return not late_sketches and all(
-        is_kept(baud, figure) for baud, figure in figures_by_baud.items()
+        is_within_limits(baud, figure) for baud, figure in figures_by_baud.items()
     )
 
 
-def measure_other_stops(folder: Path) -> dict[str, stops.Slowest]:
+def measure_other_stops(folder: Path) -> dict[str, stops.StopTimes]:
     """Return the slowest stops of the other sketches, by environment, each at its robot's baud."""
     project = copy_project(folder / "vm_arduino")
-    result = {}
+    stop_of_sketch = {}
     for name in (*OTHER_BOARDS, *UNSHOWN_ENVIRONMENTS):
         sketch = firmware_size.measure(name, project)
         robot = robots.load(sketch.robot)
-        result[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)
-    return result
+        stop_of_sketch[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)
+    return stop_of_sketch
 
 
-def is_kept(baud: int, figures: Figures) -> bool:
+def is_within_limits(baud: int, figures: Figures) -> bool:
     """Return whether the figures are as they must be."""
-    is_quick = figures.start_ms <= MUST_MS[baud] and figures.live_us <= LIVE_US
-    return is_quick and figures.stop.us <= STOP_US and figures.stop.together_us <= TOGETHER_US
+    is_quick = figures.start_ms <= MOST_START_MS[baud] and figures.live_us <= MOST_LIVE_US
+    return (
+        is_quick
+        and figures.stop.us <= MOST_STOP_US
+        and figures.stop.together_us <= MOST_TOGETHER_US
+    )
 
 
 if __name__ == "__main__":

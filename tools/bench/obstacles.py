@@ -49,46 +49,50 @@ def main() -> None:
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
             drives = list(pool.map(partial(drive, text), range(SEED_COUNT)))
-        contacts = [item.contact_count for item in drives]
-        metres = median(item.driven_m for item in drives)
-        stood_s = max(item.stood_s for item in drives)
-        stuck = sum(item.stood_s >= STUCK_S for item in drives)
-        longest = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
+        contacts = [run.contact_count for run in drives]
+        metres = median(run.driven_m for run in drives)
+        stood_s = max(run.stood_s for run in drives)
+        stuck_count = sum(run.stood_s >= STUCK_S for run in drives)
+        longest_text = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
         figure_rows.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
-            longest,
-                            f"{stuck} of {SEED_COUNT}"))  # fmt: skip
+            longest_text,
+                            f"{stuck_count} of {SEED_COUNT}"))  # fmt: skip
     page.show("obstacles", figure_rows)
 
 
 def drive(text: str, seed: int) -> Drive:
     """Return how a program drives that begins at a place of this seed."""
-    chance = Random(seed)
+    random_source = Random(seed)
     profile = robots.load(ROBOT)
     board = profile.board._replace(max_run_seconds=RUN_SECONDS + 60)  # ten minutes would end it
     profile = profile._replace(board=board)
     world = worlds.load("obstacles")
     start = world.start
     while seed:  # the first one begins where the world says
-        start = Pose(chance.uniform(0, 220), chance.uniform(0, 200), chance.uniform(0, 360))
+        start = Pose(
+            random_source.uniform(0, 220),
+            random_source.uniform(0, 200),
+            random_source.uniform(0, 360),
+        )
         if not Driving(profile.body, world.obstacles(), start).is_blocked():
             break
-    settings = Settings(seed + 1, noise=0.02, motors=(100.0, chance.uniform(95, 105)))
+    settings = Settings(seed + 1, noise=0.02, motors=(100.0, random_source.uniform(95, 105)))
     robot = VirtualRobot(profile, world._replace(start=start), settings)
     Talk(robot).upload(text, is_detached=True)
-    ends_ms = robot.now_ms
-    over_ms = ends_ms + RUN_SECONDS * 1000
-    place = robot.pose
+    now_ms = robot.now_ms
+    end_ms = now_ms + RUN_SECONDS * 1000
+    last_pose = robot.pose
     stood_ms = 0
-    while ends_ms < over_ms:
-        since_ms = ends_ms
-        while math.dist(place[:2], robot.pose[:2]) <= STUCK_CM:
-            stood_ms = max(stood_ms, ends_ms - since_ms)
-            if ends_ms >= over_ms:
+    while now_ms < end_ms:
+        since_ms = now_ms
+        while math.dist(last_pose[:2], robot.pose[:2]) <= STUCK_CM:
+            stood_ms = max(stood_ms, now_ms - since_ms)
+            if now_ms >= end_ms:
                 break
-            ends_ms += LOOK_INTERVAL_MS
-            robot.step(ends_ms)
+            now_ms += LOOK_INTERVAL_MS
+            robot.step(now_ms)
             robot.take_events()
-        place = robot.pose
+        last_pose = robot.pose
     assert robot.is_running, f"seed {seed}: its program has ended"
     return Drive(robot.driving.bumps, robot.driving.driven_cm / 100, stood_ms / 1000)
 

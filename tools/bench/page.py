@@ -14,7 +14,7 @@ from tools import ROOT
 
 PAGE = ROOT / "docs" / "en" / "figures.md"
 # A paragraph that says what measures the figures below it, or a heading.
-_BEGINS = re.compile(r"^(?:`python -m ([\w.]+)[^`]*` measures |#)")
+_SECTION_START = re.compile(r"^(?:`python -m ([\w.]+)[^`]*` measures |#)")
 
 
 class Table(NamedTuple):
@@ -26,9 +26,9 @@ class Table(NamedTuple):
 
     def row_of(self, keys: Sequence[str]) -> int:
         """Return the place of the row with these first cells. Raises LookupError without one."""
-        for place, row in enumerate(self.rows):
+        for index, row in enumerate(self.rows):
             if cells(row)[: len(keys)] == [*keys]:
-                return place
+                return index
         raise LookupError(f"{PAGE.name} has no row {' | '.join(keys)}")
 
 
@@ -46,7 +46,7 @@ def tables(name: str) -> list[Table]:
     table_lines: list[list[str]] = []
     is_inside = is_table = False
     for line in PAGE.read_text(encoding="utf-8").splitlines():
-        if match := _BEGINS.match(line):
+        if match := _SECTION_START.match(line):
             is_inside = match[1] == f"tools.bench.{name}"
         if line.startswith("|") and is_inside:
             if not is_table:
@@ -56,14 +56,16 @@ def tables(name: str) -> list[Table]:
     return [Table(head, rule, tuple(rows)) for head, rule, *rows in table_lines]
 
 
-def show(name: str, rows: Sequence[Sequence[str]], position: int = 0, key_cells: int = 1) -> None:
-    """Print a table of the page with these rows, each known by its first `key_cells` cells.
+def show(
+    name: str, rows: Sequence[Sequence[str]], position: int = 0, key_cell_count: int = 1
+) -> None:
+    """Print a table of the page with these rows, each known by its first `key_cell_count` cells.
 
     Raises LookupError for a row that the page lacks, ValueError for one with more cells or fewer.
     """
     table = tables(name)[position]
-    placed = sorted((table.row_of(row[:key_cells]), format_row(row)) for row in rows)
-    for place, row in placed:
-        if len(cells(row)) != len(cells(table.rows[place])):
+    sorted_rows = sorted((table.row_of(row[:key_cell_count]), format_row(row)) for row in rows)
+    for index, row in sorted_rows:
+        if len(cells(row)) != len(cells(table.rows[index])):
             raise ValueError(f"{PAGE.name} has other columns than {row}")
-    print(table.head, table.rule, *(row for _, row in placed), "", sep="\n", flush=True)
+    print(table.head, table.rule, *(row for _, row in sorted_rows), "", sep="\n", flush=True)

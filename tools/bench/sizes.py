@@ -21,7 +21,7 @@ from tools.builds import chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
 AVR = "ATmega328P (AVR)"
-EMULATED = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
+EMULATED_CHIPS = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
 # As PlatformIO builds the sketch: Arduino's flags, and those of platformio.ini.
 SKETCH_FLAGS = (
     *avr_bench.FLAGS, "-std=gnu++11", "-fno-threadsafe-statics", "-Wl,--relax", "-mstrict-X",
@@ -167,7 +167,7 @@ READ = """Reader* const its = near(&reader);
     sink = its->start(); sink = its->length(); sink = its->column();
     sink = ANSWER;
   }"""
-ALL = IMAGE + VERIFY_AND_RUN
+ALL_CODE = IMAGE + VERIFY_AND_RUN
 
 
 class Size(NamedTuple):
@@ -179,7 +179,7 @@ class Part(NamedTuple):
     """What is built for it: a program, what of it is always used, and what uses the part."""
 
     program: str
-    always: str
+    always_code: str
     statement: str
     folders: tuple[str, ...]  # of the sources that are linked, besides the machine
     flags: tuple[str, ...]  # for the AVR
@@ -190,9 +190,9 @@ PARTS = {
     "machine and verifier": Part(
         MACHINE_ALONE, "", VERIFY_AND_RUN, ("store",), avr_bench.FLAGS
     ),
-    "store": Part(MACHINE_ALONE, ALL, STORE, ("store",), avr_bench.FLAGS),
+    "store": Part(MACHINE_ALONE, ALL_CODE, STORE, ("store",), avr_bench.FLAGS),
     "link, with text": Part(
-        MACHINE.replace("PORT", PORT), PORT_USED + ALL, LINK, ("link", "text"),
+        MACHINE.replace("PORT", PORT), PORT_USED + ALL_CODE, LINK, ("link", "text"),
         avr_bench.FLAGS,
     ),
     "reader of text alone": Part(
@@ -203,9 +203,9 @@ PARTS = {
         ("text",), SKETCH_FLAGS,
     ),
 }  # fmt: skip
-SHOWN = ("machine and verifier", "link, with text", "reader of text alone")
+SHOWN_PARTS = ("machine and verifier", "link, with text", "reader of text alone")
 # Bytes of flash and of RAM on the AVR, at most.
-MUST = {
+LIMITS = {
     "machine and verifier": Size(7168, 400),
     "store": Size(1600, 24),
     "link, with text": Size(16_000, 456),
@@ -213,10 +213,10 @@ MUST = {
 }
 
 
-def missing(chip: str) -> str:
+def why_missing(chip: str) -> str:
     """Return why a chip cannot be measured here, or nothing."""
     if chip != AVR:
-        return chips.missing(EMULATED[chip])
+        return chips.why_missing(EMULATED_CHIPS[chip])
     return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.INSTALL_COMMAND}): no {AVR}"
 
 
@@ -226,29 +226,39 @@ def size(name: str, chip: str = AVR) -> Size:
     On the AVR the stack comes on top.
     """
     part = PARTS[name]
-    with_it, size_without = (_build(part, part.always + use, chip) for use in (part.statement, ""))
-    return Size(with_it.flash - size_without.flash, with_it.ram - size_without.ram)
+    size_with, size_without = (
+        _build(part, part.always_code + use, chip) for use in (part.statement, "")
+    )
+    return Size(size_with.flash - size_without.flash, size_with.ram - size_without.ram)
 
 
 @lru_cache
 def _build(part: Part, statement: str, chip: str) -> Size:
     program = part.program.replace("USE", statement)
     if chip != AVR:
-        return Size(*chips.size(EMULATED[chip], program, *part.folders))
+        return Size(*chips.size(EMULATED_CHIPS[chip], program, *part.folders))
     folders = sorted(("vm", *part.folders))
-    code = [path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))]
+    source_paths = [
+        path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))
+    ]
     with tempfile.TemporaryDirectory() as folder:
         source, binary = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
-        _finished_code(
-            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(binary)
+        _run_checked(
+            "avr-g++",
+            *part.flags,
+            f"-I{SOURCE}",
+            str(source),
+            *map(str, source_paths),
+            "-o",
+            str(binary),
         )
-        sentence = _finished_code("avr-size", str(binary))
-    text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
+        output = _run_checked("avr-size", str(binary))
+    text, data, bss = (int(word) for word in output.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
-def _finished_code(*command: str) -> str:
+def _run_checked(*command: str) -> str:
     completed = subprocess.run(command, capture_output=True, text=True)
     if completed.returncode != 0:
         raise RuntimeError(f"{command[0]} fails:\n{completed.stderr[:4000]}")
@@ -256,14 +266,18 @@ def _finished_code(*command: str) -> str:
 
 
 def main() -> int:
-    print("| chip |", " | ".join(f"{part}: flash | RAM" for part in SHOWN), "|")
-    print("| --- |", " | ".join("---: | ---:" for _ in SHOWN), "|")
-    for chip in (AVR, *EMULATED):
-        if missing(chip):
-            print(missing(chip), file=sys.stderr)
+    print("| chip |", " | ".join(f"{part}: flash | RAM" for part in SHOWN_PARTS), "|")
+    print("| --- |", " | ".join("---: | ---:" for _ in SHOWN_PARTS), "|")
+    for chip in (AVR, *EMULATED_CHIPS):
+        if why_missing(chip):
+            print(why_missing(chip), file=sys.stderr)
             continue
-        sizes = [size(part, chip) for part in SHOWN]
-        print(f"| {chip} |", " | ".join(f"{item.flash:,} | {item.ram}" for item in sizes), "|")
+        sizes = [size(part, chip) for part in SHOWN_PARTS]
+        print(
+            f"| {chip} |",
+            " | ".join(f"{part_size.flash:,} | {part_size.ram}" for part_size in sizes),
+            "|",
+        )
     return 0
 
 

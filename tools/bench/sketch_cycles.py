@@ -33,12 +33,12 @@ def text_of(work: Work, has_loop: bool = True) -> str:
     readings = iter(work.readings)
 
     def constant(_: re.Match[str]) -> str:
-        more = next(readings) - work.readings[0]
-        return f"{SENSOR} + {more}" if more else SENSOR
+        difference = next(readings) - work.readings[0]
+        return f"{SENSOR} + {difference}" if difference else SENSOR
 
-    before = re.sub(r"\bDISTANCE\b", constant, work.before)
-    loop = f"LOOP({work.times}); {work.body} END_LOOP;" if has_loop else ""
-    return f"SI|{before} M(50, 50); {loop} M(0, 0); {work.after}"
+    code_before = re.sub(r"\bDISTANCE\b", constant, work.code_before)
+    loop = f"LOOP({work.loop_count}); {work.body} END_LOOP;" if has_loop else ""
+    return f"SI|{code_before} M(50, 50); {loop} M(0, 0); {work.code_after}"
 
 
 def per_iteration(firmware: Path, work: Work) -> float:
@@ -47,10 +47,10 @@ def per_iteration(firmware: Path, work: Work) -> float:
         wired = connect(board, ROBOT)
         if work.readings:
             board.analog(SENSOR_PIN, work.readings[0])
-        with_loop, shown = _cycles(wired, text_of(work))
-        check("the sketch", work, shown)
-        without, _ = _cycles(wired, text_of(work, has_loop=False))
-        return (with_loop - without) / work.times
+        with_loop, shown_values = _cycles(wired, text_of(work))
+        check("the sketch", work, shown_values)
+        without_loop, _ = _cycles(wired, text_of(work, has_loop=False))
+        return (with_loop - without_loop) / work.loop_count
 
 
 def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
@@ -64,10 +64,10 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
     wired.run(SHOW_MS)
-    values_shown: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
+    shown_values: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
     begin_cycle, end_cycle = (
         next(event.cycle for event in board.events[event_count:]
-             if event.what == "pin" and event["pin"] == motor and event["is"] == state)
+             if event.kind == "pin" and event["pin"] == motor and event["is"] == state)
         for state in ("pwm", "low")
     )  # fmt: skip
-    return end_cycle - begin_cycle, values_shown
+    return end_cycle - begin_cycle, shown_values

@@ -22,13 +22,13 @@ from tools.bench import page
 SEED_COUNT = 40
 SAMPLE_COUNT = 100
 SPEED_CM_MS = 0.05
-LOOKS = "SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP"
-STOPS = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
-NEAR = f"pwm {90 * 653 >> 8}"
+LOOK_PROGRAM = "SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP"
+STOP_PROGRAM = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
+NEAR_PWM = f"pwm {90 * 653 >> 8}"
 PING_INTERVAL_MS = 30.07  # from ping to ping of a program that asks all the time
 PHASE_COUNT = 12
 NEAR_CM = 15.0
-TRUSTS = "#define tiniscript_trusts_samples\n"
+TRUST_DEFINE = "#define tiniscript_trusts_samples\n"
 ROWS = (
     "wrong readings, one wrong sample in fifty",
     "3 s runs with a wrong reading",
@@ -47,27 +47,27 @@ def board_of(text: str, is_trusting: bool) -> Board:
     robot = robots.load("tinibot")
     board = Board(robot, text)
     if is_trusting:
-        head = firmware.header([robot], "the tests.").replace("#pragma once", TRUSTS, 1)
-        elf = built(head, robot.board.chip)
-        before = compile_text(BUILT_IN, robot.kit).image
-        after = compile_text(text, robot.kit).image
-        at = elf.index(before)
-        board.elf = elf[:at] + after + b"\0" * 4 + elf[at + len(after) + 4 :]
+        header = firmware.header([robot], "the tests.").replace("#pragma once", TRUST_DEFINE, 1)
+        elf = built(header, robot.board.chip)
+        built_in_image = compile_text(BUILT_IN, robot.kit).image
+        own_image = compile_text(text, robot.kit).image
+        offset = elf.index(built_in_image)
+        board.elf = elf[:offset] + own_image + b"\0" * 4 + elf[offset + len(own_image) + 4 :]
     board.press(100, START - STEADY)
     return board
 
 
 def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
-    true_distances, distances_heard = approaching(seed, SAMPLE_COUNT)
-    board = board_of(LOOKS, is_trusting)
+    true_distances, heard_distances = approaching(seed, SAMPLE_COUNT)
+    board = board_of(LOOK_PROGRAM, is_trusting)
     trigger, echo = wire(board.robot)
     board.watch(trigger)
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_heard])
-    times = pings(board.ran(START + 2900), trigger)
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
+    ping_times_ms = pings(board.ran(START + 2900), trigger)
     readings = driven_ms(board, 1)
     wrong_count = 0
     for ms in readings:
-        number = sum(sent < ms for sent in times) - 1
+        number = sum(ping_ms < ms for ping_ms in ping_times_ms) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
         wrong_count += abs(cm - true_distances[number]) > max(4, 0.2 * true_distances[number] + 3)
     return WrongReadings(len(readings), wrong_count)
@@ -78,23 +78,23 @@ def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool
 
     `distances` says how far it is so many ms after the first ping, which is `phase` of a ping late.
     """
-    board = board_of(STOPS, is_trusting)
+    board = board_of(STOP_PROGRAM, is_trusting)
     trigger, echo = wire(board.robot)
     board.watch(trigger)
-    begins = phase * PING_INTERVAL_MS
-    cms = [distances(number * PING_INTERVAL_MS + begins) for number in range(60)]
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in cms])
-    first = pings(board.ran(START + 1500), trigger)[0]
-    near = next(ms for ms in range(1500) if distances(ms + begins) < NEAR_CM)
-    knows = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR)
-    return knows - first - near
+    phase_ms = phase * PING_INTERVAL_MS
+    distances_cm = [distances(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
+    first_ping_ms = pings(board.ran(START + 1500), trigger)[0]
+    near_ms = next(ms for ms in range(1500) if distances(ms + phase_ms) < NEAR_CM)
+    known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)
+    return known_ms - first_ping_ms - near_ms
 
 
-def comes(ms: float) -> float:
+def approaching_cm(ms: float) -> float:
     return max(3, 60 - SPEED_CM_MS * ms)
 
 
-def is_there(ms: float) -> float:
+def appearing_cm(ms: float) -> float:
     return 100 if ms < 500 else 8
 
 
@@ -108,9 +108,10 @@ def main() -> None:
         )
         figure_rows[0].append(f"{wrong_count:,} of {readings:,}")
         figure_rows[1].append(f"{sum(run.wrong_count > 0 for run in runs)} of {SEED_COUNT}")
-        for row, way in ((2, comes), (3, is_there)):
+        for row, distance_cm in ((2, approaching_cm), (3, appearing_cm)):
             late_ms_of_phases = [
-                late_ms(way, phase / PHASE_COUNT, is_trusting) for phase in range(PHASE_COUNT)
+                late_ms(distance_cm, phase / PHASE_COUNT, is_trusting)
+                for phase in range(PHASE_COUNT)
             ]
             figure_rows[row].append(
                 f"{median(late_ms_of_phases):.0f} ms, {max(late_ms_of_phases):.0f} ms"

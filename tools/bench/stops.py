@@ -20,24 +20,24 @@ from typing import NamedTuple
 from tests.support.images import image_of
 from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, SEEN_BITS, all_devices, connect, pin, require_ok
+from tools.bench.firmware_stack import BOARDS, SAMPLE_BITS, all_devices, connect, pin, require_ok
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
-TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
+NOISE_TEXTS = b"// nobody reads that\n", b"// nor this line, which nobody ends"
 STOP = bytes(8)
 STOP_ZEROS = 4
 
-PERIOD = 16_384  # cycles between two interrupts of the clock
-COARSE = 64  # cycles: the interrupt takes longer
-FINE, AROUND = 4, 64
-ECHOES = range(-160, 33, 8)  # cycles
-EDGES = range(-480, 33, 16)  # of both discs
+CLOCK_PERIOD = 16_384  # cycles between two interrupts of the clock
+COARSE_STEP = 64  # cycles: the interrupt takes longer
+FINE_STEP, FINE_RANGE = 4, 64
+ECHO_OFFSETS = range(-160, 33, 8)  # cycles
+EDGE_OFFSETS = range(-480, 33, 16)  # of both discs
 SHORT_ECHO, LONG_ECHO = 1000, 8000  # cycles
 BITS_PER_BYTE = 10  # of a byte on the wire
 QUIET_MS = 25
 PING_MS = 100  # pings are less apart
 RECEIVE_INTERRUPT = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
-INSTRUCTION = 4  # cycles of the longest one
+INSTRUCTION_CYCLES = 4  # cycles of the longest one
 
 
 class Place(NamedTuple):
@@ -45,13 +45,13 @@ class Place(NamedTuple):
     or of each disc.
     """
 
-    at: int
-    echo: int | None = None
+    cycle: int
+    echo_offset: int | None = None
     is_rise: bool = False
-    edge: int | None = None
+    edge_offset: int | None = None
 
 
-class Slowest(NamedTuple):
+class StopTimes(NamedTuple):
     """Of how many stops, and microseconds; `together` is what they would take at most."""
 
     stop_count: int
@@ -60,12 +60,12 @@ class Slowest(NamedTuple):
     together_us: float
 
 
-class Busy:
+class BusyRobot:
     """A busy robot on a simulated chip, to be stopped again and again."""
 
     def __init__(self, firmware: Path, robot: Robot, board: str, baud: int) -> None:
         """Switch it on; `board` is that of the firmware, which may be another than the robot's."""
-        self.robot, self.baud, self.cycles = robot, baud, list[int]()
+        self.robot, self.baud, self.stop_cycles = robot, baud, list[int]()
         self.chip = Uno(
             firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_masked=True
         )
@@ -84,9 +84,11 @@ class Busy:
             self.chip.drive(name, self._level)
         self._wired = connect(self.chip, robot, baud)
         require_ok(self._wired, self._wired.session.hello())
-        require_ok(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
+        require_ok(
+            self._wired, self._wired.session.upload(image_of(busy_program(robot.kit), robot.kit))
+        )
 
-    def __enter__(self) -> Busy:
+    def __enter__(self) -> BusyRobot:
         return self
 
     def __exit__(self, *raised: object) -> None:
@@ -106,51 +108,65 @@ class Busy:
         require_ok(self._wired, session.clear())
         require_ok(self._wired, session.start())
         chip.run_ms(QUIET_MS)  # nothing of the session is on the wire any more
-        text = TEXT[place.at // FINE % len(TEXT)]
-        if place.echo is not None:  # which the robot waits for only after a ping
+        text = NOISE_TEXTS[place.cycle // FINE_STEP % len(NOISE_TEXTS)]
+        if place.echo_offset is not None:  # which the robot waits for only after a ping
             text = text[:1]
             chip.run_until(self._trigger, "high", PING_MS)
             chip.run_until(self._trigger, "low", PING_MS)
-        bit = HERTZ / self.baud
-        cycles = round((len(text) + STOP_ZEROS - 1) * BITS_PER_BYTE * bit + SEEN_BITS * bit)
+        bit_cycles = HERTZ / self.baud
+        cycles = round(
+            (len(text) + STOP_ZEROS - 1) * BITS_PER_BYTE * bit_cycles + SAMPLE_BITS * bit_cycles
+        )
         begin = chip.cycle + CYCLES_PER_MS
-        begin += (place.at - begin - cycles) % PERIOD
-        last = begin + cycles
-        if place.echo is not None:
-            before = SHORT_ECHO if place.is_rise else LONG_ECHO
-            chip.drive(self._sonar, not place.is_rise, at=last + place.echo - before)
-            chip.drive(self._sonar, place.is_rise, at=last + place.echo)
-        if place.edge is not None:
+        begin += (place.cycle - begin - cycles) % CLOCK_PERIOD
+        last_byte_cycle = begin + cycles
+        if place.echo_offset is not None:
+            pulse_cycles = SHORT_ECHO if place.is_rise else LONG_ECHO
+            chip.drive(
+                self._sonar,
+                not place.is_rise,
+                at=last_byte_cycle + place.echo_offset - pulse_cycles,
+            )
+            chip.drive(self._sonar, place.is_rise, at=last_byte_cycle + place.echo_offset)
+        if place.edge_offset is not None:
             self._level = not self._level
             for name in self._discs:
-                chip.drive(name, self._level, at=last + place.edge)
+                chip.drive(name, self._level, at=last_byte_cycle + place.edge_offset)
         event_count = len(chip.events)
         chip.send(text + STOP, begin)
-        chip.run_to(last + round(BITS_PER_BYTE * BITS_PER_BYTE * bit))
-        new = chip.events[event_count:]
-        zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
+        chip.run_to(last_byte_cycle + round(BITS_PER_BYTE * BITS_PER_BYTE * bit_cycles))
+        new_events = chip.events[event_count:]
+        zero_cycles = [
+            event.cycle for event in new_events if event.kind == "received" and event["byte"] == 0
+        ]
         off_cycles = [
             event.cycle
-            for event in new
-            if event.what == "pin"
+            for event in new_events
+            if event.kind == "pin"
             and event.cycle > begin
             and event["is"] == "low"
             and event["pin"] in self._motors
         ]
         self._wired.run(2 * QUIET_MS)
-        self.cycles.append(max(off_cycles) - zeros[STOP_ZEROS - 1])
-        return self.cycles[-1]
+        self.stop_cycles.append(max(off_cycles) - zero_cycles[STOP_ZEROS - 1])
+        return self.stop_cycles[-1]
 
-    def together(self) -> int:
+    def worst_case_cycles(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
-        received = RECEIVE_INTERRUPT[self.chip.board]
-        spans = [item for item in self.chip.longest_masked() if item.vector != received]
-        entries = {span.vector: span.cycle_count for span in spans if _is_before(span, received)}
-        before = max(
+        receive_vector = RECEIVE_INTERRUPT[self.chip.board]
+        masked_spans = [
+            masked for masked in self.chip.longest_masked() if masked.vector != receive_vector
+        ]
+        entries = {
+            span.vector: span.cycle_count
+            for span in masked_spans
+            if _is_before(span, receive_vector)
+        }
+        cycles_before = max(
             span.cycle_count + sum(entries[vector] for vector in entries if vector != span.vector)
-            for span in spans
+            for span in masked_spans
         )
-        return min(self.cycles) + INSTRUCTION + before
+        return min(self.stop_cycles) + INSTRUCTION_CYCLES + cycles_before
 
 
 def _is_before(place: Masked, received_cycle: int) -> bool:
@@ -158,53 +174,68 @@ def _is_before(place: Masked, received_cycle: int) -> bool:
     return place.is_entry and 0 < place.vector < received_cycle
 
 
-def busy(kit: Kit) -> str:
+def busy_program(kit: Kit) -> str:
     """Return a program that measures, moves what can move, plays and sends without end."""
     lines = ["X = 0", "LOOP(FOREVER)", "M(80, 80)", *all_devices(kit), "BEEP(0.005, 5000)"]
     return "SI|" + "; ".join([*lines, "SHOW(X * 1.5 / 7)", "X = (X + 1) % 100", "END_LOOP"])
 
 
-def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
+def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> StopTimes:
     """Return the slowest of some hundred stops."""
-    with Busy(firmware, robot, board, baud) as stopped:
-        stop_ms_at = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
-        center = max(stop_ms_at, key=lambda at: stop_ms_at[at])
-        for at in range(center - AROUND, center + AROUND, FINE):
-            stopped.stop(Place(at))
-        if stopped.has_echo:
+    with BusyRobot(firmware, robot, board, baud) as busy_robot:
+        cycles_at = {
+            cycle: busy_robot.stop(Place(cycle)) for cycle in range(0, CLOCK_PERIOD, COARSE_STEP)
+        }
+        center = max(cycles_at, key=lambda cycle: cycles_at[cycle])
+        for cycle in range(center - FINE_RANGE, center + FINE_RANGE, FINE_STEP):
+            busy_robot.stop(Place(cycle))
+        if busy_robot.has_echo:
             for place in with_echoes([center]):
-                stopped.stop(place)
-        if stopped.has_discs:
+                busy_robot.stop(place)
+        if busy_robot.has_discs:
             for place in with_edges([center]):
-                stopped.stop(place)
-        return sum_up(stopped)
+                busy_robot.stop(place)
+        return sum_up(busy_robot)
 
 
-def sum_up(stopped: Busy) -> Slowest:
-    item = sorted(stopped.cycles)
-    return Slowest(
-        len(item), *map(_microseconds, (item[-1], item[len(item) // 2], stopped.together()))
+def sum_up(busy_robot: BusyRobot) -> StopTimes:
+    sorted_cycles = sorted(busy_robot.stop_cycles)
+    return StopTimes(
+        len(sorted_cycles),
+        *map(
+            _microseconds,
+            (
+                sorted_cycles[-1],
+                sorted_cycles[len(sorted_cycles) // 2],
+                busy_robot.worst_case_cycles(),
+            ),
+        ),
     )
 
 
-def with_echoes(places: Iterable[int]) -> list[Place]:
-    return [Place(at, echo, rises) for at in places for echo in ECHOES for rises in (False, True)]
+def with_echoes(cycles: Iterable[int]) -> list[Place]:
+    return [
+        Place(cycle, offset, rises)
+        for cycle in cycles
+        for offset in ECHO_OFFSETS
+        for rises in (False, True)
+    ]
 
 
-def with_edges(places: Iterable[int]) -> list[Place]:
-    return [Place(at, edge=edge) for at in places for edge in EDGES]
+def with_edges(cycles: Iterable[int]) -> list[Place]:
+    return [Place(cycle, edge_offset=offset) for cycle in cycles for offset in EDGE_OFFSETS]
 
 
-def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
+def sample(busy_robot: BusyRobot, count: int, seed: int) -> list[Place]:
     """Return so many places, half of them with the edge of an echo where there are echoes. Where
     there are discs, all of their edges come on top.
     """
-    chance = random.Random(seed)
-    places = [Place(chance.randrange(PERIOD)) for _ in range(count)]
-    if stopped.has_echo:
-        echoes = chance.sample(with_echoes([places[0].at]), count // 2)
+    random_source = random.Random(seed)
+    places = [Place(random_source.randrange(CLOCK_PERIOD)) for _ in range(count)]
+    if busy_robot.has_echo:
+        echoes = random_source.sample(with_echoes([places[0].cycle]), count // 2)
         places = [*places[count // 2 :], *echoes]
-    return places + (with_edges([places[0].at]) if stopped.has_discs else [])
+    return places + (with_edges([places[0].cycle]) if busy_robot.has_discs else [])
 
 
 def _microseconds(cycle_count: int) -> float:

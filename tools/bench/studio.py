@@ -33,15 +33,15 @@ VISIT_COUNT = 3
 CPU_THROTTLING = 4  # times as slow a processor
 START_COUNT = 5
 WATCH_MS = 4000  # of which pictures are looked at
-PUPILS, WRITERS = 30, 3
+PUPIL_COUNT, WRITER_COUNT = 30, 3
 WRITE_INTERVAL_MS = 300  # between two changes of a writer
 PRESS_COUNT = 60
-STOP_LEAVES_MS = 50
+MOST_STOP_MS = 50
 LATE_FRAME_MS = 33.5  # two of 60 in a second are 33.3, and the clock of a page tells tenths
 SETTLE_MS = 1500  # after a start
-TASK = "ThreadControllerImpl::RunTask"  # of a thread, in Chromium's traces
+TASK_EVENT = "ThreadControllerImpl::RunTask"  # of a thread, in Chromium's traces
 RATING_COUNT = 5
-TYPED_LETTERS = 60  # letters
+TYPED_LETTER_COUNT = 60  # letters
 PROGRAM_LINES = 100
 LIGHTHOUSE = "lighthouse@13.5.0"
 ROWS = {
@@ -61,14 +61,14 @@ ROWS = {
 }
 RATED_CATEGORIES = ("performance", "accessibility", "best-practices")
 # When one can type in the page: the editor and all buttons are there.
-WATCH = """() => {
+WATCH_SCRIPT = """() => {
   const look = () => {
     if (document.documentElement?.dataset.state) window.usable_ms ??= performance.now();
   };
   new MutationObserver(look).observe(document, {subtree: true, childList: true, attributes: true});
 }"""
 # When somebody clicks, when the robot's time goes on, and how long each picture was there.
-FOLLOW = """() => {
+FOLLOW_SCRIPT = """() => {
   window.frames = [];
   addEventListener('click', () => { window.clicked_ms ??= performance.now(); }, {capture: true});
   let before = 0;
@@ -83,7 +83,7 @@ FOLLOW = """() => {
   requestAnimationFrame(look);
 }"""
 # When the button is pressed, as the browser has noted it, and when the request leaves.
-PRESSED = """() => { window.waits = []; const own = window.fetch;
+PRESS_SCRIPT = """() => { window.waits = []; const own = window.fetch;
   const note = ({timeStamp}) => { window.pressed_ms = timeStamp; };
   addEventListener('pointerdown', note, {capture: true});
   window.fetch = (where, what) => {
@@ -92,7 +92,7 @@ PRESSED = """() => { window.waits = []; const own = window.fetch;
   }; }"""
 # A letter is typed in the middle of the program, and the compiler asked as the page asks it; where
 # somebody pauses then, also for what a button does.
-TYPE = """async ([text, count, isPausing]) => {
+TYPE_SCRIPT = """async ([text, count, isPausing]) => {
   const worker = new Worker('./worker.js', {type: 'module'});
   const said = () => new Promise((resolve) => { worker.onmessage = ({data}) => resolve(data); });
   await said();
@@ -129,12 +129,12 @@ def main() -> None:
             figure_rows += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
     with studio.served(_packed_files()) as server:
-        rated = _lighthouse_scores(server.address).values()
-        figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
+        scores = _lighthouse_scores(server.address).values()
+        figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in scores), "95"))
     packed_bytes = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
     figure_rows.append((ROWS["files"], f"{packed_bytes / 1e6:.2f} MB", "6 MB"))
     page_of_figures.show("studio", figure_rows)
-    if slowest_ms > STOP_LEAVES_MS:
+    if slowest_ms > MOST_STOP_MS:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
 
 
@@ -147,39 +147,39 @@ def _measure(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     yield "usable", f"{usable_ms / 1000:.2f} s", "1 s"
     yield "compiled", f"{used_s:.2f} s", "2.5 s"
     with _visit(browser, address) as page:
-        each_ms = _typed_ms(page, False)
-        yield "letter", f"{each_ms:.1f} ms", "16 ms"
-        button_ms = _typed_ms(page, True) - each_ms
+        letter_ms = _typed_ms(page, False)
+        yield "letter", f"{letter_ms:.1f} ms", "16 ms"
+        button_ms = _typed_ms(page, True) - letter_ms
         yield "button", f"{button_ms:.1f} ms", ""
 
 
 def _typed_ms(page: Page, is_pausing: bool) -> float:
     """Return the processor time for a letter: of many less that of few, without the start."""
     before_s = _processor_s(page)
-    page.evaluate(TYPE, [_program(), TYPED_LETTERS, is_pausing])
+    page.evaluate(TYPE_SCRIPT, [_program(), TYPED_LETTER_COUNT, is_pausing])
     short_s = _processor_s(page) - before_s
-    page.evaluate(TYPE, [_program(), 3 * TYPED_LETTERS, is_pausing])
-    return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED_LETTERS)
+    page.evaluate(TYPE_SCRIPT, [_program(), 3 * TYPED_LETTER_COUNT, is_pausing])
+    return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED_LETTER_COUNT)
 
 
 def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """A processor that is four times as slow, from a click on a picture to a robot that moves."""
-    cold: list[float] = []
-    warm: list[float] = []
+    cold_s: list[float] = []
+    warm_s: list[float] = []
     frames: list[float] = []
     for _ in range(START_COUNT):
         context = browser.new_context(viewport={"width": 1366, "height": 768})
         page = context.new_page()
         page.set_default_timeout(120_000)
-        page.add_init_script(f"({FOLLOW})()")
+        page.add_init_script(f"({FOLLOW_SCRIPT})()")
         session = context.new_cdp_session(page)
         session.send("Emulation.setCPUThrottlingRate", {"rate": CPU_THROTTLING})
-        for waits in (cold, warm):
+        for times_s in (cold_s, warm_s):
             page.goto(address, wait_until="commit")
             page.click("[data-begin=obstacle]")
             page.locator("html[data-phase=running]").wait_for(state="attached")
             page.wait_for_function("window.moving_ms")  # a robot that never moves ends it
-            waits.append(page.evaluate("moving_ms - clicked_ms") / 1000)
+            times_s.append(page.evaluate("moving_ms - clicked_ms") / 1000)
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         page.select_option("#speed", "20")
         page.wait_for_timeout(SETTLE_MS)
@@ -187,8 +187,8 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         page.wait_for_timeout(WATCH_MS)
         frames += page.evaluate("window.frames")
         context.close()
-    yield "moving", f"{median(cold):.2f} s", "2.5 s"
-    yield "again", f"{median(warm):.2f} s", "2.5 s"
+    yield "moving", f"{median(cold_s):.2f} s", "2.5 s"
+    yield "again", f"{median(warm_s):.2f} s", "2.5 s"
     late_count = sum(frame > LATE_FRAME_MS for frame in frames)
     yield "pictures", f"{late_count} of {len(frames):,}", "none"
 
@@ -210,7 +210,7 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
     slow_works = [CPU_THROTTLING * work for work in works]
-    late_count = sum(item > LATE_FRAME_MS for item in slow_works)
+    late_count = sum(work_ms > LATE_FRAME_MS for work_ms in slow_works)
     yield "work", f"{late_count} of {len(slow_works):,}, median {median(slow_works):.1f} ms", "none"
 
 
@@ -219,29 +219,33 @@ def _stopped_ms(browser: Browser) -> float:
 
     Meanwhile pupils write as much as a page takes, as fast as it asks.
     """
-    with studio.taught([]) as (server, room):
-        room.teach({"do": "class_places", "places": PUPILS})
+    with studio.taught([]) as (server, classroom):
+        classroom.teach({"do": "class_places", "places": PUPIL_COUNT})
         tokens = [
-            room.answer("", "192.0.2.7", {"do": "join", "code": room.code, "name": f"P{k}"})[
-                "token"
-            ]
-            for k in range(PUPILS)
+            classroom.answer(
+                "", "192.0.2.7", {"do": "join", "code": classroom.code, "name": f"P{k}"}
+            )["token"]
+            for k in range(PUPIL_COUNT)
         ]
 
-        def writes(pupils: list[str], last: int) -> None:
+        def write_programs(pupils: list[str], change_number: int) -> None:
             for token in pupils:
-                message = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
-                room.answer(token, "192.0.2.7", message)
+                message = {
+                    "do": "here",
+                    "text": f"{_program(480)} // {change_number}",
+                    "robot": "tinibot",
+                }
+                classroom.answer(token, "192.0.2.7", message)
 
-        writes(tokens, 0)
+        write_programs(tokens, 0)
         context = browser.new_context(viewport={"width": 1366, "height": 768})
         page = context.new_page()
         page.set_default_timeout(120_000)
         page.goto(server.entrance())
-        page.locator("#wall img[src^=blob]").nth(PUPILS - 1).wait_for()
-        page.evaluate(PRESSED)
+        page.locator("#wall img[src^=blob]").nth(PUPIL_COUNT - 1).wait_for()
+        page.evaluate(PRESS_SCRIPT)
         for k in range(PRESS_COUNT):
-            writes(tokens[:WRITERS] if k % 2 else tokens, k)
+            write_programs(tokens[:WRITER_COUNT] if k % 2 else tokens, k)
             page.wait_for_timeout(WRITE_INTERVAL_MS)
             page.click("#stop", no_wait_after=True)
         waits: list[float] = page.evaluate("window.waits")
@@ -256,11 +260,15 @@ def _works_ms(events: list[dict[str, Any]]) -> list[float]:
     draw_times = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
     works = [0.0] * len(draw_times)
     for task in events:
-        if task["name"] != TASK or task.get("ph") != "X" or (task["pid"], task["tid"]) != thread:
+        if (
+            task["name"] != TASK_EVENT
+            or task.get("ph") != "X"
+            or (task["pid"], task["tid"]) != thread
+        ):
             continue
-        picture = bisect_right(draw_times, task["ts"] + task["dur"]) - 1  # the newest
-        if picture >= 0:
-            works[picture] += task.get("tdur", 0) / 1000
+        frame_index = bisect_right(draw_times, task["ts"] + task["dur"]) - 1  # the newest
+        if frame_index >= 0:
+            works[frame_index] += task.get("tdur", 0) / 1000
     return works
 
 
@@ -268,9 +276,9 @@ def _processor_s(page: Page) -> float:
     """Return what the page's process has taken of processors: other work does not change that."""
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
-    result = session.send("Performance.getMetrics")["metrics"]
+    metrics = session.send("Performance.getMetrics")["metrics"]
     session.detach()
-    return next(float(item["value"]) for item in result if item["name"] == "ProcessTime")
+    return next(float(metric["value"]) for metric in metrics if metric["name"] == "ProcessTime")
 
 
 @contextmanager
@@ -279,7 +287,7 @@ def _visit(browser: Browser, address: str) -> Iterator[Page]:
     context = browser.new_context(viewport={"width": 1366, "height": 768}, service_workers="block")
     page = context.new_page()
     page.set_default_timeout(120_000)
-    page.add_init_script(f"({WATCH})()")
+    page.add_init_script(f"({WATCH_SCRIPT})()")
     page.goto(address)
     studio.checked(page)
     try:
@@ -306,7 +314,7 @@ def _packed_files() -> dict[str, serving.File]:
 def _lighthouse_scores(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
     tools = find_tools()
-    call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
+    command = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
             "--preset=desktop", "--quiet", "--output=json",
             f"--only-categories={','.join(RATED_CATEGORIES)}",
             f"--chrome-flags=--headless=new {' '.join(studio.WHOLE)}"]  # fmt: skip
@@ -315,10 +323,12 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
     reports: list[dict[str, Any]] = []
     for _ in range(RATING_COUNT):
-        completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
+        completed = subprocess.run(
+            command, env=settings, capture_output=True, text=True, check=True
+        )
         reports.append(json.loads(completed.stdout)["categories"])
     return {
-        name: 100 * median(item[name]["score"] for item in reports) for name in RATED_CATEGORIES
+        name: 100 * median(report[name]["score"] for report in reports) for name in RATED_CATEGORIES
     }
 
 

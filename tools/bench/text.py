@@ -21,19 +21,23 @@ TRY_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
 LONGEST_MS = 5.0  # for the short line
 
 
-def typed_line_ms(board: Uno, line: str, wait: int) -> float:
+def typed_line_ms(board: Uno, line: str, phase: int) -> float:
     """Return the ms from the last byte of a line, its end, to the pins."""
-    board.run_to(board.cycle + wait * PHASE_CYCLES)
-    began = board.cycle
+    board.run_to(board.cycle + phase * PHASE_CYCLES)
+    begin_cycle = board.cycle
     board.send(line.encode() + b"\n")
     board.run_ms(3 * len(line) + 200)
-    at = first_move(board, began)
-    line_bytes = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
+    move_cycle = first_move(board, begin_cycle)
+    line_bytes = [
+        byte
+        for byte in board.received_bytes
+        if begin_cycle <= byte.began and byte.cycle <= move_cycle
+    ]
     if len(line_bytes) != len(line) + 1:
         raise RuntimeError(f"the robot moved after {len(line_bytes)} of {len(line) + 1} bytes")
     board.send(b"S\n")
     board.run_ms(SILENCE_MS)
-    return (at - line_bytes[-1].cycle) / CYCLES_PER_MS
+    return (move_cycle - line_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 def slowest(board: Uno, line: str) -> float:

@@ -26,9 +26,9 @@ from tools import ROOT
 from tools.bench import page
 
 RUN_COUNT = 21
-UPLOAD_LIMIT_S = 20.0
-CROWD = 30
-UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
+UPLOAD_TIMEOUT_S = 20.0
+CROWD_SIZE = 30
+UPLOAD_COMMAND = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
 ROWS = (
     "with `tsc monitor --hold` on the port",
@@ -67,10 +67,10 @@ class Bench:
         if self.start("stop").wait():
             raise RuntimeError("the robot did not stop")
         begin_s = time.perf_counter()
-        upload = self.start(*UPLOAD)
+        upload = self.start(*UPLOAD_COMMAND)
         while not self.pty_robot.moves:
             time.sleep(0.0003)
-            if time.perf_counter() - begin_s > UPLOAD_LIMIT_S:
+            if time.perf_counter() - begin_s > UPLOAD_TIMEOUT_S:
                 raise RuntimeError("the robot did not move")
         took_ms = (time.perf_counter() - begin_s) * 1000
         if upload.wait():
@@ -82,40 +82,42 @@ def measure(bench: Bench, run_count: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.measure_move_ms()  # what is cached is cached now
     pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(run_count)]
-    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*pairs, strict=True))
+    moves_ms, nothing_ms = (statistics.median(times_ms) for times_ms in zip(*pairs, strict=True))
     return moves_ms, nothing_ms
 
 
-def crowd(count: int, run_count: int, folder: str) -> tuple[float, float]:
+def measure_crowd_ms(count: int, run_count: int, folder: str) -> tuple[float, float]:
     """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
     environ = environment(folder)
-    moving, stopping = [], []
-    with RobotFleet([robots.load("tinibot").kit] * count) as room:
-        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+    moving_ms, stopping_ms = [], []
+    with RobotFleet([robots.load("tinibot").kit] * count) as fleet:
+        ports = [word for pupil in fleet.pupils for word in ("--port", pupil.port)]
 
-        def measure_ms(verb: tuple[str, ...], moves: bool) -> float:
+        def measure_ms(verb: tuple[str, ...], is_moving: bool) -> float:
             begin_s = time.perf_counter()
             command = subprocess.Popen(
                 [sys.executable, "-m", "tiniscript", *verb, *ports], env=environ,
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             )  # fmt: skip
-            room.until(lambda: all(pupil.moves is moves for pupil in room.pupils), "all do it")
+            fleet.until(
+                lambda: all(pupil.moves is is_moving for pupil in fleet.pupils), "all do it"
+            )
             took_s = time.perf_counter() - begin_s
             if command.wait():
                 raise RuntimeError(f"tsc {verb[0]} failed")
             return took_s * 1000
 
         for _ in range(run_count):
-            moving.append(measure_ms(UPLOAD, True))
-            stopping.append(measure_ms(("stop",), False))
-    return statistics.median(moving), statistics.median(stopping)
+            moving_ms.append(measure_ms(UPLOAD_COMMAND, True))
+            stopping_ms.append(measure_ms(("stop",), False))
+    return statistics.median(moving_ms), statistics.median(stopping_ms)
 
 
 def main() -> int:
     if missing():
         print(missing(), file=sys.stderr)
         return 2
-    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUN_COUNT
+    run_count = int(sys.argv[1]) if len(sys.argv) > 1 else RUN_COUNT
     kit = robots.load("tinibot").kit
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -125,12 +127,17 @@ def main() -> int:
         holder = bench.start("monitor", "--hold")
         assert holder.stdout
         holder.stdout.readline()
-        held_ms, _ = measure(bench, runs)
+        held_ms, _ = measure(bench, run_count)
         holder.terminate()
         holder.wait()
-        opening_ms, nothing_ms = measure(bench, runs)
-        found_ms = held_ms, opening_ms, nothing_ms, *crowd(CROWD, max(1, runs // 3), folder)
-    page.show("upload", [(row, f"{ms:.0f} ms") for row, ms in zip(ROWS, found_ms, strict=True)])
+        opening_ms, nothing_ms = measure(bench, run_count)
+        figures_ms = (
+            held_ms,
+            opening_ms,
+            nothing_ms,
+            *measure_crowd_ms(CROWD_SIZE, max(1, run_count // 3), folder),
+        )
+    page.show("upload", [(row, f"{ms:.0f} ms") for row, ms in zip(ROWS, figures_ms, strict=True)])
     return 0
 
 

@@ -29,18 +29,20 @@ ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 
 def main() -> None:
     figure_rows = []
-    for name, robot, world in PROGRAMS:
-        times = max(RUN_SECONDS / _run_alone_s(name, robot, world) for _ in range(RUN_COUNT))
-        figure_rows.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
+    for name, robot_name, world_name in PROGRAMS:
+        speedup = max(
+            RUN_SECONDS / _run_alone_s(name, robot_name, world_name) for _ in range(RUN_COUNT)
+        )
+        figure_rows.append((f"`{name}`", f"`{world_name}`", f"{speedup:,.0f}"))
     page.show("virtual", figure_rows)
 
 
-def _run_alone_s(name: str, robot: str, world: str) -> float:
-    virtual = VirtualRobot(robots.load(robot), worlds.load(world))
+def _run_alone_s(name: str, robot_name: str, world_name: str) -> float:
+    virtual_robot = VirtualRobot(robots.load(robot_name), worlds.load(world_name))
     text = (ROOT / "examples" / name).read_text(encoding="utf-8")
-    Talk(virtual).upload(text, is_detached=True)
+    Talk(virtual_robot).upload(text, is_detached=True)
     began_s = process_time()
-    virtual.step(virtual.now_ms + RUN_SECONDS * 1000)
+    virtual_robot.step(virtual_robot.now_ms + RUN_SECONDS * 1000)
     return process_time() - began_s
 
 

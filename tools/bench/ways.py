@@ -33,11 +33,11 @@ from tools.bench.firmware_size import PROJECT, measure
 
 SEED_COUNT = 100
 WANTED_PERCENT = 95  # of them
-FAST, SLOW = 107.5, 92.5  # percent
+FAST_PERCENT, SLOW_PERCENT = 107.5, 92.5  # percent
 SLIPS = (0.005, 0.02, 0.05)
-GO, TURN = "F(100 CM, 60)", "R(360 DEG, 60)"
+GO_PROGRAM, TURN_PROGRAM = "F(100 CM, 60)", "R(360 DEG, 60)"
 LONGEST_RUN_MS = 30_000
-TAPE_CM, PROTRACTOR = 1, 5  # as near as one reads them
+TAPE_CM, PROTRACTOR_DEGREES = 1, 5  # as near as one reads them
 # how the way is known: along, aside and turned, as far as each may be off
 LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.inf,) * 3}
 SHOWN_ROWS = {
@@ -51,75 +51,75 @@ ROWS = tuple(row for row, slips in SHOWN_ROWS.values() for _ in slips)
 class Robot(Talk):
     """One of `tinibot2`, whose firmware knows of its discs if it goes by them."""
 
-    def __init__(self, seed: int, slip: float, by_discs: bool) -> None:
-        motors = (FAST, SLOW) if seed % 2 else (SLOW, FAST)
-        settings = Settings(seed=seed, motors=motors, rough=Roughness(slip), eeprom_us=0)
+    def __init__(self, seed: int, slip: float, uses_discs: bool) -> None:
+        motors = (FAST_PERCENT, SLOW_PERCENT) if seed % 2 else (SLOW_PERCENT, FAST_PERCENT)
+        settings = Settings(seed=seed, motors=motors, roughness=Roughness(slip), eeprom_us=0)
         profile = robots.load("tinibot2")
-        place = floor(size=1000, start="x_cm = 500\ny_cm = 500")
-        robot = VirtualRobot(profile, place, settings)
-        if not by_discs:
+        world = floor(size=1000, start="x_cm = 500\ny_cm = 500")
+        robot = VirtualRobot(profile, world, settings)
+        if not uses_discs:
             robot.profile = profile._replace(board=profile.board._replace(discs=None))
             robot.power_cycle()
         super().__init__(robot)
 
     def drive(self, text: str) -> tuple[float, float, float]:
         """Return how far a program leads ahead and aside, and how far it turns, to the left."""
-        before = self.robot.pose
+        start_pose = self.robot.pose
         self.upload(text, is_detached=True)
         end_ms = self.robot.now_ms + LONGEST_RUN_MS
         while self.robot.is_running and self.robot.now_ms < end_ms:
             self.robot.step(self.robot.now_ms + 100)
         self.robot.step(self.robot.now_ms + 500)
         pose = self.robot.pose
-        along = math.radians(before.heading)
-        x, y = pose.x_cm - before.x_cm, pose.y_cm - before.y_cm
-        ahead_cm = x * math.cos(along) + y * math.sin(along)
-        aside_cm = y * math.cos(along) - x * math.sin(along)
-        return ahead_cm, aside_cm, pose.heading - before.heading
+        heading = math.radians(start_pose.heading)
+        x, y = pose.x_cm - start_pose.x_cm, pose.y_cm - start_pose.y_cm
+        ahead_cm = x * math.cos(heading) + y * math.sin(heading)
+        aside_cm = y * math.cos(heading) - x * math.sin(heading)
+        return ahead_cm, aside_cm, pose.heading - start_pose.heading
 
     def calibrate(self, seed: int) -> None:
         """Do what `tsc set trim` does: make it straight, and measure at two powers."""
-        weaker = round(100 * (1 - SLOW / FAST))
+        weaker = round(100 * (1 - SLOW_PERCENT / FAST_PERCENT))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
-        self.until(self.session.trim(trim.data()))
+        self.wait_for(self.session.trim(trim.data()))
         measures = []
         for power in (40, 80):
             ahead_cm, _, _ = self.drive(f"F(2, {power})")
             measures.append(round(ahead_cm / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
-            _, _, turned = self.drive(f"R(1, {power})")
-            measures.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
-        self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
+            _, _, turned_degrees = self.drive(f"R(1, {power})")
+            measures.append(round(abs(turned_degrees) / PROTRACTOR_DEGREES) * PROTRACTOR_DEGREES)
+        self.wait_for(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
 def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]:
     """Return how far one robot is off: along and aside in cm, turned in degrees."""
-    one = Robot(seed, slip, method == "discs")
+    robot = Robot(seed, slip, method == "discs")
     if method == "time, calibrated":
-        one.calibrate(seed)
-    ahead, aside, _ = one.drive(GO)
-    _, _, turned = one.drive(TURN)
-    return abs(ahead - 100), abs(aside), abs(turned + 360)
+        robot.calibrate(seed)
+    ahead, aside, _ = robot.drive(GO_PROGRAM)
+    _, _, turned_degrees = robot.drive(TURN_PROGRAM)
+    return abs(ahead - 100), abs(aside), abs(turned_degrees + 360)
 
 
-def worst_wanted(values: Sequence[float]) -> float:
+def wanted_quantile(values: Sequence[float]) -> float:
     """Return what WANTED_PERCENT of the values are within."""
     return sorted(values)[WANTED_PERCENT * len(values) // 100 - 1]
 
 
 def offset_of_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
     """Return the same of the firmware of an Uno, on its simulated chip."""
-    motors = (FAST, SLOW) if seed % 2 else (SLOW, FAST)
-    one = Driven(firmware, seed, motors, Roughness(slip))
-    with one.uno:
-        one.drive(GO)
-        pose_after = one.pose
-        one.drive(TURN)
-        turned = one.pose.heading - pose_after.heading
-    return abs(pose_after.x_cm - 100), abs(pose_after.y_cm), abs(turned + 360)
+    motors = (FAST_PERCENT, SLOW_PERCENT) if seed % 2 else (SLOW_PERCENT, FAST_PERCENT)
+    robot = Driven(firmware, seed, motors, Roughness(slip))
+    with robot.uno:
+        robot.drive(GO_PROGRAM)
+        pose_after = robot.pose
+        robot.drive(TURN_PROGRAM)
+        turned_degrees = robot.pose.heading - pose_after.heading
+    return abs(pose_after.x_cm - 100), abs(pose_after.y_cm), abs(turned_degrees + 360)
 
 
-def flash() -> int:
+def flash_bytes() -> int:
     """Return the bytes that an Uno's firmware is larger than one that knows no ways."""
     replacements = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
                     r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
@@ -128,8 +128,8 @@ def flash() -> int:
         shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
         header = project / "src" / "vm" / "bytecode.h"
         text = header.read_text(encoding="utf-8")
-        for pattern, none in replacements.items():
-            text, count = re.subn(pattern, none, text)
+        for pattern, replacement in replacements.items():
+            text, count = re.subn(pattern, replacement, text)
             assert count == 1, pattern
         header.write_text(text, encoding="utf-8")
         return measure("uno").flash - measure("uno", project).flash
@@ -138,26 +138,26 @@ def flash() -> int:
 def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
-        result = WorstOffsets.summarise(
+        offsets = WorstOffsets.summarise(
             "discs", [offset_of_uno(firmware, seed, SLIPS[0]) for seed in range(1, seed_count + 1)]
         )
-        along_cell, aside_cell, turn_cell = result.cells()
+        along_cell, aside_cell, turn_cell = offsets.cells()
         print(
             f"With discs and 0.5 % of slip {along_cell} along, {aside_cell} aside and "
-            f"{turn_cell}, {result.within} within."
+            f"{turn_cell}, {offsets.within} within."
         )
-        return int(not result.is_good)
-    is_good = True
+        return int(not offsets.is_good)
+    are_all_good = True
     rows = []
     for method, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
-            result = WorstOffsets.summarise(
+            offsets = WorstOffsets.summarise(
                 method, [offset_of(seed, slip, method) for seed in range(1, seed_count + 1)]
             )
-            rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
-            is_good = is_good and (result.is_good or slip != SLIPS[0])
-    page.show("ways", rows, key_cells=2)
-    return int(not is_good)
+            rows.append((row, f"{100 * slip:g} %", *offsets.cells(), offsets.within))
+            are_all_good = are_all_good and (offsets.is_good or slip != SLIPS[0])
+    page.show("ways", rows, key_cell_count=2)
+    return int(not are_all_good)
 
 
 class WorstOffsets(NamedTuple):
@@ -170,12 +170,14 @@ class WorstOffsets(NamedTuple):
     @classmethod
     def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> WorstOffsets:
         limits = LIMITS[method]
-        good_way_count = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
-        good_turn_count = sum(item[2] <= limits[2] for item in offsets)
+        good_way_count = sum(
+            offset[0] <= limits[0] and offset[1] <= limits[1] for offset in offsets
+        )
+        good_turn_count = sum(offset[2] <= limits[2] for offset in offsets)
         within = f"{good_way_count} and {good_turn_count}" if limits[0] < math.inf else "-"
         is_good = 100 * min(good_way_count, good_turn_count) >= WANTED_PERCENT * len(offsets)
         return cls(
-            tuple(worst_wanted(column) for column in zip(*offsets, strict=True)), within, is_good
+            tuple(wanted_quantile(column) for column in zip(*offsets, strict=True)), within, is_good
         )
 
     def cells(self) -> tuple[str, str, str]:
@@ -190,6 +192,6 @@ if __name__ == "__main__":
     parser.add_argument("--size", action="store_true", help="only what they take of an Uno's flash")
     options = parser.parse_args()
     if options.size:
-        print(f"Without discs ways take {flash()} bytes of an Uno's flash.")
+        print(f"Without discs ways take {flash_bytes()} bytes of an Uno's flash.")
         sys.exit()
     sys.exit(main(options.seeds, options.uno))

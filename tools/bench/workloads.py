@@ -20,18 +20,21 @@ SENSOR = [sensor.name for sensor in KIT.sensors].index("DISTANCE")
 
 
 class Work(NamedTuple):
-    """A loop that runs so many `times`, between reading its constants and showing its results."""
+    """A loop that runs so many `loop_count`, between reading its constants and showing its
+    results."""
 
     name: str
-    before: str
+    code_before: str
     body: str
-    times: int
-    after: str
+    loop_count: int
+    code_after: str
     readings: tuple[int, ...] = ()  # of DISTANCE, in units
 
     @property
     def text(self) -> str:
-        return f"{self.before} LOOP({self.times}); {self.body} END_LOOP; {self.after}"
+        return (
+            f"{self.code_before} LOOP({self.loop_count}); {self.body} END_LOOP; {self.code_after}"
+        )
 
     @property
     def thousandths(self) -> list[int]:
@@ -62,14 +65,14 @@ WORKS = (
     ),
 )
 
-MUST = (120.0, 200.0, 2400.0)  # cycles of one iteration, at most
+MOST_CYCLES = (120.0, 200.0, 2400.0)  # cycles of one iteration, at most
 
 
 @lru_cache
 def image_of(work: Work) -> bytes:
-    compiled = compile_text(work.text, KIT)
-    assert compiled.image, compiled.diagnostics
-    return compiled.image
+    compilation = compile_text(work.text, KIT)
+    assert compilation.image, compilation.diagnostics
+    return compilation.image
 
 
 def code_of(work: Work) -> bytes:
@@ -80,18 +83,18 @@ def code_of(work: Work) -> bytes:
 def expected_values(work: Work) -> tuple[int, ...]:
     """Return the values that the machine in Python shows, in thousandths."""
     *events, ending = run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths}))
-    assert isinstance(ending, Ending) and ending.what == "DONE", ending
+    assert isinstance(ending, Ending) and ending.kind == "DONE", ending
     return tuple(
         value
         for event in events
-        if not isinstance(event, Ending) and event.what == "SHOW"
+        if not isinstance(event, Ending) and event.kind == "SHOW"
         for value in event.values
     )
 
 
-def check(machine: str, work: Work, values_shown: Sequence[object]) -> None:
+def check(machine: str, work: Work, shown_values: Sequence[object]) -> None:
     """Raise WrongResult where a machine does not say the same as the one in Python."""
-    if tuple(values_shown) != expected_values(work):
+    if tuple(shown_values) != expected_values(work):
         raise WrongResult(
-            f"{machine}, work {work.name}: {values_shown}, not {expected_values(work)}"
+            f"{machine}, work {work.name}: {shown_values}, not {expected_values(work)}"
         )

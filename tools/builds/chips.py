@@ -18,7 +18,7 @@ from tools import ROOT
 
 SOURCES = ROOT / "vm_arduino"
 
-USUAL = (
+COMMON_FLAGS = (
     "-std=c++11", "-Os", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections",
     "-fno-asynchronous-unwind-tables",
 )  # fmt: skip
@@ -33,8 +33,8 @@ class Chip(NamedTuple):
     linker: tuple[str, ...]
     measurer: str
     emulator: tuple[str, ...]
-    ram: int  # where it begins in the emulator
-    start: str  # what comes before the program, in `vm_arduino/extras/qemu`
+    ram_start: int  # where it begins in the emulator
+    start_file: str  # what comes before the program, in `vm_arduino/extras/qemu`
 
 
 # What the LX6 of an ESP32 has: clang knows no name for all of it. QEMU's de233_fpu has no
@@ -66,8 +66,8 @@ CHIPS = {
         linker=_XTENSA_LD,
         measurer="xtensa-lx106-elf-size",
         emulator=(*_SIM, "-cpu", "de233_fpu"),
-        ram=0x2000,
-        start="xtensa.S",
+        ram_start=0x2000,
+        start_file="xtensa.S",
     ),
     "lx106": Chip(
         board="ESP8266: Xtensa lx106 without register windows",
@@ -77,8 +77,8 @@ CHIPS = {
         linker=_XTENSA_LD,
         measurer="xtensa-lx106-elf-size",
         emulator=(*_SIM, "-cpu", "lx106"),
-        ram=0x60000000,
-        start="xtensa.S",
+        ram_start=0x60000000,
+        start_file="xtensa.S",
     ),
     "rv32imc": Chip(
         board="ESP32-C3: RISC-V rv32imc",
@@ -89,13 +89,13 @@ CHIPS = {
         measurer="riscv64-unknown-elf-size",
         emulator=("qemu-system-riscv32", "-M", "virt", "-bios", "none",
                   "-semihosting-config", "enable=on,target=native"),
-        ram=0x80000000,
-        start="riscv.S",
+        ram_start=0x80000000,
+        start_file="riscv.S",
     ),
 }  # fmt: skip
 
 
-def missing(chip: Chip, can_run: bool = False) -> str:
+def why_missing(chip: Chip, can_run: bool = False) -> str:
     """Return why nothing can be built for a chip, or run on it, or nothing."""
     tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
     if can_run:
@@ -110,17 +110,17 @@ def missing(chip: Chip, can_run: bool = False) -> str:
 
 
 def build(
-    chip: Chip, code: Iterable[Path], program: Path, *flags: str, entry: str = "_start"
+    chip: Chip, source_paths: Iterable[Path], program: Path, *flags: str, entry: str = "_start"
 ) -> None:
     """Compile and link files into one program for the emulator."""
     with tempfile.TemporaryDirectory() as folder:
         objects: list[str] = []
-        for path in code:
+        for path in source_paths:
             objects.append(str(Path(folder) / f"{len(objects)}.o"))
             compile_one(chip, path, objects[-1], flags)
         _command([
             *chip.linker, "--gc-sections", "--no-warn-rwx-segments", "-z", "noexecstack",
-            f"--entry={entry}", f"--defsym=RAM={chip.ram:#x}",
+            f"--entry={entry}", f"--defsym=RAM={chip.ram_start:#x}",
             "-T", str(SOURCES / "extras" / "qemu" / "chip.ld"), *objects, "-o", str(program),
         ])  # fmt: skip
 
@@ -136,8 +136,8 @@ def size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
         source.write_text(probe, encoding="utf-8")
         module_sources = [path for module in ("vm", *modules)
                           for path in sorted((SOURCES / "src" / module).glob("*.cpp"))]  # fmt: skip
-        code = [source, *module_sources, SOURCES / "extras" / "qemu" / "library.cpp"]
-        build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
+        source_paths = [source, *module_sources, SOURCES / "extras" / "qemu" / "library.cpp"]
+        build(chip, source_paths, program, f"-I{SOURCES / 'src'}", entry="main")
         row = _command([chip.measurer, str(program)]).splitlines()[1]
     text, data, bss = (int(word) for word in row.split()[:3])
     return text + data, data + bss
@@ -145,16 +145,18 @@ def size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
 
 def compile_one(chip: Chip, path: Path, object_file: str, flags: Sequence[str]) -> None:
     """Make an object of one file."""
-    flags_for_cpp = (*USUAL, *flags) if path.suffix == ".cpp" else ()
+    flags_for_cpp = (*COMMON_FLAGS, *flags) if path.suffix == ".cpp" else ()
     if not chip.assembler:
         _command([*chip.compiler, *flags_for_cpp, str(path), "-o", object_file])
         return
-    text = f"{object_file}.s"
+    assembly_file = f"{object_file}.s"
     if path.suffix == ".cpp":
-        _command([*chip.compiler, *flags_for_cpp, str(path), "-o", text])
+        _command([*chip.compiler, *flags_for_cpp, str(path), "-o", assembly_file])
     else:
-        _command([chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", text])
-    _command([*chip.assembler, text, "-o", object_file])
+        _command(
+            [chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", assembly_file]
+        )
+    _command([*chip.assembler, assembly_file, "-o", object_file])
 
 
 def _command(words: Sequence[str]) -> str:

@@ -30,23 +30,23 @@ def text_of(name: str) -> str:
 
 def write(target: Path, text: str) -> None:
     """Have the file there as a whole, whenever somebody reads it. Raises OSError."""
-    new = target.with_name(f"{target.name}.{os.getpid()}")
-    new.write_text(text, encoding="utf-8", newline="\n")
-    new.replace(target)
+    temporary_path = target.with_name(f"{target.name}.{os.getpid()}")
+    temporary_path.write_text(text, encoding="utf-8", newline="\n")
+    temporary_path.replace(target)
 
 
-def main(words: Sequence[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     description, _, _ = (__doc__ or "").partition("\n\n")
-    reader = argparse.ArgumentParser(prog=COMMAND, description=description)
-    reader.add_argument("folder", type=Path, nargs="?", default=FOLDER,
+    parser = argparse.ArgumentParser(prog=COMMAND, description=description)
+    parser.add_argument("folder", type=Path, nargs="?", default=FOLDER,
                         help="tiniscript/conformance of another installation")  # fmt: skip
-    folder: Path = reader.parse_args(words).folder
+    folder: Path = parser.parse_args(arguments).folder
     try:
         for name in FILES:
             write(folder / name, text_of(name))
             print(folder / name)
-    except OSError as why:
-        print(f"{COMMAND}: {why.strerror or why}: {why.filename or folder}", file=sys.stderr)
+    except OSError as error:
+        print(f"{COMMAND}: {error.strerror or error}: {error.filename or folder}", file=sys.stderr)
         return 1
     return 0
 

@@ -18,9 +18,9 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base.languages import SOURCE_LANGUAGE
-from tiniscript.cli.firmware_build import on_boards
+from tiniscript.cli.firmware_build import robots_on_boards
 from tiniscript.flash import building
-from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
+from tiniscript.flash.ready import FOLDER, NOTICE_FILE, file_name_of, title_of
 from tiniscript.library import install_advice
 from tiniscript.robots.profile import Robot, answer_languages
 from tools import ROOT, CannotMake
@@ -51,7 +51,7 @@ def shipped_robots() -> list[Robot]:
         robot
         for name in robots.names()
         for language in answer_languages()
-        for robot in on_boards(name, language)
+        for robot in robots_on_boards(name, language)
     ]
 
 
@@ -61,7 +61,7 @@ def halting_robots() -> list[Robot]:
     return [
         robot
         for name in robots.names()
-        for robot in on_boards(name, SOURCE_LANGUAGE)
+        for robot in robots_on_boards(name, SOURCE_LANGUAGE)
         if building.can_have_breakpoints(robot)
     ]
 
@@ -71,8 +71,8 @@ def build(robot: Robot, target: Path, has_breakpoints: bool = False) -> Path:
     sources = building.sources()
     assert sources is not None, "no vm_arduino beside this folder"
     title = title_of(robot, has_breakpoints)
-    path = target / name_of(title, robot.board.chip, sources.digest(robot, has_breakpoints))
-    path.write_bytes(building.build(sources, robot, lambda seen: None, has_breakpoints))
+    path = target / file_name_of(title, robot.board.chip, sources.digest(robot, has_breakpoints))
+    path.write_bytes(building.build(sources, robot, lambda progress: None, has_breakpoints))
     return path
 
 
@@ -89,15 +89,15 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     os.environ.update(settings_for(PROJECT, offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
-        new = Path(scratch) / "ready"
-        new.mkdir()
-        paths = [build(robot, new) for robot in shipped_robots()]
-        paths += [build(robot, new, has_breakpoints=True) for robot in halting_robots()]
-        (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
-        shutil.copy(licence, new / LICENCE_NAME)
+        new_folder = Path(scratch) / "ready"
+        new_folder.mkdir()
+        paths = [build(robot, new_folder) for robot in shipped_robots()]
+        paths += [build(robot, new_folder, has_breakpoints=True) for robot in halting_robots()]
+        (new_folder / NOTICE_FILE).write_text(NOTICE_TEXT, encoding="utf-8")
+        shutil.copy(licence, new_folder / LICENCE_NAME)
         if target.exists():
             target.rename(Path(scratch) / "old")
-        new.rename(target)
+        new_folder.rename(target)
     return [target / path.name for path in paths]
 
 
@@ -107,8 +107,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         paths = build_all(FOLDER, options.licence)
-    except (building.CannotBuild, CannotMake) as why:
-        print(f"build_firmware: {getattr(why, 'log', '') or why}", file=sys.stderr)
+    except (building.CannotBuild, CannotMake) as error:
+        print(f"build_firmware: {getattr(error, 'log', '') or error}", file=sys.stderr)
         return 2
     for path in paths:
         print(path.relative_to(ROOT))

@@ -24,10 +24,10 @@ from tools.bench import firmware_size
 SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
 BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
-NEAR = range(-4096, 4096)  # bytes, from just after a short call
+SHORT_CALL_RANGE = range(-4096, 4096)  # bytes, from just after a short call
 TRY_COUNT = 200_000
 # What the compiler appends to a name may be another number after the next change.
-_APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
+_APPENDED_SUFFIX = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
 # Assembly calls its other files by short calls: they stay together.
 _ASSEMBLY = re.compile(r"\.text\.tiniscript_.*")
 _SECTION = re.compile(r"^ (\.\S+)\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) ", re.M)
@@ -37,12 +37,13 @@ _CALL = re.compile(
 
 
 class Section(NamedTuple):
-    """Code as the linker has placed it: from `begin` to `end` it was in piece `number` at `at`."""
+    """Code as the linker has placed it: from `begin` to `end` it was in piece `number` at
+    `offset`."""
 
     begin: int
     end: int
     number: int
-    at: int
+    offset: int
 
 
 class Piece(NamedTuple):
@@ -56,104 +57,106 @@ class Call(NamedTuple):
     """From a place of a piece to a place of another one."""
 
     piece: int
-    at: int
+    offset: int
     target: int
-    target_at: int
+    target_offset: int
 
 
-def pieces(linked: str) -> tuple[list[Piece], list[Section]]:
+def pieces(linker_map: str) -> tuple[list[Piece], list[Section]]:
     """Return what a map of the linker names, in the order of flash."""
     sizes: dict[str, int] = {}
     sections = []
-    code = linked[linked.index("Linker script and memory map") :]
+    code = linker_map[linker_map.index("Linker script and memory map") :]
     for name, begin_hex, size_hex in _SECTION.findall(code.replace("\n    ", " ")):
         begin, size = int(begin_hex, 16), int(size_hex, 16)
         if not name.startswith(".text.") or size == 0:
             continue
-        pattern = _ASSEMBLY.sub(".text.tiniscript_", _APPENDED.sub("", name)) + "*"
-        at = sizes.setdefault(pattern, 0)
-        sections.append(Section(begin, begin + size, list(sizes).index(pattern), at))
-        sizes[pattern] = at + size
-    return [Piece(*item) for item in sizes.items()], sections
+        pattern = _ASSEMBLY.sub(".text.tiniscript_", _APPENDED_SUFFIX.sub("", name)) + "*"
+        offset = sizes.setdefault(pattern, 0)
+        sections.append(Section(begin, begin + size, list(sizes).index(pattern), offset))
+        sizes[pattern] = offset + size
+    return [Piece(*piece) for piece in sizes.items()], sections
 
 
-def calls(disassembled: str, sections: list[Section]) -> list[Call]:
+def calls(disassembly: str, sections: list[Section]) -> list[Call]:
     """Return what leads from one piece to another."""
 
-    def place(address: int) -> tuple[int, int] | None:
+    def find_offset(address: int) -> tuple[int, int] | None:
         for section in sections:
             if section.begin <= address < section.end:
-                return section.number, section.at + address - section.begin
+                return section.number, section.offset + address - section.begin
         return None
 
     calls = []
-    for at, target in _CALL.findall(disassembled):
-        caller, callee = place(int(at, 16)), place(int(target, 16))
+    for call_text, target_text in _CALL.findall(disassembly):
+        caller, callee = find_offset(int(call_text, 16)), find_offset(int(target_text, 16))
         if caller and callee and caller[0] != callee[0]:
             calls.append(Call(*caller, *callee))
     return calls
 
 
-def count_far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
+def count_far(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) -> int:
     """Return how many calls lead far in an order."""
-    begin = [0] * len(among)
+    begin = [0] * len(all_pieces)
     address = 0
     for number in order:
         begin[number] = address
-        address += among[number].size
+        address += all_pieces[number].size
     return sum(
-        begin[target] + target_at - begin[piece] - at - 2 not in NEAR
-        for piece, at, target, target_at in all_calls
+        begin[target] + target_offset - begin[piece] - offset - 2 not in SHORT_CALL_RANGE
+        for piece, offset, target, target_offset in all_calls
     )
 
 
-def move_some(order: list[int], chance: random.Random) -> list[int]:
+def move_some(order: list[int], random_source: random.Random) -> list[int]:
     """Return an order in which some neighbours lie elsewhere, or the other way round."""
-    begin = chance.randrange(len(order))
-    end = begin + chance.choice((1, 1, 1, 2, 3, 5, 8, 12))
-    some, rest = order[begin:end], order[:begin] + order[end:]
-    if chance.random() < 0.8:
-        begin = chance.randrange(len(rest) + 1)
+    begin = random_source.randrange(len(order))
+    end = begin + random_source.choice((1, 1, 1, 2, 3, 5, 8, 12))
+    moved, others = order[begin:end], order[:begin] + order[end:]
+    if random_source.random() < 0.8:
+        begin = random_source.randrange(len(others) + 1)
     else:
-        some.reverse()
-    return rest[:begin] + some + rest[begin:]
+        moved.reverse()
+    return others[:begin] + moved + others[begin:]
 
 
 def best_order(
-    among: list[Piece], all_calls: list[Call], try_count: int, chance: random.Random
+    all_pieces: list[Piece], all_calls: list[Call], try_count: int, random_source: random.Random
 ) -> list[int]:
     """Search by simulated annealing."""
-    order = result = list(range(len(among)))
-    far_count = least_far_count = count_far(order, among, all_calls)
+    order = best = list(range(len(all_pieces)))
+    far_count = least_far_count = count_far(order, all_pieces, all_calls)
     for number in range(try_count):
-        heat = 3.0 * (1 - number / try_count) + 0.05
-        other = move_some(order, chance)
-        count = count_far(other, among, all_calls)
-        if count <= far_count or chance.random() < math.exp((far_count - count) / heat):
-            order, far_count = other, count
+        temperature = 3.0 * (1 - number / try_count) + 0.05
+        candidate = move_some(order, random_source)
+        count = count_far(candidate, all_pieces, all_calls)
+        if count <= far_count or random_source.random() < math.exp(
+            (far_count - count) / temperature
+        ):
+            order, far_count = candidate, count
             if far_count < least_far_count:
-                result, least_far_count = order, far_count
-    return result
+                best, least_far_count = order, far_count
+    return best
 
 
 def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
-        linked = Path(folder) / "map"
-        os.environ["PLATFORMIO_BUILD_FLAGS"] = f"-Wl,-Map={linked}"
+        map_path = Path(folder) / "map"
+        os.environ["PLATFORMIO_BUILD_FLAGS"] = f"-Wl,-Map={map_path}"
         sketch = firmware_size.measure(BOARD)
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
-        among, sections = pieces(linked.read_text(encoding="utf-8"))
+        all_pieces, sections = pieces(map_path.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
     completed = subprocess.run(command, capture_output=True, text=True, check=True)
     all_calls = calls(completed.stdout, sections)
-    order = best_order(among, all_calls, TRY_COUNT, random.Random(1))
+    order = best_order(all_pieces, all_calls, TRY_COUNT, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
-          f"{count_far(list(range(len(among))), among, all_calls)} before, "
-          f"{count_far(order, among, all_calls)} then")  # fmt: skip
+          f"{count_far(list(range(len(all_pieces))), all_pieces, all_calls)} before, "
+          f"{count_far(order, all_pieces, all_calls)} then")  # fmt: skip
     text = SCRIPT.read_text(encoding="utf-8")
-    before, after = text.index(BEGIN) + len(BEGIN), text.index(END)
-    rows = "".join(f"    *({among[number].pattern})\n" for number in order)
-    SCRIPT.write_text(text[:before] + rows + text[after:], encoding="utf-8")
+    begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+    rows = "".join(f"    *({all_pieces[number].pattern})\n" for number in order)
+    SCRIPT.write_text(text[:begin] + rows + text[end:], encoding="utf-8")
     print(f"{firmware_size.measure(BOARD).flash:,} bytes with the new order")
     return 0
 

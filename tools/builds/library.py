@@ -21,7 +21,7 @@ from tools import ROOT
 from tools.release.facts import PEOPLE, address
 
 SOURCES = ROOT / "vm_arduino" / "src"
-OWN = ROOT / "vm_arduino" / "extras" / "library"
+LIBRARY_SOURCES = ROOT / "vm_arduino" / "extras" / "library"
 MODULES = ("vm", "link", "text")  # the link has the reader of text, which gets no memory here
 SENTENCE = "The machine of TiniScript, a language of single lines for robots."
 PARAGRAPH = (
@@ -32,11 +32,11 @@ ARCHITECTURES = ("avr", "esp32", "esp8266")
 PLATFORMS = ("atmelavr", "espressif32", "espressif8266")
 KEYWORDS = ("education", "robotics", "bytecode", "interpreter", "robot")
 
-HEAT = Kit((Device("HEAT", NUMBER, "%", 0, 100_000),), (Device("LAMP", YES_NO, "", 0, 1),))
+HEAT_KIT = Kit((Device("HEAT", NUMBER, "%", 0, 100_000),), (Device("LAMP", YES_NO, "", 0, 1),))
 # What each example runs, and for which kit.
 PROGRAMS = {
     "ImageInFlash": ("F(1, 80); R(0.5, 60)", robots.load("tinibot").kit),
-    "OwnSensor": ("LOOP(FOREVER); SHOW(HEAT); LAMP(HEAT > 30); W(1); END_LOOP", HEAT),
+    "OwnSensor": ("LOOP(FOREVER); SHOW(HEAT); LAMP(HEAT > 30); W(1); END_LOOP", HEAT_KIT),
 }
 
 
@@ -73,16 +73,16 @@ def make(folder: Path, url: str) -> None:
     if folder.exists():
         shutil.rmtree(folder)
     source = folder / "src"
-    shutil.copytree(OWN / "src", source)
+    shutil.copytree(LIBRARY_SOURCES / "src", source)
     for module in MODULES:
         shutil.copytree(SOURCES / module, source / module)
     shutil.copyfile(SOURCES / "robot.h", source / "robot.h")
-    for path in sorted((OWN / "examples").rglob("*.ino")):
+    for path in sorted((LIBRARY_SOURCES / "examples").rglob("*.ino")):
         target = folder / "examples" / path.parent.name / path.name
         target.parent.mkdir(parents=True)
         target.write_text(with_image(path), encoding="utf-8")
     for name in ("keywords.txt", "README.md"):
-        shutil.copyfile(OWN / name, folder / name)
+        shutil.copyfile(LIBRARY_SOURCES / name, folder / name)
     shutil.copyfile(ROOT / "LICENSE", folder / "LICENSE")
     (folder / "library.properties").write_text(properties(url), encoding="utf-8")
     (folder / "library.json").write_text(manifest(url), encoding="utf-8")

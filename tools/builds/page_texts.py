@@ -28,14 +28,16 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     The one without a key has which form is for which number, from 0 to 199.
     """
     info = language_info(language)
-    text = texts("command", language)
-    result = texts("studio", language) | {key: text[value] for key, value in COMMAND_TEXTS.items()}
+    command_texts = texts("command", language)
+    all_texts = texts("studio", language) | {
+        key: command_texts[value] for key, value in COMMAND_TEXTS.items()
+    }
     return {
-        "": info.form_of,
+        "": info.form_digits,
         **{
             key: value if isinstance(value, str)
             else [value.get(form, value["other"]) for form in info.forms]
-            for key, value in result.items()
+            for key, value in all_texts.items()
         },
     }  # fmt: skip
 

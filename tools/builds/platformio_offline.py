@@ -35,7 +35,7 @@ from tools import ROOT, CannotMake
 
 PROJECT = ROOT / "vm_arduino"
 STAND_INS = ROOT / "tools" / "builds" / "platformio_stand_ins"
-HOME = ROOT / ".venv" / "platformio_offline"
+STAND_IN_HOME = ROOT / ".venv" / "platformio_offline"
 REGISTRY_SECONDS = 5.0
 
 GXX = Path("/usr/bin/g++")
@@ -44,7 +44,7 @@ AVR_OBJCOPY = Path("/usr/bin/avr-objcopy")
 AVR_LIBC = Path("/usr/lib/avr/include/avr/io.h")
 ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
 DOCTEST = Path("/usr/include/doctest/doctest.h")
-DEBIAN = {
+DEBIAN_PACKAGES = {
     GXX: "g++",
     AVR_GCC: "gcc-avr",
     AVR_OBJCOPY: "binutils-avr",
@@ -74,8 +74,8 @@ def main(arguments: list[str] | None = None) -> int:
     project: Path = options.project.resolve()
     try:
         settings = settings_for(project, options.offline)
-    except CannotMake as why:
-        print(f"platformio_offline: {why}", file=sys.stderr)
+    except CannotMake as error:
+        print(f"platformio_offline: {error}", file=sys.stderr)
         return 2
     if options.command:
         path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", "")))
@@ -94,10 +94,10 @@ def settings_for(project: Path, offline: bool) -> dict[str, str]:
     if why := why_needless(project, offline):
         say(f"nothing to do: {why}")
         return {}
-    look_for_packages()
-    refuse_others(project)
+    check_packages()
+    check_versions(project)
     path = stand_ins()
-    libraries = HOME / "libraries"
+    libraries = STAND_IN_HOME / "libraries"
     add_doctest(libraries / "native" / "doctest", project)
     say(f"the offline stand-ins in {path.relative_to(ROOT)} are used")
     return {
@@ -118,7 +118,7 @@ def say(text: str) -> None:
 def why_needless(project: Path, offline: bool) -> str:
     """Return why PlatformIO needs no stand-ins here, or nothing."""
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
-    if HOME in platforms.parents:
+    if STAND_IN_HOME in platforms.parents:
         return ""  # the variables are set already
     own_platforms = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
     if own_platforms:
@@ -155,11 +155,11 @@ def registry_answers() -> bool:
     asking_threads = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
     for thread in asking_threads:
         thread.start()
-    end = time.monotonic() + REGISTRY_SECONDS  # looking up a host's address has no timeout
+    end_s = time.monotonic() + REGISTRY_SECONDS  # looking up a host's address has no timeout
     while (
         not answers
         and any(thread.is_alive() for thread in asking_threads)
-        and time.monotonic() < end
+        and time.monotonic() < end_s
     ):
         time.sleep(0.02)
     return bool(answers)
@@ -168,9 +168,9 @@ def registry_answers() -> bool:
 # -- what Debian has ----------------------------------------------------------------------------
 
 
-def look_for_packages() -> None:
+def check_packages() -> None:
     """Say which packages of Debian are missing. Raises CannotMake."""
-    names = " ".join(name for path, name in DEBIAN.items() if not path.exists())
+    names = " ".join(name for path, name in DEBIAN_PACKAGES.items() if not path.exists())
     if names:
         install = "sudo apt-get install --no-install-recommends"
         raise CannotMake(f"{names} missing. Try:  {install} {names}")
@@ -184,7 +184,7 @@ def version_of(stand_in: Path) -> str:
     return str(json.loads((stand_in / "platform.json").read_text("utf-8"))["version"])
 
 
-def refuse_others(project: Path) -> None:
+def check_versions(project: Path) -> None:
     """A stand-in stands for one version of its platform; a platform without one is not built."""
     from platformio.package.meta import PackageSpec
     from semantic_version import Version
@@ -192,12 +192,12 @@ def refuse_others(project: Path) -> None:
     config = config_of(project)
     for environment in config.envs():
         platform = config.get(f"env:{environment}", "platform")
-        expected = PackageSpec(platform)
-        stand_in = STAND_INS / str(expected.name)
-        if not stand_in.is_dir() or not expected.requirements:
+        required = PackageSpec(platform)
+        stand_in = STAND_INS / str(required.name)
+        if not stand_in.is_dir() or not required.requirements:
             continue
         version = version_of(stand_in)
-        if Version(version) not in expected.requirements:
+        if Version(version) not in required.requirements:
             raise CannotMake(
                 f"[env:{environment}] wants {platform}, the stand-in is one for {version}"
             )
@@ -207,11 +207,11 @@ def wanted_scons() -> tuple[str, str]:
     """Return the version of the package tool-scons that PlatformIO wants, and that of SCons."""
     from platformio.dependencies import get_core_dependencies
 
-    expected = get_core_dependencies()["tool-scons"]
-    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", expected)
+    required = get_core_dependencies()["tool-scons"]
+    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", required)
     if not match:
         raise CannotMake(
-            f"PlatformIO wants tool-scons {expected}: which SCons that is, I cannot say"
+            f"PlatformIO wants tool-scons {required}: which SCons that is, I cannot say"
         )
     return match[1], ".".join(str(int(part)) for part in match.groups()[1:])
 
@@ -222,29 +222,29 @@ def add_doctest(folder: Path, project: Path) -> None:
     from semantic_version import Version
 
     text = DOCTEST.read_text(encoding="utf-8")
-    parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
+    parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in VERSION_PARTS]
     version = ".".join(match[1] for match in parts if match)
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
     requirement = re.search(r"doctest/doctest@[^\"']+", runner)
     if requirement is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    expected = PackageSpec(requirement[0])
-    if Version(version) not in expected.requirements:
+    required = PackageSpec(requirement[0])
+    if Version(version) not in required.requirements:
         raise CannotMake(
-            f"doctest-dev is doctest {version}, the tests want {expected.requirements}"
+            f"doctest-dev is doctest {version}, the tests want {required.requirements}"
         )
     if folder.exists():
         return
 
-    def fill(new: Path) -> None:
-        (new / "include").mkdir()
-        shutil.copy(DOCTEST, new / "include" / "doctest.h")
-        describe(new, "library.json", "library", "doctest", version, expected.owner)
+    def fill(new_folder: Path) -> None:
+        (new_folder / "include").mkdir()
+        shutil.copy(DOCTEST, new_folder / "include" / "doctest.h")
+        describe(new_folder, "library.json", "library", "doctest", version, required.owner)
 
     make(folder, fill)
 
 
-PARTS = ("MAJOR", "MINOR", "PATCH")
+VERSION_PARTS = ("MAJOR", "MINOR", "PATCH")
 
 
 # -- what is made -------------------------------------------------------------------------------
@@ -253,24 +253,24 @@ PARTS = ("MAJOR", "MINOR", "PATCH")
 def stand_ins() -> Path:
     """Return the folder with the stand-ins; its name changes with all that they are made of."""
     tool_version, scons_version = wanted_scons()
-    scons = HOME / f"scons-{scons_version}"
+    scons = STAND_IN_HOME / f"scons-{scons_version}"
     if not scons.exists():
         say(f"installing SCons {scons_version} from PyPI")
-        make(scons, lambda new: install_scons(scons_version, new))
+        make(scons, lambda new_folder: install_scons(scons_version, new_folder))
     gcc_version = query(AVR_GCC, "-dumpversion")
     arduino = re.search(r"^version=(\S+)", (ARDUINO / "platform.txt").read_text("utf-8"), re.M)
     arduino_version = arduino[1] if arduino else "0.0.0"
     key = hashlib.sha256(repr((tool_version, gcc_version, arduino_version)).encode())
     for path in sorted([Path(__file__), *STAND_INS.rglob("*.*")]):
         key.update(path.name.encode() + path.read_bytes())
-    folder = HOME / f"core-{key.hexdigest()[:12]}"
+    folder = STAND_IN_HOME / f"core-{key.hexdigest()[:12]}"
 
-    def fill(new: Path) -> None:
+    def fill(new_folder: Path) -> None:
         for source in sorted(STAND_INS.iterdir()):
-            platform = shutil.copytree(source, new / "platforms" / source.name)
+            platform = shutil.copytree(source, new_folder / "platforms" / source.name)
             describe(platform, "", "platform", source.name, version_of(source))
-        add_boards(new / "platforms" / "atmelavr" / "boards")
-        package = new / "packages" / "tool-scons"
+        add_boards(new_folder / "platforms" / "atmelavr" / "boards")
+        package = new_folder / "packages" / "tool-scons"
         package.mkdir(parents=True)
         (package / "scons.py").write_text(
             f"import sys\n\nsys.path.insert(0, {str(scons)!r})\n"
@@ -279,13 +279,13 @@ def stand_ins() -> Path:
         )
         describe(package, "package.json", "tool", package.name, tool_version)
         major, minor, patch = (int(part) for part in (gcc_version + ".0.0").split(".")[:3])
-        package = new / "packages" / "toolchain-atmelavr"
+        package = new_folder / "packages" / "toolchain-atmelavr"
         (package / "bin").mkdir(parents=True)
         for program in AVR_GCC.parent.glob("avr-*"):
             (package / "bin" / program.name).symlink_to(program)
         version = f"1.{major}{minor:02}{patch:02}.0"
         describe(package, "package.json", "tool", package.name, version)
-        package = new / "packages" / "framework-arduino-avr"
+        package = new_folder / "packages" / "framework-arduino-avr"
         package.mkdir()
         for part in ("cores", "variants", "libraries"):
             (package / part).symlink_to(ARDUINO / part)
@@ -341,11 +341,11 @@ def make(folder: Path, fill: Callable[[Path], None]) -> None:
     """Make a folder in one step, so that nobody sees half of it."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder.parent) as scratch:
-        new = Path(scratch) / folder.name
-        new.mkdir()
-        fill(new)
+        new_folder = Path(scratch) / folder.name
+        new_folder.mkdir()
+        fill(new_folder)
         try:
-            new.rename(folder)
+            new_folder.rename(folder)
         except OSError:
             if not folder.exists():  # else another process was faster
                 raise

@@ -42,7 +42,7 @@ SI|LOOP(6)
   R(0.5, 60)
 END_LOOP
 """
-COUNTED = """\
+COUNTING_PROGRAM = """\
 SI|TURNS = 0
 LOOP(6)
   F(FOREVER, 80) UNTIL(DISTANCE < 15)
@@ -52,18 +52,28 @@ END_LOOP
 """
 # As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
 # in a lesson, after a check; and those of SHEETS.
-SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
-          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM, ".drive": PROGRAM,
-          ".teacher": PROGRAM, ".wall": "", ".more": PROGRAM}  # fmt: skip
-WALL = ".wall"  # of a teacher, with thirty pupils
+SCENES = {
+    "": PROGRAM,
+    ".held": COUNTING_PROGRAM,
+    ".start": COUNTING_PROGRAM,
+    ".lesson": "SI|F(5, 80)",
+    ".drawing": PROGRAM,
+    ".phone": PROGRAM,
+    ".minute": PROGRAM,
+    ".drive": PROGRAM,
+    ".teacher": PROGRAM,
+    ".wall": "",
+    ".more": PROGRAM,
+}
+WALL_SCENE = ".wall"  # of a teacher, with thirty pupils
 PUPIL_NAMES = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
                "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
                "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
                "Diego"]  # fmt: skip
-TURNS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
-PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
+PUPIL_PROGRAMS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
+PUPIL_ADDRESS, RAISED_HAND = "192.0.2.7", 7  # their address, and whose hand is up
 BREAKPOINT_LINE = 5  # the line of the breakpoint
-SIZE = {"width": 1280, "height": 760}
+VIEWPORT = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
 COLOUR_COUNT = 72  # of a picture: its bytes are less than half, and nobody sees it
 WORDS_SCENE = "words"  # the text of the picture that has them
@@ -93,7 +103,11 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    complaints = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
+    complaints = [
+        why
+        for language_and_scene in product(LANGUAGES, SCENES)
+        if (why := why_stale(*language_and_scene))
+    ]
     for why in complaints:
         print(f"screenshot: {why}", file=sys.stderr)
     return 1 if complaints else 0
@@ -120,44 +134,57 @@ def take(language: str, scene: str, target: Path) -> None:
         studio.browser(driver) as browser,
     ):
         pages = studio.Pages(browser, address, patience_s=120)
-        view = "wall" if scene == WALL else "text"
-        page = pages.visit(entrance, view, viewport=SIZE, device_scale_factor=1)
+        view = "wall" if scene == WALL_SCENE else "text"
+        page = pages.visit(entrance, view, viewport=VIEWPORT, device_scale_factor=1)
         studio.speak(page, language)
-        if scene != WALL:
+        if scene != WALL_SCENE:
             studio.write(page, PROGRAM)
         SHEETS.get(scene, _take_single)(page, scene, take_shot)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     metadata = PngInfo()
-    text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    metadata.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
+    visible_lines = sorted(
+        {row.strip() for word in words for row in word.splitlines() if row.strip()}
+    )
+    metadata.add_text(WORDS_SCENE, json.dumps([line for line in visible_lines if is_said(line)]))
     _sheet(shots).quantize(COLOUR_COUNT).save(target, optimize=True, pnginfo=metadata)
 
 
 @contextmanager
 def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
     """The address of a page, and where it is entered."""
-    if scene != WALL:
+    if scene != WALL_SCENE:
         with studio.served() as server:
             yield server.address, server.address
         return
-    with studio.taught([]) as (server, room):
-        room.teach({"do": "class_places", "places": len(PUPIL_NAMES)})
-        joins = {"do": "join", "code": room.code}
-        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPIL_NAMES]
+    with studio.taught([]) as (server, classroom):
+        classroom.teach({"do": "class_places", "places": len(PUPIL_NAMES)})
+        joins = {"do": "join", "code": classroom.code}
+        tokens = [
+            classroom.answer("", PUPIL_ADDRESS, {**joins, "name": name})["token"]
+            for name in PUPIL_NAMES
+        ]
         is_over = Event()
 
-        def come() -> None:
+        def write_as_pupils() -> None:
             while True:
                 for k, token in enumerate(tokens):
-                    here = {"do": "here", "text": f"SI|{TURNS[k % len(TURNS)]}", "robot": "tinibot"}
+                    here = {
+                        "do": "here",
+                        "text": f"SI|{PUPIL_PROGRAMS[k % len(PUPIL_PROGRAMS)]}",
+                        "robot": "tinibot",
+                    }
                     done_lessons = [folder.name for folder in catalogue.folders()[: k % 5]]
-                    room.answer(token, PUPIL, {**here, "lessons": done_lessons, "hand": k == HAND})
+                    classroom.answer(
+                        token,
+                        PUPIL_ADDRESS,
+                        {**here, "lessons": done_lessons, "hand": k == RAISED_HAND},
+                    )
                 if is_over.wait(1):
                     return
 
-        pupils = Thread(target=come)
+        pupils = Thread(target=write_as_pupils)
         pupils.start()
         try:
             yield server.address, server.entrance()
@@ -259,9 +286,9 @@ def _drive(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.set_viewport_size({"width": 390, "height": 844})
     page.click("[data-begin=drive]")
     _in_phase(page, "running")
-    for key, lasts_ms in (("ArrowUp", 1500), ("ArrowLeft", 200), ("a", 100)):
+    for key, duration_ms in (("ArrowUp", 1500), ("ArrowLeft", 200), ("a", 100)):
         page.keyboard.down(key)
-        page.wait_for_timeout(lasts_ms)
+        page.wait_for_timeout(duration_ms)
         if key != "ArrowLeft":
             take_shot()
     page.set_viewport_size({"width": 1366, "height": 768})
@@ -305,7 +332,7 @@ def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.locator("#lesson_next:enabled").wait_for()
     take_shot()
     page.click("#side_virtual")
-    page.set_viewport_size({"width": SIZE["width"], "height": SIZE["height"]})
+    page.set_viewport_size({"width": VIEWPORT["width"], "height": VIEWPORT["height"]})
     page.evaluate(studio.SETTLED)
     page.locator("#redo").focus()
     for key in ("Tab", "Tab", "Tab", "ArrowDown", "ArrowDown", "m", "ArrowDown"):
@@ -327,17 +354,20 @@ SHEETS = {
 
 def _sheet(shots: list[Image.Image]) -> Image.Image:
     """Put pictures side by side, in two rows where there are many."""
-    width, height = SIZE["width"], SIZE["height"]
+    width, height = VIEWPORT["width"], VIEWPORT["height"]
     columns, rows = (3, 2) if len(shots) > 3 else (len(shots), 1)
     sheet = Image.new("RGB", (width, height), "#ffffff")
-    room = ((width - GAP * (columns - 1)) // columns, (height - GAP * (rows - 1)) // rows)
+    cell_size = ((width - GAP * (columns - 1)) // columns, (height - GAP * (rows - 1)) // rows)
     for k, shot in enumerate(shots):
-        scale = min(room[0] / shot.width, room[1] / shot.height)
-        small = shot.resize(
+        scale = min(cell_size[0] / shot.width, cell_size[1] / shot.height)
+        small_shot = shot.resize(
             (round(shot.width * scale), round(shot.height * scale)), Image.Resampling.LANCZOS
         )
-        x = (k % columns) * (room[0] + GAP) + (room[0] - small.width) // 2
-        sheet.paste(small, (x, (k // columns) * (room[1] + GAP) + (room[1] - small.height) // 2))
+        x = (k % columns) * (cell_size[0] + GAP) + (cell_size[0] - small_shot.width) // 2
+        sheet.paste(
+            small_shot,
+            (x, (k // columns) * (cell_size[1] + GAP) + (cell_size[1] - small_shot.height) // 2),
+        )
     return sheet
 
 

@@ -28,17 +28,17 @@ from tools.builds import studio
 from tools.generate.built import build_all
 from tools.site import links, theme
 from tools.site.documents import FRONT_PAGE, PARTS, Document, documents, sources
-from tools.site.pages import FILES, Place, Shelf, page, shelf
+from tools.site.pages import FILES_FOLDER, Shelf, SitePage, page, shelf
 
-SITE = ROOT / "tools" / "site"
-AT_ONCE = 2  # halves of the site
+SITE_SOURCES = ROOT / "tools" / "site"
+HALVES_AT_ONCE = 2  # halves of the site
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    reader = argparse.ArgumentParser(prog="site", description=(__doc__ or "").splitlines()[0])
-    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
-    reader.add_argument("--no-studio", action="store_true", help="leave the studio out")
-    options = reader.parse_args(words)
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="site", description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    parser.add_argument("--no-studio", action="store_true", help="leave the studio out")
+    options = parser.parse_args(arguments)
     folder: Path = options.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         print(f"site: {folder} is there already, and is not empty.", file=sys.stderr)
@@ -49,8 +49,8 @@ def main(words: Sequence[str] | None = None) -> int:
         return 2
     try:
         build(ROOT, folder, has_studio=not options.no_studio)
-    except CannotMake as failure:
-        print(f"site: {failure}", file=sys.stderr)
+    except CannotMake as error:
+        print(f"site: {error}", file=sys.stderr)
         return 2
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB")
@@ -62,35 +62,35 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
     if find_spec("sphinx") is None:
         raise CannotMake('Sphinx is not installed. Do that with:  pip install -e ".[site]"')
     with tempfile.TemporaryDirectory() as scratch:
-        new = Path(scratch) / "site"
-        _build(root, new, Path(scratch), has_studio)
-        shutil.copytree(new, folder, dirs_exist_ok=True)
+        new_folder = Path(scratch) / "site"
+        _build(root, new_folder, Path(scratch), has_studio)
+        shutil.copytree(new_folder, folder, dirs_exist_ok=True)
 
 
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     texts = build_all()
-    result = documents(root, texts)
-    shelf_ = shelf(root, result, texts)
-    halves = halves_of(result)
+    site_documents = documents(root, texts)
+    shelf_ = shelf(root, site_documents, texts)
+    halves = halves_of(site_documents)
 
     def make(language: str) -> None:
         half = scratch / language
-        stage(half, result, shelf_, language)
-        render(half, folder / language, result, has_studio)
+        stage(half, site_documents, shelf_, language)
+        render(half, folder / language, site_documents, has_studio)
 
-    with ThreadPoolExecutor(AT_ONCE) as pool:
+    with ThreadPoolExecutor(HALVES_AT_ONCE) as pool:
         list(pool.map(make, halves))
-    for name in sorted(shelf_.files):
-        shelf_.copy(name, folder / FILES / name)
+    for name in sorted(shelf_.linked_files):
+        shelf_.copy(name, folder / FILES_FOLDER / name)
     link = ""
     if has_studio:
         shutil.copytree(studio.PAGE, folder / "studio",
                         ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
         link = '<a href="studio/index.html">TiniScript Studio</a>'
-    choice = (SITE / "choice.html").read_text(encoding="utf-8")
+    start_page = (SITE_SOURCES / "choice.html").read_text(encoding="utf-8")
     rows = "\n".join(map(_start_page, reversed(halves)))
-    choice = choice.replace("STUDIO", link).replace("HALVES", rows)
-    (folder / "index.html").write_text(choice, encoding="utf-8")
+    start_page = start_page.replace("STUDIO", link).replace("HALVES", rows)
+    (folder / "index.html").write_text(start_page, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
     dead_links = links.dead_links(folder)
     if dead_links:
@@ -100,7 +100,9 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
 def halves_of(documents: list[Document]) -> list[str]:
     """Return the languages of the documents, English first."""
     return [
-        language for language in languages() if any(language in one.sources for one in documents)
+        language
+        for language in languages()
+        if any(language in document.sources for document in documents)
     ]
 
 
@@ -120,23 +122,25 @@ def stage(half: Path, documents: list[Document], shelf_: Shelf, language: str) -
         if language in document.sources
     }
     front = sources(shelf_.root, FRONT_PAGE)
-    front_page = page(front.get(language, FRONT_PAGE), shelf_, Place(language, "index"))
+    front_page = page(front.get(language, FRONT_PAGE), shelf_, SitePage(language, "index"))
     for name, markdown in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(markdown, encoding="utf-8")
     for name in sorted(shelf_.pictures):
-        shelf_.copy(name, half / FILES / name)
+        shelf_.copy(name, half / FILES_FOLDER / name)
     for name in ("templates", "static"):
-        shutil.copytree(SITE / name, half / name)
-    shutil.copy(SITE / "conf.py", half)
+        shutil.copytree(SITE_SOURCES / name, half / name)
+    shutil.copy(SITE_SOURCES / "conf.py", half)
 
 
 def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
     language_names = {
-        item: language_info(item).name for item in halves_of(documents) if item != language
+        other_language: language_info(other_language).name
+        for other_language in halves_of(documents)
+        if other_language != language
     }
     settings = {
         "others": language_names,
@@ -144,11 +148,11 @@ def render(half: Path, folder: Path, documents: list[Document], has_studio: bool
         "has_studio": has_studio,
     }
     (half / "half.json").write_text(json.dumps(settings), encoding="utf-8")
-    words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
+    command = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
              str(half), str(folder)]  # fmt: skip
     paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
-    completed = subprocess.run(words, capture_output=True, text=True, errors="replace",
+    completed = subprocess.run(command, capture_output=True, text=True, errors="replace",
                                env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if completed.returncode:
         raise CannotMake(

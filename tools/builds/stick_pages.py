@@ -53,16 +53,16 @@ def make(root: Path, folder: Path) -> None:
     pages |= {
         root / name: text for name, text in build_all().items() if name.endswith("command.md")
     }
-    expected = {(root / name).resolve() for name in sources(root, POSTER).values()}
+    linked_paths = {(root / name).resolve() for name in sources(root, POSTER).values()}
     titles: dict[str, str] = {}
     for source, markdown in pages.items():
         body, title = render(markdown)
-        expected |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
+        linked_paths |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=list(pages)), body)
         name = source.relative_to(root).as_posix()
         titles[name] = title
         _write((folder / name).with_suffix(".html"), page(title, body, language_of(name)))
-    for path in sorted(expected - {path.resolve() for path in pages}):
+    for path in sorted(linked_paths - {path.resolve() for path in pages}):
         target = folder / path.relative_to(root.resolve())
         if path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -90,19 +90,19 @@ def page(title: str, body: str, language: str) -> str:
 
 def render(text: str) -> tuple[str, str]:
     """Return the HTML of a Markdown text, whose headings have names as on GitHub, and its title."""
-    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
-    tokens = reader.parse(text)
+    parser = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = parser.parse(text)
     title = ""
     heading_counts: dict[str, int] = {}
-    for token, inside in pairwise(tokens):
+    for token, content in pairwise(tokens):
         if token.type == "heading_open":
-            title = title or inside.content.replace("`", "")
-            token.attrSet("id", _name(inside, heading_counts))
-    body = str(reader.renderer.render(tokens, reader.options, {}))
+            title = title or content.content.replace("`", "")
+            token.attrSet("id", _anchor(content, heading_counts))
+    body = str(parser.renderer.render(tokens, parser.options, {}))
     return body.replace("<li>[ ] ", '<li class="check">\N{BALLOT BOX} '), title
 
 
-def _name(heading: Token, heading_counts: dict[str, int]) -> str:
+def _anchor(heading: Token, heading_counts: dict[str, int]) -> str:
     words = "".join(token.content for token in heading.children or ())
     name = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
     number = heading_counts.get(name, 0)
@@ -128,9 +128,9 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
         text("documents", f"stick/{key}", language) for key in keys
     )
     other_links = " · ".join(
-        f'<a href="{name_in(item, INDEX)}">{language_info(item).name}</a>'
-        for item in translated_languages("documents", "stick/title")
-        if item != language
+        f'<a href="{name_in(other_language, INDEX)}">{language_info(other_language).name}</a>'
+        for other_language in translated_languages("documents", "stick/title")
+        if other_language != language
     )
     rows = [f"<h1>{title}</h1>", f"<p>{other_links}</p>", f"<h2>{guides}</h2>", "<ul>"]
     for guide in GUIDES:
@@ -145,18 +145,18 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
         label = robots.load(name).labels[language]["robot"]
         rows.append(f'<li><a href="wiring/{name}.{language}.html">{escape(label)}</a></li>')
     rows += ["</ul>", f"<h2>{lessons}</h2>", "<ol>"]
-    for number, place in enumerate(catalogue.folders(), 1):
+    for number, lesson_folder in enumerate(catalogue.folders(), 1):
         links = []
         for label, options in ((pupils, []), (teacher, ["--teacher"])):
             path = Path("lessons") / f"{number:02}.{'teacher.' if options else ''}{language}.html"
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             words = ["lesson", "sheet", str(number), "-o", str(folder / path), *options]
             with redirect_stdout(StringIO()):
-                failed = tsc([*words, "--lang", language])
-            if failed:
-                raise SystemExit(failed)
+                exit_code = tsc([*words, "--lang", language])
+            if exit_code:
+                raise SystemExit(exit_code)
             links.append(f'<a href="{path.as_posix()}">{label}</a>')
-        name = escape(catalogue.load(place).title(language))
+        name = escape(catalogue.load(lesson_folder).title(language))
         rows.append(f"<li>{name}: {', '.join(links)}</li>")
     return page(title, "\n".join([*rows, "</ol>"]), language)
 

@@ -72,12 +72,12 @@ SYSTEMS = {
 }  # fmt: skip
 
 
-def make_sources(folder: Path) -> None:
+def make_source_wheels(folder: Path) -> None:
     """Put wheels of Python alone into a folder, for packages that PyPI has only as source."""
     for name, has_parts_in_c in SOURCES.items():
-        with tempfile.TemporaryDirectory() as place:
-            _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, name], {})
-            path = next(Path(place).glob("*.whl"))
+        with tempfile.TemporaryDirectory() as wheel_folder:
+            _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", wheel_folder, name], {})
+            path = next(Path(wheel_folder).glob("*.whl"))
             if path.name.endswith(f"-{PURE_TAG}.whl"):
                 shutil.copy(path, folder)
             elif has_parts_in_c:
@@ -93,50 +93,55 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
     """
     name, version = wheel.name.split("-")[:2]
     target = folder / f"{name}-{version}-{PURE_TAG}.whl"
-    rows = []
-    moment = OLDEST_ZIP_TIME
-    with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
-        record = next(item for item in old.namelist() if item.endswith(".dist-info/RECORD"))
-        for item in old.namelist():
-            if item == record or item.endswith((".so", ".pyd", ".dylib", "/")):
+    record_rows = []
+    zip_time = OLDEST_ZIP_TIME
+    with (
+        zipfile.ZipFile(wheel) as old_zip,
+        zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new_zip,
+    ):
+        record_name = next(
+            file_name for file_name in old_zip.namelist() if file_name.endswith(".dist-info/RECORD")
+        )
+        for file_name in old_zip.namelist():
+            if file_name == record_name or file_name.endswith((".so", ".pyd", ".dylib", "/")):
                 continue
-            data = old.read(item)
-            if item.endswith(".dist-info/WHEEL"):
+            data = old_zip.read(file_name)
+            if file_name.endswith(".dist-info/WHEEL"):
                 data = (
                     re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE_TAG}\n".encode()
                 )
                 data = re.sub(rb"(?m)^Root-Is-Purelib:.*$", b"Root-Is-Purelib: true", data)
-            moment = old.getinfo(item).date_time
-            new.writestr(zipfile.ZipInfo(item, moment), data, zipfile.ZIP_DEFLATED)
+            zip_time = old_zip.getinfo(file_name).date_time
+            new_zip.writestr(zipfile.ZipInfo(file_name, zip_time), data, zipfile.ZIP_DEFLATED)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-            rows.append(f"{item},sha256={digest},{len(data)}\n")
-        record_text = "".join([*rows, f"{record},,\n"])
-        new.writestr(zipfile.ZipInfo(record, moment), record_text, zipfile.ZIP_DEFLATED)
+            record_rows.append(f"{file_name},sha256={digest},{len(data)}\n")
+        record_text = "".join([*record_rows, f"{record_name},,\n"])
+        new_zip.writestr(zipfile.ZipInfo(record_name, zip_time), record_text, zipfile.ZIP_DEFLATED)
     return target
 
 
-def make_ours(root: Path, folder: Path) -> Path:
+def make_own_wheel(root: Path, folder: Path) -> Path:
     """Put the wheel of TiniScript itself into a folder; return it."""
-    with tempfile.TemporaryDirectory() as place:
-        _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, str(root)], {})
-        path = next(Path(place).glob("tiniscript-*.whl"))
+    with tempfile.TemporaryDirectory() as wheel_folder:
+        _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", wheel_folder, str(root)], {})
+        path = next(Path(wheel_folder).glob("tiniscript-*.whl"))
         return Path(shutil.copy(path, folder))
 
 
 def fetch(wheel: Path, folder: Path, system: System, python: str, extras: str) -> None:
     """Put what a wheel of ours needs on a system into a folder. Raises CannotMake."""
-    words = ["download", "--quiet", "--only-binary=:all:", "--dest", str(folder),
+    arguments = ["download", "--quiet", "--only-binary=:all:", "--dest", str(folder),
              "--find-links", str(folder), "--implementation", "cp",
              "--python-version", python]  # fmt: skip
     for tag in system.tags:
-        words += ["--platform", tag]
-    _pip([*words, f"{wheel}{extras}"], system.markers(python))
+        arguments += ["--platform", tag]
+    _pip([*arguments, f"{wheel}{extras}"], system.markers(python))
 
 
-def _pip(words: list[str], environment: dict[str, str]) -> None:
+def _pip(arguments: list[str], environment: dict[str, str]) -> None:
     command = [sys.executable, "-c", _PIP, json.dumps(environment)]
-    command += [words[0], "--disable-pip-version-check", *words[1:]]
-    completed = subprocess.run(command, capture_output=True, text=True)
-    if completed.returncode:
-        texts = [row for row in completed.stderr.splitlines() if row.startswith("ERROR")]
-        raise CannotMake((texts or completed.stderr.splitlines() or ["pip says nothing."])[-1])
+    command += [arguments[0], "--disable-pip-version-check", *arguments[1:]]
+    process = subprocess.run(command, capture_output=True, text=True)
+    if process.returncode:
+        error_lines = [row for row in process.stderr.splitlines() if row.startswith("ERROR")]
+        raise CannotMake((error_lines or process.stderr.splitlines() or ["pip says nothing."])[-1])

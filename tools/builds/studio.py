@@ -36,21 +36,29 @@ COMMAND = f"python -m {building.MODULE}"
 PACKAGE = ROOT / "compiler"
 PAGE = PACKAGE / "tiniscript" / "studio" / "page"
 STAMP = building.STAMP
-LICENCES = "licences.txt"
+LICENCES_FILE = "licences.txt"
 # What a browser fetches of Pyodide; its archive of Python's library is made anew.
-PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
-COPIED = ("style.css", "class/class.css", "manifest.webmanifest", "icon.svg", "more.svg",
+PYODIDE_FILES = ("pyodide.asm.mjs", "pyodide.asm.wasm")
+COPIED_FILES = ("style.css", "class/class.css", "manifest.webmanifest", "icon.svg", "more.svg",
           "less.svg")  # fmt: skip
 # Pictures of Blockly: of its bin, its buttons, and the hand over a block.
 BLOCKLY = MODULES / "blockly"
-PICTURES = ("sprites.svg", "handopen.cur", "handclosed.cur", "handdelete.cur", "delete-icon.svg",
-            "dropdown-arrow.svg", "foldout-icon.svg", "resize-handle.svg")  # fmt: skip
+BLOCKLY_PICTURES = (
+    "sprites.svg",
+    "handopen.cur",
+    "handclosed.cur",
+    "handdelete.cur",
+    "delete-icon.svg",
+    "dropdown-arrow.svg",
+    "foldout-icon.svg",
+    "resize-handle.svg",
+)
 # The one style that Blockly writes into an element, which the page's policy forbids; this direction
 # is a text's anyway.
-STYLED = ',style:`direction: ${this.workspace.RTL?"rtl":"ltr"}`'
-INPUTS = "inputs.json"  # which modules are in the page's files
-MPL = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
-PSF = "Python Software Foundation License: https://docs.python.org/3/license.html"
+STYLE_CODE = ',style:`direction: ${this.workspace.RTL?"rtl":"ltr"}`'
+INPUTS_FILE = "inputs.json"  # which modules are in the page's files
+MPL_TEXT = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
+PSF_TEXT = "Python Software Foundation License: https://docs.python.org/3/license.html"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -93,46 +101,50 @@ def build(page: Path = PAGE) -> None:
     """Build the page into a folder, which has nothing else then."""
     sources = building.digest()  # whoever changes one meanwhile builds again
     tools = find_tools()
-    say(f"node {tools.version}")
+    print_step(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     for code in languages():
         catalogue("lessons", code)  # made where it is stale
-    make("languages.json", [(code, language_info(code).name) for code in languages()])
-    make(f"texts.{SOURCE_LANGUAGE}.json", page_texts(SOURCE_LANGUAGE))  # whose keys are checked
-    make("description.json", description())
-    make("blocks.json", block_kinds.data())
-    make_blockly()
-    make("lock.json", {"info": lock["info"], "packages": {}})
+    write_made_file("languages.json", [(code, language_info(code).name) for code in languages()])
+    write_made_file(
+        f"texts.{SOURCE_LANGUAGE}.json", page_texts(SOURCE_LANGUAGE)
+    )  # whose keys are checked
+    write_made_file("description.json", description())
+    write_made_file("blocks.json", block_kinds.data())
+    write_blockly()
+    write_made_file("lock.json", {"info": lock["info"], "packages": {}})
     check_types(tools)
     page.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=page.parent, prefix=".page") as scratch:
-        new = Path(scratch) / "page"
-        new.mkdir()
-        say(building.PACKING)
-        say(run(tools.node, "pack.mjs", str(PACKAGE), str(cobs_folder()), str(new)).strip())
-        say(building.BUNDLING)
-        bundle(tools, new)
-        for name in PYODIDE:
-            shutil.copyfile(MODULES / "pyodide" / name, new / name)
-        for name in PICTURES:
-            shutil.copyfile(BLOCKLY / "media" / name, new / name)
-        put_own(new)
-        (new / FIRMWARE).write_text("[]\n", encoding="utf-8")
-        (new / LICENCES).write_text(licences(), encoding="utf-8")
-        offline(new)
+        new_page = Path(scratch) / "page"
+        new_page.mkdir()
+        print_step(building.PACKING)
+        print_step(
+            run(tools.node, "pack.mjs", str(PACKAGE), str(cobs_folder()), str(new_page)).strip()
+        )
+        print_step(building.BUNDLING)
+        bundle(tools, new_page)
+        for name in PYODIDE_FILES:
+            shutil.copyfile(MODULES / "pyodide" / name, new_page / name)
+        for name in BLOCKLY_PICTURES:
+            shutil.copyfile(BLOCKLY / "media" / name, new_page / name)
+        put_own_files(new_page)
+        (new_page / FIRMWARE).write_text("[]\n", encoding="utf-8")
+        (new_page / LICENCES_FILE).write_text(licences(), encoding="utf-8")
+        write_service_worker(new_page)
         stamp = {"sources": sources, "node": tools.version}
-        (new / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
-        for path in new.iterdir():
+        (new_page / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
+        for path in new_page.iterdir():
             path.chmod(0o644)
         if page.exists():
             page.rename(Path(scratch) / "old")  # at once: half of an old page looks whole
-        new.rename(page)
+        new_page.rename(page)
 
 
-def put_own(page: Path) -> None:
+def put_own_files(page: Path) -> None:
     """Put the page's own files into a folder, but for its modules."""
-    for name in COPIED:
+    for name in COPIED_FILES:
         shutil.copyfile(SOURCES / "src" / name, page / Path(name).name)
     for code in languages():
         for name, content in zip(
@@ -163,12 +175,12 @@ def build_again(page: Path) -> None:
     if not (page / STAMP).is_file():
         raise CannotMake(why_stale(page))
     check_types(tools)
-    for old in page.glob("*.js"):
-        old.unlink()
+    for old_file in page.glob("*.js"):
+        old_file.unlink()
     bundle(tools, page)
-    put_own(page)
+    put_own_files(page)
     (page / STAMP).unlink()
-    offline(page)
+    write_service_worker(page)
     stamp = {"sources": sources, "node": tools.version}
     (page / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
 
@@ -185,26 +197,26 @@ def bring_firmware(page: Path) -> None:
 
 
 def check_types(tools: Tools) -> None:
-    say(building.TYPES)
+    print_step(building.TYPES)
     run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
 
 
-def make(name: str, content: object) -> None:
+def write_made_file(name: str, content: object) -> None:
     """Write a file that the page's sources import."""
     path = SOURCES / "made" / name
     path.parent.mkdir(exist_ok=True)
-    whole = json.dumps(content, ensure_ascii=False, indent=1, sort_keys=True)
-    path.write_text(whole + "\n", encoding="utf-8")
+    json_text = json.dumps(content, ensure_ascii=False, indent=1, sort_keys=True)
+    path.write_text(json_text + "\n", encoding="utf-8")
 
 
-def make_blockly() -> None:
+def write_blockly() -> None:
     """Write Blockly's core as the page imports it: without styles in elements."""
     folder = SOURCES / "made" / "blockly"
     folder.mkdir(parents=True, exist_ok=True)
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
-    if core.count(STYLED) != 1:
-        raise CannotMake("Blockly writes other styles than before: see STYLED")
-    (folder / "blockly_compressed.js").write_text(core.replace(STYLED, ""), encoding="utf-8")
+    if core.count(STYLE_CODE) != 1:
+        raise CannotMake("Blockly writes other styles than before: see STYLE_CODE")
+    (folder / "blockly_compressed.js").write_text(core.replace(STYLE_CODE, ""), encoding="utf-8")
     (folder / "package.json").write_text('{"type": "commonjs"}\n', encoding="utf-8")
     shutil.copyfile(BLOCKLY / "blockly.mjs", folder / "blockly.mjs")
 
@@ -223,7 +235,7 @@ def install(tools: Tools) -> None:
     """Fetch the packages that the lock file names, unless they are there."""
     if building.are_fetched():
         return
-    say(building.PACKAGES)
+    print_step(building.PACKAGES)
     run(tools.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund")
     building.FETCHED.write_text(building.lock_digest(), encoding="utf-8")
 
@@ -243,12 +255,12 @@ def bundle(tools: Tools, target: Path) -> None:
               "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
               "--alias:blockly/core=./made/blockly/blockly.mjs",
               "--external:./targets/stub_flasher/*",  # programs that the page does not use
-              f"--metafile={SOURCES / 'made' / INPUTS}")  # fmt: skip
+              f"--metafile={SOURCES / 'made' / INPUTS_FILE}")  # fmt: skip
     esbuild = "node_modules/esbuild-wasm/bin/esbuild"
     run(tools.node, esbuild, "src/main.js", "src/worker.js", *common)
 
 
-def offline(target: Path) -> None:
+def write_service_worker(target: Path) -> None:
     """Write the service worker, which knows all files of this build."""
     names = sorted(path.name for path in target.iterdir())
     build_hash = hashlib.sha256()
@@ -263,30 +275,38 @@ def offline(target: Path) -> None:
         if code != SOURCE_LANGUAGE
         for name in files_by_language[code]
     }
-    not_cached = {"index.html", LICENCES, FIRMWARE, *later_files}
+    not_cached = {"index.html", LICENCES_FILE, FIRMWARE, *later_files}
     files = ["./", *(name for name in names if name not in not_cached)]
     constants = {
         "VERSION": build_hash.hexdigest()[:16],
         "FILES": files,
         "LANGUAGES": files_by_language,
     }
-    head = "".join(f"const {name} = {json.dumps(value)};\n" for name, value in constants.items())
+    constants_text = "".join(
+        f"const {name} = {json.dumps(value)};\n" for name, value in constants.items()
+    )
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
-    (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
+    (target / "service_worker.js").write_text(constants_text + worker, encoding="utf-8")
 
 
 def licences() -> str:
     """Return whose work is in the page, and under which licences."""
     parts = ["The page of TiniScript Studio is under the MIT licence, and contains:\n"]
-    inputs = json.loads((SOURCES / "made" / INPUTS).read_text(encoding="utf-8"))["inputs"]
+    inputs = json.loads((SOURCES / "made" / INPUTS_FILE).read_text(encoding="utf-8"))["inputs"]
     names = {_package(path) for path in inputs if path.startswith("node_modules/")}
     for name in sorted({*names, BLOCKLY.name}):
         folder = MODULES / name
         package = json.loads((folder / "package.json").read_text(encoding="utf-8"))
         files = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("LICEN[CS]E*"))]
-        text = files[0] if files else MPL if package["license"] == "MPL-2.0" else package["license"]
+        text = (
+            files[0]
+            if files
+            else MPL_TEXT
+            if package["license"] == "MPL-2.0"
+            else package["license"]
+        )
         parts.append(f"{name} {package['version']}, from npm\n\n{text.strip()}\n")
-    parts.append(f"Python, as Pyodide brings it\n\n{PSF}\n")
+    parts.append(f"Python, as Pyodide brings it\n\n{PSF_TEXT}\n")
     parts.append(f"cobs {version('cobs')}, from PyPI, under the MIT licence\n")
     return f"\n{'-' * 70}\n\n".join(parts)
 
@@ -301,7 +321,7 @@ def size_rows(page: Path) -> list[str]:
     """Return what the page's files weigh, and packed as a server sends them."""
     rows, total_bytes, packed_bytes = [], 0, 0
     for path in sorted(page.iterdir()):
-        if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix in (".hex", ".bin"):
+        if path.name in (STAMP, LICENCES_FILE, FIRMWARE) or path.suffix in (".hex", ".bin"):
             continue
         data = path.read_bytes()
         compressed_bytes = len(gzip.compress(data, 9, mtime=0))
@@ -314,22 +334,22 @@ def size_rows(page: Path) -> list[str]:
     ]
 
 
-def run(call: list[str], *arguments: str) -> str:
+def run(command: list[str], *arguments: str) -> str:
     """Run a tool in the folder of the sources; return what it printed.
 
     Node trusts the certificates of this system, too: some schools' proxies have one of their own.
     """
-    variables = {"NODE_USE_SYSTEM_CA": "1", **os.environ}
-    completed = subprocess.run(
-        [*call, *arguments], cwd=SOURCES, capture_output=True, text=True, env=variables
+    environment = {"NODE_USE_SYSTEM_CA": "1", **os.environ}
+    process = subprocess.run(
+        [*command, *arguments], cwd=SOURCES, capture_output=True, text=True, env=environment
     )
-    if completed.returncode:
-        text = (completed.stdout + completed.stderr).strip()
+    if process.returncode:
+        text = (process.stdout + process.stderr).strip()
         raise CannotMake(f"{arguments[0]} failed:\n{text}")
-    return completed.stdout
+    return process.stdout
 
 
-def say(sentence: str) -> None:
+def print_step(sentence: str) -> None:
     print(f"build_studio: {sentence}", file=sys.stderr, flush=True)
 
 

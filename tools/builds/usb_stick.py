@@ -49,15 +49,15 @@ class Missing(NamedTuple):
         return text("documents", f"stick/{self.key}", language).format(what=self.name)
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    reader = argparse.ArgumentParser(prog="usb_stick", description=__doc__.splitlines()[0])
-    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
-    reader.add_argument("--system", action="append", choices=SYSTEMS, help="only for this one")
-    reader.add_argument("--python", action="append", choices=PYTHONS, help="only for this one")
-    reader.add_argument("--no-firmware", action="store_true", help="build no firmware")
-    reader.add_argument("--no-installer", action="store_true", help="fetch no installer")
-    reader.add_argument("--wheel", type=Path, help="TiniScript's wheel, if it is made already")
-    options = reader.parse_args(words)
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="usb_stick", description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    parser.add_argument("--system", action="append", choices=SYSTEMS, help="only for this one")
+    parser.add_argument("--python", action="append", choices=PYTHONS, help="only for this one")
+    parser.add_argument("--no-firmware", action="store_true", help="build no firmware")
+    parser.add_argument("--no-installer", action="store_true", help="fetch no installer")
+    parser.add_argument("--wheel", type=Path, help="TiniScript's wheel, if it is made already")
+    options = parser.parse_args(arguments)
     folder: Path = options.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         print(f"usb_stick: {folder} is there already, and is not empty.", file=sys.stderr)
@@ -70,18 +70,21 @@ def main(words: Sequence[str] | None = None) -> int:
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
     try:
         missing += add_wheels(wheels, systems, pythons, options.wheel)
-    except CannotMake as why:
-        print(f"usb_stick: {why} Is this computer online?", file=sys.stderr)
+    except CannotMake as error:
+        print(f"usb_stick: {error} Is this computer online?", file=sys.stderr)
         return 2
     if not options.no_installer and "windows" in systems:
         missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
     add_texts(folder)
     titles = ", ".join(SYSTEMS[system].title for system in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
-    for item in missing:
-        print(f"missing: {item.sentence(SOURCE_LANGUAGE)} ({item.why})", file=sys.stderr)
-    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
-    print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
+    for missing_part in missing:
+        print(
+            f"missing: {missing_part.sentence(SOURCE_LANGUAGE)} ({missing_part.why})",
+            file=sys.stderr,
+        )
+    size_bytes = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    print(f"{folder}: {size_bytes / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0
 
 
@@ -92,11 +95,11 @@ def add_wheels(
 
     `given_wheel` is the wheel of TiniScript; where there is none it is made.
     """
-    stick_wheels.make_sources(wheels)
+    stick_wheels.make_source_wheels(wheels)
     wheel = (
         Path(shutil.copy(given_wheel, wheels))
         if given_wheel
-        else stick_wheels.make_ours(ROOT, wheels)
+        else stick_wheels.make_own_wheel(ROOT, wheels)
     )
     missing: list[Missing] = []
     for name in systems:
@@ -105,8 +108,8 @@ def add_wheels(
             print(f"wheels for {title}", flush=True)
             try:
                 stick_wheels.fetch(wheel, wheels, SYSTEMS[name], python, EXTRAS)
-            except CannotMake as why:
-                missing.append(_with_fewer(wheel, wheels, name, python, str(why)))
+            except CannotMake as error:
+                missing.append(_with_fewer(wheel, wheels, name, python, str(error)))
     return missing
 
 
@@ -129,8 +132,8 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
         if hashlib.sha256(target.read_bytes()).hexdigest() == sha256:
             return []
         why = "what came is not that installer"
-    except (OSError, ValueError) as failure:  # also what urllib raises
-        why = str(getattr(failure, "reason", failure))
+    except (OSError, ValueError) as error:  # also what urllib raises
+        why = str(getattr(error, "reason", error))
     target.unlink(missing_ok=True)
     return [Missing("no_installer", url, why)]
 
@@ -143,9 +146,9 @@ def add_texts(folder: Path) -> None:
     for path in sorted(SCRIPTS.iterdir()):
         script = path.read_text(encoding="utf-8")
         # cmd finds a label by its line end; a shell of Unix takes a CR for a part of a word
-        end = "\r\n" if path.suffix in (".bat", ".ps1") else "\n"
+        line_end = "\r\n" if path.suffix in (".bat", ".ps1") else "\n"
         target = folder / path.name
-        target.write_text(script, encoding="utf-8", newline=end)
+        target.write_text(script, encoding="utf-8", newline=line_end)
         if path.suffix in (".sh", ".command"):
             target.chmod(0o755)
 
@@ -154,13 +157,19 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
     parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
     for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
-        lacks = text("documents", "stick/lacks", language)
+        lacks_format = text("documents", "stick/lacks", language)
         instructions = text("documents", "stick/readme", language).format(index=index)
-        rows = [instructions, *(lacks.format(what=item.sentence(language)) for item in missing)]
+        rows = [
+            instructions,
+            *(
+                lacks_format.format(what=missing_part.sentence(language))
+                for missing_part in missing
+            ),
+        ]
         title = text("documents", "stick/title", language)
         parts.append("\n".join((title, "", *rows, "")))
-    sentence = "\n".join(parts)
-    (folder / "README.txt").write_text(sentence, encoding="utf-8-sig", newline="\r\n")
+    readme_text = "\n".join(parts)
+    (folder / "README.txt").write_text(readme_text, encoding="utf-8-sig", newline="\r\n")
 
 
 def _firmware() -> list[Missing]:

@@ -25,14 +25,14 @@ SOURCES = "vm_arduino"
 COMMAND = "python -m tools.builds.wasm"
 
 # Who looks at a program follows it instruction by instruction.
-WATCHED = "-Dtiniscript_counts_instructions"
+COUNTING_FLAG = "-Dtiniscript_counts_instructions"
 
 # No library is linked, so what the machine calls is in its own sources or in wasm itself.
 FLAGS = (
     "-target", "wasm32-freestanding", "-mcpu=generic+bulk_memory+sign_ext", "-std=c++11", "-Oz",
     "-fno-exceptions", "-fno-rtti", "-fno-sanitize=all", "-fno-stack-protector", "-g0", "-nostdlib",
     "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror",
-    WATCHED, "-Wl,--no-entry", "-Wl,--strip-all", "-Wl,-z,stack-size=16384",
+    COUNTING_FLAG, "-Wl,--no-entry", "-Wl,--strip-all", "-Wl,-z,stack-size=16384",
 )  # fmt: skip
 
 
@@ -72,34 +72,37 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the WebAssembly modules from the C++.")
     parser.add_argument("--check", action="store_true", help="only say whether one is stale")
     only_check: bool = parser.parse_args(arguments).check
-    if missing():
-        sys.exit(missing())
-    code = 0
+    if why_not_here():
+        sys.exit(why_not_here())
+    exit_code = 0
     for module in MODULES:
         path = ROOT / module.path
-        result = build(ROOT / SOURCES, module)
-        if path.exists() and path.read_bytes() == result:
+        module_data = build(ROOT / SOURCES, module)
+        if path.exists() and path.read_bytes() == module_data:
             continue
         if only_check:
             print(f"{module.path} is stale. Run: {COMMAND}", file=sys.stderr)
-            code = 1
+            exit_code = 1
         else:
-            path.write_bytes(result)
-            print(f"wrote {module.path}: {len(result)} bytes")
-    return code
+            path.write_bytes(module_data)
+            print(f"wrote {module.path}: {len(module_data)} bytes")
+    return exit_code
 
 
-def missing() -> str:
+def why_not_here() -> str:
     """Return why the modules cannot be made here, or nothing."""
     pin = re.search(r'"ziglang==([^"]+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert pin, "pyproject.toml pins the compiler"
     try:
-        result = version("ziglang")
+        installed_version = version("ziglang")
     except PackageNotFoundError:
-        result = "none"
-    if result == pin[1]:
+        installed_version = "none"
+    if installed_version == pin[1]:
         return ""
-    return f"ziglang {pin[1]} is needed, here is {result}. Run: pip install ziglang=={pin[1]}"
+    return (
+        f"ziglang {pin[1]} is needed, here is {installed_version}. "
+        f"Run: pip install ziglang=={pin[1]}"
+    )
 
 
 def build(sources: Path, module: Module) -> bytes:
@@ -108,25 +111,37 @@ def build(sources: Path, module: Module) -> bytes:
     The compiler sees paths inside that folder alone, and keeps nothing from other builds.
     """
     files = [sources / name for name in module.files]
-    included = set(re.findall(r'#include "\.\./\.\./(\S+\.cpp)"', "".join(map(_text, files))))
+    included_files = set(re.findall(r'#include "\.\./\.\./(\S+\.cpp)"', "".join(map(_text, files))))
     for folder in module.folders:
         paths = sorted((sources / folder).glob("*.cpp"))
-        files += [path for path in paths if path.relative_to(sources).as_posix() not in included]
+        files += [
+            path for path in paths if path.relative_to(sources).as_posix() not in included_files
+        ]
     with tempfile.TemporaryDirectory() as folder:
-        result = Path(folder) / Path(module.path).name
-        places = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
+        output_path = Path(folder) / Path(module.path).name
+        cache_folders = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         names = [path.relative_to(sources).as_posix() for path in files]
-        completed = subprocess.run(
-            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *module.flags, *names, "-o", result],
+        process = subprocess.run(
+            [
+                sys.executable,
+                "-m",
+                "ziglang",
+                "c++",
+                *FLAGS,
+                *module.flags,
+                *names,
+                "-o",
+                output_path,
+            ],
             cwd=sources,
-            env={**os.environ, **places},
+            env={**os.environ, **cache_folders},
             capture_output=True,
             text=True,
             check=False,
         )
-        if completed.returncode != 0:
-            sys.exit(f"the compiler refuses {module.files[0]}:\n{completed.stderr[:4000]}")
-        return result.read_bytes()
+        if process.returncode != 0:
+            sys.exit(f"the compiler refuses {module.files[0]}:\n{process.stderr[:4000]}")
+        return output_path.read_bytes()
 
 
 def _text(path: Path) -> str:

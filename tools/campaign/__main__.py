@@ -37,22 +37,22 @@ def main(arguments: list[str] | None = None) -> int:
             f"no goal is called {', '.join(unknown_goals)}. There are: {', '.join(BY_NAME)}"
         )
     goals = [BY_NAME[name] for name in options.goals] or list(GOALS)
-    code = 0 if options.list else run(goals, time.monotonic() + 60 * options.minutes)
-    results_by_goal = results.read()
+    exit_code = 0 if options.list else run(goals, time.monotonic() + 60 * options.minutes)
+    results_by_goal = results.read_results()
     for goal in goals:
         result = results_by_goal.get(goal.name)
         reached_text = f"; {result.date}, code of {result.commit}" if result else ""
         figure = figure_text(goal, result)
         print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {figure}{reached_text}")
-    return code
+    return exit_code
 
 
 def run(goals: Sequence[Goal], end_s: float) -> int:
     """Run pieces of the goals until all are reached or the time is over; return the exit code."""
-    commit = results.commit()
+    commit = results.current_commit()
     if commit.endswith("+"):
         print("Code that is not committed: what it reaches is not kept.", flush=True)
-    results_by_goal = results.read()
+    results_by_goal = results.read_results()
     is_wrong = False
     try:
         for goal in goals:
@@ -60,9 +60,9 @@ def run(goals: Sequence[Goal], end_s: float) -> int:
                 if time.monotonic() >= end_s:
                     print("The time is over; the next campaign goes on from here.", flush=True)
                     return int(is_wrong)
-                results_by_goal[goal.name] = piece(goal, results_by_goal.get(goal.name), commit)
+                results_by_goal[goal.name] = run_piece(goal, results_by_goal.get(goal.name), commit)
                 if not commit.endswith("+"):
-                    results.write(results_by_goal)
+                    results.write_results(results_by_goal)
                 if results_by_goal[goal.name].wrong:
                     is_wrong = True
                     break
@@ -81,25 +81,31 @@ def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
     return not result.wrong and result.done >= goal.target
 
 
-def piece(goal: Goal, before: Result | None, commit: str) -> Result:
+def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
     """Run a piece of a goal; return what is reached with it.
 
     A piece that was wrong is run again. What other code has reached counts no more.
     """
-    if before is None or not results.is_same_code(goal, before.commit, commit):
-        before = Result(0, 0, FIRST_SEED, FIRST_SEED, "", commit)
-    seed = before.next_seed
-    count = min(goal.piece, goal.target - before.done)
-    words = [sys.executable, "-m", *goal.command.format(count=count, seed=seed).split()]
-    print(f"{goal.name}: {before.done:,} of {goal.target:,}; {' '.join(words[1:])}", flush=True)
+    if last_result is None or not results.is_same_code(goal, last_result.commit, commit):
+        last_result = Result(0, 0, FIRST_SEED, FIRST_SEED, "", commit)
+    seed = last_result.next_seed
+    count = min(goal.piece_size, goal.target - last_result.done)
+    command = [sys.executable, "-m", *goal.command.format(count=count, seed=seed).split()]
+    print(
+        f"{goal.name}: {last_result.done:,} of {goal.target:,}; {' '.join(command[1:])}", flush=True
+    )
     begin_s = time.monotonic()
-    completed = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, errors="replace")
-    seconds = round(before.seconds + time.monotonic() - begin_s, 1)
-    day = datetime.now(timezone.utc).date().isoformat()
-    if completed.returncode:
-        print((completed.stdout + completed.stderr)[-4000:], flush=True)
-        return before._replace(date=day, wrong=f"seed {seed}, `python {' '.join(words[1:])}`")
-    return Result(before.done + count, seconds, before.seed, seed + goal.stride, day, commit)
+    process = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, errors="replace")
+    total_s = round(last_result.seconds + time.monotonic() - begin_s, 1)
+    date = datetime.now(timezone.utc).date().isoformat()
+    if process.returncode:
+        print((process.stdout + process.stderr)[-4000:], flush=True)
+        return last_result._replace(
+            date=date, wrong=f"seed {seed}, `python {' '.join(command[1:])}`"
+        )
+    return Result(
+        last_result.done + count, total_s, last_result.seed, seed + goal.stride, date, commit
+    )
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Goal(NamedTuple):
-    """`target` of `unit` are to be done, `piece` of them at a time, by `command`.
+    """`target` of `unit` are to be done, `piece_size` of them at a time, by `command`.
 
     In the command `{count}` and `{seed}` are those of a piece. A command that fails has found
     something. Seeds of pieces are `stride` apart. `paths` hold the code that it tries.
@@ -20,7 +20,7 @@ class Goal(NamedTuple):
     guarantee: str
     unit: str
     target: int
-    piece: int
+    piece_size: int
     command: str
     paths: tuple[str, ...]
     stride: int = 1
@@ -40,7 +40,7 @@ def _code(*names: str) -> tuple[str, ...]:
     return tuple(folders)
 
 
-FUZZ = "libFuzzer, ASan and UBSan"
+FUZZ_TOOLS = "libFuzzer, ASan and UBSan"
 _CHANNEL = "tests.link.test_link_channel"
 _ROBOT = _code("@vm", "@store", "@link", "@text", "@firmware")
 _UPLOADS = (*_code("link", "@store", "@link", "@firmware"), "tests/link")
@@ -92,11 +92,11 @@ GOALS: tuple[Goal, ...] = (
          "run of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal", ("compiler", "vm_arduino", "tests")),
     Goal("pupils", "The messages about programs with mistakes, as pupils write them, have not changed; each repair helps and keeps the numbers; whatever is offered compiles.",
          "run of all programs", 1, 1, "pytest tests/pupils tests/semantics/test_offered.py --whole -n 2 --dist worksteal", (*_COMPILER, *_code("recovery", "diagnostics", "languages"), "tests/pupils")),
-    Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
+    Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ_TOOLS}).",
          "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}", (*_code("@vm"), "tests/fuzz")),
-    Goal("fuzz-link", f"No bytes harm the receiver, the link or the reader of text ({FUZZ}).",
+    Goal("fuzz-link", f"No bytes harm the receiver, the link or the reader of text ({FUZZ_TOOLS}).",
          "inputs", 100_000_000, 1_000_000, "tests.fuzz.harnesses link {count} --seed {seed}", (*_code("@link", "@text"), "tests/fuzz")),
-    Goal("fuzz-store", f"No contents of the EEPROM harm the store, at start or during saves ({FUZZ}).",
+    Goal("fuzz-store", f"No contents of the EEPROM harm the store, at start or during saves ({FUZZ_TOOLS}).",
          "inputs", 10_000_000, 100_000, "tests.fuzz.harnesses store {count} --seed {seed}", (*_code("@store"), "tests/fuzz")),
     Goal("agreement", "The machines and verifiers in C++ and in Python give the same answers and do the same.",
          "random and mutated codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", (*_MACHINE, "tests/vm"), 1000),
@@ -122,7 +122,7 @@ GOALS: tuple[Goal, ...] = (
          "programs", 100_000, 10_000, "tests.firmware.test_waiting_text {count} --seed {seed}", _ROBOT),
     Goal("clients", "After any frames a robot answers each whole frame, does nothing stale, and can be stopped.",
          "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", _ROBOT, 1000),
-    Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's MQTT reader finds the same as a second reader, within its memory ({FUZZ}).",
+    Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's MQTT reader finds the same as a second reader, within its memory ({FUZZ_TOOLS}).",
          "inputs", 10_000_000, 200_000, "tests.fuzz.harnesses mqtt {count} --seed {seed}", (*_code("@boards/esp32"), "tests/fuzz")),
     Goal("fuzz-compiler", "The compiler compiles any text, or refuses it with mistakes that it can name in every language.",
          "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}", (*_COMPILER, *_code("recovery", "diagnostics"), "tests/fuzz")),

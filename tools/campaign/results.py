@@ -14,11 +14,11 @@ from tiniscript.base.files import replace
 from tools import ROOT
 from tools.campaign.goals import GOALS, Goal
 
-WRITTEN = Path(__file__).with_name("results.json")
+RESULTS_FILE = Path(__file__).with_name("results.json")
 DOCUMENT = ROOT / "docs" / "en" / "guarantees.md"
-OLD = ", old"
-CODE = ("compiler", "vm_arduino", "tests")  # what a figure is about
-HEAD = ("name", "guarantee", "target", "measured", "seeds", "date", "commit")
+OLD_MARK = ", old"
+CODE_FOLDERS = ("compiler", "vm_arduino", "tests")  # what a figure is about
+TABLE_HEAD = ("name", "guarantee", "target", "measured", "seeds", "date", "commit")
 
 
 class Result(NamedTuple):
@@ -37,32 +37,32 @@ class Result(NamedTuple):
 Results = dict[str, Result]
 
 
-def read() -> Results:
-    result = json.loads(WRITTEN.read_text(encoding="utf-8"))
-    return {name: Result(**values) for name, values in result.items()}
+def read_results() -> Results:
+    values_of_goal = json.loads(RESULTS_FILE.read_text(encoding="utf-8"))
+    return {name: Result(**values) for name, values in values_of_goal.items()}
 
 
-def write(results: Results) -> None:
+def write_results(results: Results) -> None:
     """Write a line for each result, in the order of the goals."""
     rows = (f'"{goal.name}": {json.dumps(results[goal.name]._asdict())}'
             for goal in GOALS if goal.name in results)  # fmt: skip
-    replace(WRITTEN, ("{\n" + ",\n".join(rows) + "\n}\n").encode())
+    replace(RESULTS_FILE, ("{\n" + ",\n".join(rows) + "\n}\n").encode())
 
 
-def commit() -> str:
+def current_commit() -> str:
     """Return the commit of the code that is tested; with a `+` where it has changed since."""
     head = git("rev-parse", "--short=10", "HEAD").stdout.strip()
-    return head + "+" * bool(git("status", "--porcelain", "--", *CODE).stdout.strip())
+    return head + "+" * bool(git("status", "--porcelain", "--", *CODE_FOLDERS).stdout.strip())
 
 
-def is_same_code(goal: Goal, one: str, other: str = "") -> bool:
+def is_same_code(goal: Goal, commit: str, other_commit: str = "") -> bool:
     """Whether two commits, or one and the files that are here, have the same code of a goal.
 
     A commit with a `+` is like no other, nor is one that nobody knows here.
     """
-    commits = [item for item in (one, other) if item]
-    is_known = "+" not in one + other
-    return one == other or (
+    commits = [name for name in (commit, other_commit) if name]
+    is_known = "+" not in commit + other_commit
+    return commit == other_commit or (
         is_known and not git("diff", "--quiet", *commits, "--", *goal.code).returncode
     )
 
@@ -73,29 +73,33 @@ def is_old(goal: Goal, result: Result) -> bool:
     Without the project's commits nobody can tell: then it is as the document says.
     """
     if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
-        return f"| {_figure(goal, result)}{OLD} |" in _row(goal, DOCUMENT.read_text("utf-8"))
+        return f"| {_figure(goal, result)}{OLD_MARK} |" in _row(goal, DOCUMENT.read_text("utf-8"))
     return not is_same_code(goal, result.commit)
 
 
 def outdated_goals() -> list[str]:
     """Return the names of the goals whose figures are old."""
-    result = read()
-    return [goal.name for goal in GOALS if goal.name in result and is_old(goal, result[goal.name])]
+    results_by_goal = read_results()
+    return [
+        goal.name
+        for goal in GOALS
+        if goal.name in results_by_goal and is_old(goal, results_by_goal[goal.name])
+    ]
 
 
 def _row(goal: Goal, document: str) -> str:
     return next((row for row in document.splitlines() if row.startswith(f"| `{goal.name}` |")), "")
 
 
-def git(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+def git(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
 
 
 def figure_text(goal: Goal, result: Result | None) -> str:
     """Return the figure, that it is less than the goal where it is, and whether it is old."""
     if result is None:
         return "not run yet"
-    return _figure(goal, result) + OLD * is_old(goal, result)
+    return _figure(goal, result) + OLD_MARK * is_old(goal, result)
 
 
 def _figure(goal: Goal, result: Result) -> str:
@@ -106,15 +110,21 @@ def _figure(goal: Goal, result: Result) -> str:
 
 def rows() -> list[tuple[str, ...]]:
     """Return the table of `docs/en/guarantees.md`."""
-    results = read()
-    outcome: list[tuple[str, ...]] = []
+    results_by_goal = read_results()
+    table_rows: list[tuple[str, ...]] = []
     for goal in GOALS:
-        result = results.get(goal.name)
+        result = results_by_goal.get(goal.name)
         run_cells = ("", "", "")
         if result is not None:
-            last = max(result.seed, result.next_seed - goal.stride)
-            seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
-            run_cells = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
+            last_seed = max(result.seed, result.next_seed - goal.stride)
+            seeds = (
+                f"{result.seed}" if last_seed == result.seed else f"{result.seed} to {last_seed}"
+            )
+            run_cells = (
+                "-" if "{seed}" not in goal.command else seeds,
+                result.date,
+                result.commit,
+            )
         row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
-        outcome.append((*row, figure_text(goal, result), *run_cells))
-    return outcome
+        table_rows.append((*row, figure_text(goal, result), *run_cells))
+    return table_rows

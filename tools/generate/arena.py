@@ -19,8 +19,14 @@ from tiniscript.virtual.world import World
 from tools import ROOT
 
 SAMPLE_MS = 50
-FLOOR, WALL, BOX, WAY, BODY = "#f5f2ea", "#37414b", "#8a97a3", "#1273de", "#e8590c"
-LINE, LAMP, GLOW = "#202020", "#f5b400", "#fdf3c8"
+FLOOR_COLOUR, WALL_COLOUR, BOX_COLOUR, WAY_COLOUR, BODY_COLOUR = (
+    "#f5f2ea",
+    "#37414b",
+    "#8a97a3",
+    "#1273de",
+    "#e8590c",
+)
+LINE_COLOUR, LAMP_COLOUR, GLOW_COLOUR = "#202020", "#f5b400", "#fdf3c8"
 Points = Sequence[tuple[float, ...]]
 
 
@@ -32,13 +38,13 @@ class Way(NamedTuple):
     end: list[tuple[float, float]]
 
 
-def drive_way(program: str, robot: str, world: World, lasts_ms: int) -> Way:
+def drive_way(program: str, robot: str, world: World, duration_ms: int) -> Way:
     """Drive for so many milliseconds of the robot's clock, and return the way."""
-    result = tiniscript.compile(program, robot=robot)
-    simulation = Simulation(robot, world, result.image)
+    compilation = tiniscript.compile(program, robot=robot)
+    simulation = Simulation(robot, world, compilation.image)
     hull = Hull(simulation.robot.profile.body)
     poses = [simulation.robot.pose]
-    for _ in range(0, lasts_ms, SAMPLE_MS):
+    for _ in range(0, duration_ms, SAMPLE_MS):
         simulation.go(SAMPLE_MS)
         poses.append(simulation.robot.pose)
     points = [(pose.x_cm, pose.y_cm) for pose in poses]
@@ -52,9 +58,9 @@ def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     if len(points) < 3:
         return points
     chord = Segment(Point(*points[0]), Point(*points[-1]))
-    off = [distance(chord, *point) for point in points[1:-1]]
-    k = off.index(max(off)) + 1
-    if off[k - 1] < 0.2:
+    distances_cm = [distance(chord, *point) for point in points[1:-1]]
+    k = distances_cm.index(max(distances_cm)) + 1
+    if distances_cm[k - 1] < 0.2:
         return [points[0], points[-1]]
     return [*bends(points[: k + 1])[:-1], *bends(points[k:])]
 
@@ -62,34 +68,39 @@ def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 def arena(world: World, way: Way, left: float, top: float, scale: float) -> list[str]:
     """Return the parts of a picture: its upper left corner is there, a cm is `scale` wide."""
 
-    def at(x: float, y: float) -> tuple[float, float]:
+    def to_pixels(x: float, y: float) -> tuple[float, float]:
         return left + x * scale, top + (world.height_cm - y) * scale
 
-    def row(points: Points) -> str:
-        return " ".join("{:.1f},{:.1f}".format(*at(*point[:2])) for point in points)
+    def points_text(points: Points) -> str:
+        return " ".join("{:.1f},{:.1f}".format(*to_pixels(*point[:2])) for point in points)
 
     def line(points: Points, colour: str, width: float) -> str:
         return (
-            f'<polyline points="{row(points)}" fill="none" stroke="{colour}"'
+            f'<polyline points="{points_text(points)}" fill="none" stroke="{colour}"'
             f' stroke-width="{width:.3g}" stroke-linejoin="round"/>'
         )
 
     def disc(x: float, y: float, radius_cm: float, colour: str) -> str:
-        x, y = at(x, y)
+        x, y = to_pixels(x, y)
         return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius_cm * scale:.1f}" fill="{colour}"/>'
 
     corners = [(0.0, 0.0), (world.width_cm, 0.0), (world.width_cm, world.height_cm),
                (0.0, world.height_cm)]  # fmt: skip
     return [
-        f'<polygon points="{row(corners)}" fill="{FLOOR}" stroke="{WALL}" stroke-width="4"/>',
-        *(disc(*lamp.place[:2], lamp.reach_cm / 4, GLOW) for lamp in world.lamps),
-        *(line(item.points, LINE, item.width_cm * scale) for item in world.lines),
-        *(f'<polygon points="{row(box)}" fill="{BOX}"/>' for box in world.boxes),
-        *(line(wall, WALL, 4) for wall in world.walls),
-        *(disc(*lamp.place[:2], 2.5, LAMP) for lamp in world.lamps),
-        f'<polygon points="{row(way.begin)}" fill="none" stroke="{BODY}" stroke-dasharray="4"/>',
-        line(way.points, WAY, 3),
-        f'<polygon points="{row(way.end)}" fill="{BODY}"/>',
+        f'<polygon points="{points_text(corners)}" fill="{FLOOR_COLOUR}" stroke="{WALL_COLOUR}"'
+        ' stroke-width="4"/>',
+        *(disc(*lamp.place[:2], lamp.reach_cm / 4, GLOW_COLOUR) for lamp in world.lamps),
+        *(
+            line(floor_line.points, LINE_COLOUR, floor_line.width_cm * scale)
+            for floor_line in world.lines
+        ),
+        *(f'<polygon points="{points_text(box)}" fill="{BOX_COLOUR}"/>' for box in world.boxes),
+        *(line(wall, WALL_COLOUR, 4) for wall in world.walls),
+        *(disc(*lamp.place[:2], 2.5, LAMP_COLOUR) for lamp in world.lamps),
+        f'<polygon points="{points_text(way.begin)}" fill="none" stroke="{BODY_COLOUR}"'
+        ' stroke-dasharray="4"/>',
+        line(way.points, WAY_COLOUR, 3),
+        f'<polygon points="{points_text(way.end)}" fill="{BODY_COLOUR}"/>',
     ]
 
 
@@ -99,7 +110,7 @@ DRIVES = (  # the world, the example, the robot, for so many seconds
     ("light", "light.ts", "tinibot", 8),
     ("line", "line.ts", "liner", 20),
 )
-COLUMN, PAD = 400, 12
+COLUMN_WIDTH, PADDING = 400, 12
 
 
 def world_picture(command: str) -> str:
@@ -108,17 +119,18 @@ def world_picture(command: str) -> str:
     bottom = 0.0
     for column, (name, example, robot, seconds) in enumerate(DRIVES):
         world = worlds.load(name)
-        left = PAD + column * COLUMN
-        scale = (COLUMN - 2 * PAD) / world.width_cm
-        foot = PAD + world.height_cm * scale + 24
-        bottom = max(bottom, foot)
+        left = PADDING + column * COLUMN_WIDTH
+        scale = (COLUMN_WIDTH - 2 * PADDING) / world.width_cm
+        caption_y = PADDING + world.height_cm * scale + 24
+        bottom = max(bottom, caption_y)
         way = drive_way((EXAMPLES / example).read_text("utf-8"), robot, world, 1000 * seconds)
-        parts += arena(world, way, left, PAD, scale)
+        parts += arena(world, way, left, PADDING, scale)
         parts.append(
-            f'<text x="{left}" y="{foot:.0f}" font-family="{FONT}" font-size="15" fill="#37414b">'
+            f'<text x="{left}" y="{caption_y:.0f}" font-family="{FONT}" font-size="15"'
+            ' fill="#37414b">'
             f"{name}: examples/{example}, {seconds} s</text>"
         )
-    width, height = len(DRIVES) * COLUMN, round(bottom) + PAD
+    width, height = len(DRIVES) * COLUMN_WIDTH, round(bottom) + PADDING
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img">\n'
         f"<!-- Generated by {command}. Do not edit. -->\n"

@@ -58,34 +58,34 @@ def handler(code: int) -> str:
     op = opcodes.BY_CODE[code]
     if op is None:
         return "op_none"
-    base, _, last = op.name.rpartition("_")
+    base, _, suffix = op.name.rpartition("_")
     if op.implied is not None:
         return f"op_{base}_short".lower()
-    is_variant = last in ("F", "B", "L", "R") or last.isdigit()
-    if is_variant or (last in comparators() and op.operands):
+    is_variant = suffix in ("F", "B", "L", "R") or suffix.isdigit()
+    if is_variant or (suffix in comparators() and op.operands):
         return f"op_{base}".lower()
     return f"op_{op.name}".lower()
 
 
 def without_tasks() -> str:
-    result = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
-    return "".join(f"#define {item} op_none\n" for item in result)
+    labels = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
+    return "".join(f"#define {label} op_none\n" for label in labels)
 
 
 def rows() -> Iterator[str]:
     """Yield a row for each run of bytes that have one handler, and the first of these bytes."""
-    for target, run in groupby(range(256), handler):
-        first, *others = run
-        yield f"    jumps {1 + len(others)}, {target}  ; {first:02x}\n"
+    for target, codes in groupby(range(256), handler):
+        first_code, *other_codes = codes
+        yield f"    jumps {1 + len(other_codes)}, {target}  ; {first_code:02x}\n"
 
 
 def comparator_bits() -> int:
     """Return the mask of the comparator in the code of an instruction that compares."""
-    bits = 7
+    mask = 7
     for op in opcodes.UNO_OPS:
-        base, _, last = op.name.rpartition("_")
-        assert not base or comparators().get(last, op.code & bits) == op.code & bits, op.name
-    return bits
+        base, _, suffix = op.name.rpartition("_")
+        assert not base or comparators().get(suffix, op.code & mask) == op.code & mask, op.name
+    return mask
 
 
 def comparators() -> dict[str, int]:

@@ -19,19 +19,19 @@ from tools.generate.wiring_pages import wiring_pages
 from tools.site.documents import name_in
 
 COMMAND = "python -m tools.generate"
-Made = dict[str, Callable[[], str]]
+DocumentMakers = dict[str, Callable[[], str]]
 
 
-def makers_of_kept() -> Made:
+def makers_of_kept() -> DocumentMakers:
     """Return how what is kept of these documents is made, by its name in a clone."""
-    result = wiring_pages(COMMAND, is_kept=True)
+    makers = wiring_pages(COMMAND, is_kept=True)
     pages = {
-        name: make for name, make in result.items() if name.startswith(f"docs/{SOURCE_LANGUAGE}/")
+        name: make for name, make in makers.items() if name.startswith(f"docs/{SOURCE_LANGUAGE}/")
     }
-    shown = _shown_drawings() | {
+    shown_drawings = _shown_drawings() | {
         drawing for make in pages.values() for drawing in _drawings(make())
     }
-    return pages | {name: make for name, make in result.items() if name in shown}
+    return pages | {name: make for name, make in makers.items() if name in shown_drawings}
 
 
 def build_all() -> dict[str, str]:
@@ -53,4 +53,4 @@ def _shown_drawings() -> set[str]:
 
 
 def _drawings(text: str) -> list[str]:
-    return [f"docs/{item}" for item in re.findall(r"\.\./(pictures/wiring/[\w.]+)\)", text)]
+    return [f"docs/{name}" for name in re.findall(r"\.\./(pictures/wiring/[\w.]+)\)", text)]

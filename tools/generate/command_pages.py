@@ -36,15 +36,15 @@ def page(language: str, command: str, table: Table) -> str:
         *_overview(language, table),
     ]
     for verb in VERBS:
-        for item in (verb, *steps_of(verb)):
-            parts += _command(item, language, table)
+        for command_or_step in (verb, *steps_of(verb)):
+            parts += _command(command_or_step, language, table)
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
 
 
 def _overview(language: str, table: Table) -> Iterator[str]:
     yield f"# {_text('title', language)}"
     yield _text("introduction", language)
-    for heading, rows in help.groups(language):
+    for heading, rows in help.command_groups(language):
         yield heading
         yield table(
             [_text(key, language) for key in ("command", "does")],
@@ -57,16 +57,16 @@ def _overview(language: str, table: Table) -> Iterator[str]:
 
 def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield f"{'##' if command in VERBS else '###'} `tsc {command_words(command)}`"
-    yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
+    yield "\\\n".join(f"`{usage}`" for usage in help.usage(command, language))
     yield verb_sentence(command, "says", language)
     options = [option for option in shown_of(command) if option.verbs != "*"]
     has_virtual_section = any(option.name == "virtual" for option in options)
     yield _options(
-        [option for option in options if not (has_virtual_section and option.virtual)],
+        [option for option in options if not (has_virtual_section and option.is_virtual)],
         language,
         table,
     )
-    virtual_options = [option for option in options if has_virtual_section and option.virtual]
+    virtual_options = [option for option in options if has_virtual_section and option.is_virtual]
     if virtual_options:
         yield verb_text("virtual", language)
         yield _options(virtual_options, language, table)

@@ -18,12 +18,12 @@ from tiniscript.bytecode import image, opcodes, verify
 TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
 
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
-BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
+OPERAND_BYTE_KINDS = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
 FAR_BIT, BACK_BIT = 0x08, 0x10
 
 # The families of which the machine asks the table: what its inner loop cannot do alone, and what
 # the verifier distinguishes. All others share rows. From WATCH_WAIT on the motors stay as they are.
-ASKED = (
+ASKED_FAMILIES = (
     "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", "SET", "STOP", "MOTORS", "MOTORS8",
     "MOVE", "MOVE8", "WATCH", "WATCH_FOREVER",
     "WATCH_WAIT", "WATCH_FOREVER_WAIT", "WAIT", "WAIT8", "BEEP", "BEEP8", "LOOK", "END_WHEN",
@@ -36,7 +36,8 @@ def header(command: str) -> str:
     """Return `bytecode.h`: what the C++ machine takes from the tables of the compiler."""
     offsets = accumulate((field.size for field in image.FIELDS), initial=0)
     fields = [
-        (f"k{camel(field.name)}At", at) for at, field in zip(offsets, image.FIELDS, strict=False)
+        (f"k{camel(field.name)}At", offset)
+        for offset, field in zip(offsets, image.FIELDS, strict=False)
     ]
     rules = [(name, number, meaning) for name, (number, meaning) in verify.RULES.items()]
     refusals = [(name, number, meaning) for name, (number, meaning) in image.REFUSALS.items()]
@@ -68,11 +69,11 @@ def header(command: str) -> str:
         enumeration(
             "Op",
             [
-                *((op.name, op.code, op.effect) for op in in_order()),
+                *((op.name, op.code, op.effect) for op in ordered_ops()),
                 ("ESCAPE", opcodes.ESCAPE, "a second byte says which instruction it is"),
             ],
         ),
-        ways(),
+        way_constants(),
         "// Why bytes are no image for this machine.\n"
         + enumeration("Refusal", [("NONE", 0, "It is one."), *refusals]),
         "// Which rule code breaks.\n"
@@ -91,7 +92,7 @@ def header(command: str) -> str:
             ],
         ),
         "// What a byte of operands is.\n"
-        + enumeration("Byte", [(name, k, "") for k, name in enumerate(BYTES)]),
+        + enumeration("Byte", [(name, k, "") for k, name in enumerate(OPERAND_BYTE_KINDS)]),
         form_numbers(),
     )  # fmt: skip
     comment_lines = (
@@ -149,7 +150,7 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
 
 
-def ways() -> str:
+def way_constants() -> str:
     """Return what says which second bytes there are: those of a MOVE and of a WATCH of its own."""
     twin_of = {"GO": "MOVE", "WATCH_GO": "WATCH"}
     for code, op in opcodes.ESCAPED_OPS.items():
@@ -189,7 +190,7 @@ NONE = DecodeForm("NONE", "none", 0, 0, 1, False, False, "any", "any")
 def byte_of(kind: opcodes.OperandKind) -> str:
     """Return what the first byte of an operand may be."""
     is_any = kind.size > 1 or kind.high - kind.low == 255
-    return "any" if is_any and kind.name not in BYTES else kind.name
+    return "any" if is_any and kind.name not in OPERAND_BYTE_KINDS else kind.name
 
 
 def decode_form_of(op: opcodes.Op) -> DecodeForm:
@@ -203,7 +204,7 @@ def decode_form_of(op: opcodes.Op) -> DecodeForm:
     first, second, *_ = [*kinds, "any", "any"]
     is_far = any(jumps) and op.operands[-1].kind.size == 2
     is_back = any(jumps) and op.operands[-1].kind.name.startswith("back")
-    family = op.family if op.family in ASKED else ""
+    family = op.family if op.family in ASKED_FAMILIES else ""
     if family and op.implied:
         family += "_SHORT"
     return DecodeForm(
@@ -214,17 +215,17 @@ def decode_form_of(op: opcodes.Op) -> DecodeForm:
 def forms() -> dict[DecodeForm, list[opcodes.Op]]:
     """Return the opcodes of each form: first what is no opcode, then those with a family."""
     rows: dict[DecodeForm, list[opcodes.Op]] = {NONE: []}
-    for op in sorted(in_order(), key=place_of):
+    for op in sorted(ordered_ops(), key=place_of):
         rows.setdefault(decode_form_of(op), []).append(op)
     return rows
 
 
 def place_of(op: opcodes.Op) -> tuple[bool, int]:
     """Say where the row of an opcode stands: those that tasks alone have are the last ones."""
-    return op in TASK_OPS, (*ASKED, op.family).index(op.family)
+    return op in TASK_OPS, (*ASKED_FAMILIES, op.family).index(op.family)
 
 
-def in_order() -> tuple[opcodes.Op, ...]:
+def ordered_ops() -> tuple[opcodes.Op, ...]:
     """Return all instructions, those of tasks last: some machines do without them."""
     return opcodes.UNO_OPS + TASK_OPS
 
@@ -258,8 +259,8 @@ def form_numbers() -> str:
 
 def tables(command: str) -> str:
     """Return `bytecode.cpp`: the tables that the header declares."""
-    rows = forms()
-    numbers = {op.code: number for number, ops in enumerate(rows.values()) for op in ops}
+    ops_by_form = forms()
+    numbers = {op.code: number for number, ops in enumerate(ops_by_form.values()) for op in ops}
     form_numbers_of_codes = [numbers.get(code, 0) for code in range(256)]
     packed_rows = [
         form_numbers_of_codes[code - code % 4 if code >= FIRST_FOUR else code]
@@ -276,9 +277,14 @@ def tables(command: str) -> str:
         assert op.code < FIRST_FOUR
         entries[op.code] = f"kHasTasks ? {entries[op.code]} : 0"
     with_tasks = {decode_form_of(op) for op in TASK_OPS}
-    assert list(rows)[-len(with_tasks) :] == [row for row in rows if row in with_tasks]
+    assert list(ops_by_form)[-len(with_tasks) :] == [
+        row for row in ops_by_form if row in with_tasks
+    ]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
-    ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
+    ranges = [
+        (0, 255) if name == "any" else (kinds[name].low, kinds[name].high)
+        for name in OPERAND_BYTE_KINDS
+    ]
     return "\n".join(
         (
             f"// Generated by {command} from the tables in compiler/tiniscript. Do not edit.\n",
@@ -289,15 +295,15 @@ def tables(command: str) -> str:
                 "kFormOf[]",
                 [
                     (
-                        ", ".join(entries[at : at + 16]),
-                        f"{at if at < FIRST_FOUR else 4 * at - 3 * FIRST_FOUR:02x}",
+                        ", ".join(entries[offset : offset + 16]),
+                        f"{offset if offset < FIRST_FOUR else 4 * offset - 3 * FIRST_FOUR:02x}",
                     )
-                    for at in range(0, len(entries), 16)
+                    for offset in range(0, len(entries), 16)
                 ],
             ),
             array(
                 "kForms[][2]",
-                [(pack_form(form), names(ops)) for form, ops in rows.items()],
+                [(pack_form(form), names(ops)) for form, ops in ops_by_form.items()],
                 len(with_tasks),
             ),
             array(
@@ -308,7 +314,7 @@ def tables(command: str) -> str:
                 "kRanges[][2]",
                 [
                     (f"{{{low % 256}, {high - low}}}", name)
-                    for name, (low, high) in zip(BYTES, ranges, strict=True)
+                    for name, (low, high) in zip(OPERAND_BYTE_KINDS, ranges, strict=True)
                 ],
             ),
             "}  // namespace tiniscript\n",
@@ -316,12 +322,14 @@ def tables(command: str) -> str:
     )
 
 
-def array(name: str, rows: Sequence[tuple[str, str]], some: int = 0) -> str:
-    """Return a table; the second of each row is a comment. The last `some` need tasks."""
+def array(name: str, rows: Sequence[tuple[str, str]], task_row_count: int = 0) -> str:
+    """Return a table; the second of each row is a comment. The last `task_row_count` need tasks."""
     lines = [f"    {row},  // {comment or '--'}\n" for row, comment in rows]
-    if some:
-        of_tasks = rows[-some:]
-        lines[-some:] = [f"    tini_of_tasks({row},)  // {comment}\n" for row, comment in of_tasks]
+    if task_row_count:
+        task_rows = rows[-task_row_count:]
+        lines[-task_row_count:] = [
+            f"    tini_of_tasks({row},)  // {comment}\n" for row, comment in task_rows
+        ]
     return f"const uint8_t {name} tini_progmem = {{\n{''.join(lines)}}};\n"
 
 
@@ -342,7 +350,7 @@ def pack_form(form: DecodeForm) -> str:
 
 
 def operand_bytes(form: DecodeForm) -> int:
-    return BYTES.index(form.second) << 4 | BYTES.index(form.first)
+    return OPERAND_BYTE_KINDS.index(form.second) << 4 | OPERAND_BYTE_KINDS.index(form.first)
 
 
 def operands() -> dict[int, tuple[str, str]]:

@@ -9,7 +9,7 @@ from textwrap import wrap
 from tiniscript.robots.drivers import DRIVERS
 
 # How the line above each list ends, by what uses the drivers in it.
-LISTS = {
+LINE_ENDS = {
     "motors": "Drivers of motors:",
     "discs": "tinibot2.toml has some.",
     "sensors number": "Drivers of sensors that are numbers:",
@@ -17,27 +17,27 @@ LISTS = {
     "actuators number": "Drivers of actuators that are numbers, [board.actuators.NAME]:",
     "actuators yes/no": "Drivers of actuators that are yes/no:",
 }
-NAME_SIGNS, ROW_SIGNS = 12, 96
+NAME_WIDTH, ROW_WIDTH = 12, 96
 
 
 def with_drivers(profile: Path) -> str:
     """Return the text of a profile with what each driver says of its keys."""
     text = profile.read_text(encoding="utf-8")
-    for used_by, end in LISTS.items():
+    for used_by, line_end in LINE_ENDS.items():
         rows = "".join(
-            _row(driver.name, driver.profile)
+            _row(driver.name, driver.profile_help)
             for driver in DRIVERS.values()
             if driver.used_by == used_by
         )
-        head, end_line, tail = text.partition(f"{end}\n")
-        assert end_line, f"{profile.name} has no line that ends with {end}"
-        text = head + end_line + rows + re.sub(r"^(#   .*\n)*", "", tail)
+        text_above, end_line, text_below = text.partition(f"{line_end}\n")
+        assert end_line, f"{profile.name} has no line that ends with {line_end}"
+        text = text_above + end_line + rows + re.sub(r"^(#   .*\n)*", "", text_below)
     return text
 
 
 def _row(name: str, keys: str) -> str:
     """Return `#   hc_sr04     trigger, echo; in cm`, on as many lines as it needs."""
-    first = f"#   {name:{NAME_SIGNS}}"
-    more = "#".ljust(len(first))
-    rows = wrap(keys, ROW_SIGNS, initial_indent=first, subsequent_indent=more)
+    first_indent = f"#   {name:{NAME_WIDTH}}"
+    other_indent = "#".ljust(len(first_indent))
+    rows = wrap(keys, ROW_WIDTH, initial_indent=first_indent, subsequent_indent=other_indent)
     return "".join(f"{row}\n" for row in rows)

@@ -21,24 +21,31 @@ from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
-from tools.generate.machine_kit import MOST_STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
+from tools.generate.machine_kit import (
+    MOST_STEPS,
+    TINIBOT_KIT,
+    USUAL_SCHEDULE,
+    Run,
+    arithmetic_runs,
+    documented_runs,
+)
 
 LONGEST_RUN_MS = 3000
 MOST_SHOWS = 40
 MOST_BYTES = 200  # of code: any robot has room for it
 UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # what nobody knows beforehand
-KINDS = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
-BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
+KEY_OF_KIND = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
+BYTES_ROW = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
 
 def link_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
-    runs = [run for run in documented_runs() if run.when == USUAL and not run.needs]
-    runs += [run for run in arithmetic() if answers_fault(run)]
+    runs = [run for run in documented_runs() if run.schedule == USUAL_SCHEDULE and not run.needs]
+    runs += [run for run in arithmetic_runs() if answers_fault(run)]
     parts = {
         "programs": list(programs(runs)),
         "refused": list(refusals(runs)),
-        "conversations": [conversation(case) for case in link_cases("link")],
+        "conversations": [conversation_case(case) for case in link_cases("link")],
     }
     head = {"form": LINK_FORM, "version": LINK_VERSION, "made_by": command, "link": [MAJOR, MINOR]}
     text = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
@@ -75,10 +82,10 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         shows = [
             [event.values[0], int(event.text.endswith("E"))]
             for event in robot.events
-            if event.what == "SHOW"
+            if event.kind == "SHOW"
         ]
-        is_still = all(not any(e.values) for e in robot.events if e.what == "MOTORS")
-        other_events = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
+        is_still = all(not any(e.values) for e in robot.events if e.kind == "MOTORS")
+        other_events = {event.kind for event in robot.events} - {"SHOW", "MOTORS"}
         if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MOST_SHOWS:
             continue
         numbers = {name: number for number, name, _ in FAULTS}
@@ -97,22 +104,26 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     """Return code that is refused in the same way whatever devices there are."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
-        verdicts = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
+        verdicts = {
+            verdict_on(code, 0),
+            verdict_on(code, 255),
+            verdict_on(code, len(TINIBOT_KIT.readings)),
+        }
         if len(verdicts) > 1 or "" in verdicts or len(code) > MOST_BYTES:
             continue
-        rule, at = verdicts.pop().split()
-        yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
+        rule, offset = verdicts.pop().split()
+        yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(offset)}
 
 
-def verdict(code: bytes, device_count: int) -> str:
+def verdict_on(code: bytes, device_count: int) -> str:
     try:
         verify(code, device_count, device_count)
-    except Refused as refused:
-        return f"{refused.name} {refused.offset}"
+    except Refused as error:
+        return f"{error.name} {error.offset}"
     return ""
 
 
-def conversation(case: LinkCase) -> dict[str, object]:
+def conversation_case(case: LinkCase) -> dict[str, object]:
     """Return a conversation: each row is a list of what it is, its time, and what it says."""
     rows: list[dict[str, object]] = []
     for row in case.rows:
@@ -125,13 +136,13 @@ def conversation(case: LinkCase) -> dict[str, object]:
         kind, content = words[1], words[2] if len(words) > 2 else ""
         step: dict[str, object] = {"ms": int(words[0])}
         if kind[0] in "<>":
-            match = BYTES.match(content)
+            match = BYTES_ROW.match(content)
             assert match, (case.id, row)
-            step[KINDS[kind[0]]] = match[1].strip()
+            step[KEY_OF_KIND[kind[0]]] = match[1].strip()
             step["means"] = (match[2] or "").strip()
             if kind.endswith("x"):
                 step["is_lost"] = True
         else:
-            step[KINDS[kind]] = content
+            step[KEY_OF_KIND[kind]] = content
         rows.append(step)
     return {"name": case.id, "has_session": has_session(case), "rows": rows}

@@ -37,7 +37,7 @@ from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
 
-TINIBOT = robots.load("tinibot").kit
+TINIBOT_KIT = robots.load("tinibot").kit
 MOST_STEPS = (
     100_000  # a case that runs more without a wait says nothing about its end: it is left out,
 )
@@ -46,22 +46,22 @@ RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
 TASK_RUN_MS = 600
 WAY_PROGRAMS = range(1000, 1012)
-When = tuple[int, tuple[int, ...]]
+Schedule = tuple[int, tuple[int, ...]]
 
 # When a run begins, and how often its machine is called: for the first wait, for the next, and the
 # last for all that follow. The first is as `tsc run` does it.
-USUAL: When = (0, (1,))
-WRAPS: When = (2**32 - 7, (1,))
-SELDOM: When = (2**31 - 30, (7,))
+USUAL_SCHEDULE: Schedule = (0, (1,))
+WRAPPING_SCHEDULE: Schedule = (2**32 - 7, (1,))
+SELDOM_SCHEDULE: Schedule = (2**31 - 30, (7,))
 LATE_CALL_MS = 45  # between two calls
-OFTEN = (3, 7, 20)  # ms between two calls, for tasks: each has a clock of its own
+OFTEN_MS = (3, 7, 20)  # ms between two calls, for tasks: each has a clock of its own
 ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
-FAR = Senses({"DISTANCE": [50_000]})
+FAR_SENSES = Senses({"DISTANCE": [50_000]})
 MAX_LONG = 2**31 - 1
-EDGES = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
+EDGE_NUMBERS = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
 CALCULATIONS = ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS", "MIN", "MAX", "ROUND", "RANDOM",
                 "EQ", "NE", "LT", "LE", "GT", "GE", "NOT", "AND", "OR")  # fmt: skip
-NOTHING = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
+NO_OP_CODE = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
 class Run(NamedTuple):
@@ -72,20 +72,20 @@ class Run(NamedTuple):
     name: str
     kit: Kit
     image: bytes
-    inputs: Senses = Senses()
-    when: When = USUAL
+    senses: Senses = Senses()
+    schedule: Schedule = USUAL_SCHEDULE
     slow: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
 
     def call_every(self, every_ms: int) -> Run:
         name = f"{self.name} (called every {every_ms} ms)"
-        return self._replace(name=name, when=(0, (every_ms,)))
+        return self._replace(name=name, schedule=(0, (every_ms,)))
 
-    def at(self, pace: Pace) -> Run:
+    def at_pace(self, pace: Pace) -> Run:
         """Return this run of a robot at a pace, some of whose readings come late."""
         slow = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
         name = f"{self.name} ({' and '.join(slow)} late, called every {pace.every_ms} ms)"
-        return self._replace(name=name, when=(0, (pace.every_ms,)), slow=slow)
+        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow)
 
     @property
     def needs(self) -> int:
@@ -120,9 +120,17 @@ def machine_kit(command: str) -> str:
 
 def runs() -> Iterator[Run]:
     """Return all that a machine is asked for, and some that never end."""
-    kinds = documented_runs, times, late, devices, images, needs, arithmetic
-    for kind in (*kinds, random_programs, task_programs, ways):
-        yield from kind()
+    makers = (
+        documented_runs,
+        time_runs,
+        late_runs,
+        device_runs,
+        image_runs,
+        needs_runs,
+        arithmetic_runs,
+    )
+    for make_runs in (*makers, random_program_runs, task_program_runs, way_runs):
+        yield from make_runs()
 
 
 def lines_of(kit: Kit) -> list[str]:
@@ -134,17 +142,17 @@ def lines_of(kit: Kit) -> list[str]:
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     """Return a case as the file has it."""
     names = [device.name for device in run.kit.readings]
-    begin, every_ms = run.when
+    begin, every_ms = run.schedule
     return {
         "name": run.name,
         "kit": kit,
         "image": run.image.hex(),
-        "readings": _by_number(names, run.inputs.readings),
+        "readings": _by_number(names, run.senses.readings),
         **({"slow": _by_number(names, run.slow)} if run.slow else {}),
-        "seed": run.inputs.seed,
+        "seed": run.senses.seed,
         "begin": begin,
         "every": list(every_ms),
-        "until": run.inputs.max_ms,
+        "until": run.senses.max_ms,
         **({"needs": run.needs} if run.needs else {}),
         "answer": answer,
     }
@@ -158,7 +166,7 @@ class SlowRobot(TracedRobot):
     """A robot whose slow sensors are not always ready."""
 
     def __init__(self, run: Run) -> None:
-        super().__init__(run.kit, lists_of(run.kit, run.inputs))
+        super().__init__(run.kit, lists_of(run.kit, run.senses))
         self.slow = run.slow
         self.was_slow = False  # in this call
 
@@ -178,34 +186,34 @@ def answer_of(
     """Return what the machine in Python answers; None where no step of it takes time."""
     try:
         code = load_image(run.image, run.kit).code
-    except Refused as refused:
-        return [f"REFUSED {refused.name} {refused.offset}"]
-    except ImageRefused as refused:
-        return [f"REFUSED {refused.name}"]
-    begin, every_ms = run.when
-    every = chain(every_ms, repeat(every_ms[-1]))
+    except Refused as error:
+        return [f"REFUSED {error.name} {error.offset}"]
+    except ImageRefused as error:
+        return [f"REFUSED {error.name}"]
+    begin, every_ms = run.schedule
+    intervals_ms = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
-    machine = machine_of(code, robot, len(run.kit.readings), run.inputs.seed, begin)
-    calls = 0  # at the same time
-    while calls < MOST_CALLS:
+    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
+    call_count = 0  # at the same time
+    while call_count < MOST_CALLS:
         robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
-            robot.say("DONE", (), "DONE")
+            robot.record("DONE", (), "DONE")
         elif status == FAULT:
-            robot.say("FAULT", (), f"FAULT {machine.fault}")
+            robot.record("FAULT", (), f"FAULT {machine.fault}")
         elif status == RUNNING and not robot.was_slow:
             return None
         else:
             wake_ms = max(machine.wake_ms - begin, robot.now_ms + robot.was_slow)
-            each_ms = next(every)
-            wake_ms = -(-wake_ms // each_ms) * each_ms
-            if wake_ms <= run.inputs.max_ms:
-                calls = calls + 1 if wake_ms == robot.now_ms else 0
+            interval_ms = next(intervals_ms)
+            wake_ms = -(-wake_ms // interval_ms) * interval_ms
+            if wake_ms <= run.senses.max_ms:
+                call_count = call_count + 1 if wake_ms == robot.now_ms else 0
                 robot.now_ms = wake_ms
                 continue
-            robot.now_ms = run.inputs.max_ms
-            robot.say("LIMIT", (), "LIMIT")
+            robot.now_ms = run.senses.max_ms
+            robot.record("LIMIT", (), "LIMIT")
         return [str(event) for event in robot.events]
     return None
 
@@ -225,13 +233,15 @@ def documented_runs() -> Iterator[Run]:
         yield run
         if "robot" not in case.parts or not takes_time(run):
             continue
-        yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
-        yield run._replace(name=f"{case.id} (called every 7 ms, time wraps around)", when=SELDOM)
+        yield run._replace(name=f"{case.id} (time wraps around)", schedule=WRAPPING_SCHEDULE)
+        yield run._replace(
+            name=f"{case.id} (called every 7 ms, time wraps around)", schedule=SELDOM_SCHEDULE
+        )
         yield run.call_every(LATE_CALL_MS)
         if run.needs & TASKS:
-            yield from (run.call_every(every_ms) for every_ms in OFTEN)
+            yield from (run.call_every(every_ms) for every_ms in OFTEN_MS)
         if senses.readings:
-            yield run.at(Pace(7, tuple(senses.readings), 50, 0, 30))
+            yield run.at_pace(Pace(7, tuple(senses.readings), 50, 0, 30))
 
 
 def stands_alone(case: Case) -> bool:
@@ -249,59 +259,60 @@ def takes_time(run: Run) -> bool:
     return answer is not None and not answer[-1].startswith("0 ")
 
 
-def times() -> Iterator[Run]:
+def time_runs() -> Iterator[Run]:
     """Return runs that are called late, by as much as a clock catches up or not, or after weeks."""
-    beyond = Senses({"DISTANCE": [50_000] * 6 + [9_000]}, 2**33)
+    late_senses = Senses({"DISTANCE": [50_000] * 6 + [9_000]}, 2**33)
     move_until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
-    for name, text, when, senses in (
+    for name, text, schedule, senses in (
         ("20 ms late", "W(0.001); F(0.1, 80)", (0, (21, 1)), Senses()),
         ("21 ms late", "W(0.001); F(0.1, 80)", (0, (22, 1)), Senses()),
-        ("UNTIL begins 20 ms late", f"W(0.001); {move_until}", (0, (21, 1)), FAR),
-        ("UNTIL begins 21 ms late", f"W(0.001); {move_until}", (0, (22, 1)), FAR),
-        ("UNTIL is checked late", move_until, (0, (30, 61, 1)), FAR),
+        ("UNTIL begins 20 ms late", f"W(0.001); {move_until}", (0, (21, 1)), FAR_SENSES),
+        ("UNTIL begins 21 ms late", f"W(0.001); {move_until}", (0, (22, 1)), FAR_SENSES),
+        ("UNTIL is checked late", move_until, (0, (30, 61, 1)), FAR_SENSES),
         ("UNTIL past 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
-         (0, (ROUND_MS, ROUND_MS - 20, 90, 1)), beyond),
+         (0, (ROUND_MS, ROUND_MS - 20, 90, 1)), late_senses),
         ("UNTIL past 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
-         (2**31 + 5, (ROUND_MS, ROUND_MS, 1, 1, 27, 1)), beyond),
+         (2**31 + 5, (ROUND_MS, ROUND_MS, 1, 1, 27, 1)), late_senses),
         ("TIME is over for good", "W(FOREVER) UNTIL(DISTANCE < 10); SHOW(TIME)",
-         (0, (ROUND_MS, ROUND_MS, 1)), beyond),
+         (0, (ROUND_MS, ROUND_MS, 1)), late_senses),
     ):  # fmt: skip
-        yield Run(f"time: {name}", TINIBOT, compile_image(text), senses, when, text=text)
+        yield Run(f"time: {name}", TINIBOT_KIT, compile_image(text), senses, schedule, text=text)
 
 
-def late() -> Iterator[Run]:
+def late_runs() -> Iterator[Run]:
     """Return runs whose readings come late, and what each task does meanwhile."""
-    first, echo = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
+    first_pace, echo_pace = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
     rivals = "WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;{};SHOW(TIME);END_TASK"
     looks = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
     begins = rivals.format("W(0.13);M(20, 30);F(0.05, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10)")
     for name, text, pace in (
         ("the first turn of the main task waits", "N = DISTANCE;TASK;SHOW(N);END_TASK;SHOW(TIME)",
-         first),
-        ("the others begin after that turn", "DISTANCE;TASK;W(0.015);SHOW(TIME);END_TASK", first),
+         first_pace),
+        ("the others begin after that turn", "DISTANCE;TASK;W(0.015);SHOW(TIME);END_TASK",
+         first_pace),
         ("the others do not wait",
-         "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo),
+         "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo_pace),
         ("a look is over when the motors are taken", looks, Pace(1, ECHO, 1000, 100, 150)),
         ("a first look is, too", begins, Pace(1, ECHO, 1000, 125, 150)),
         ("the UNTIL of a wait is looked at whoever has the motors",
          "TASK;W(0.01);B(0.1, 50);END_TASK;TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(TIME);"
-         "END_TASK", echo),
+         "END_TASK", echo_pace),
         ("a clock stays where it was",
          "TASK;LOOP(3);W(0.01);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK",
          Pace(1, ECHO, 1000, 8, 25)),
         ("to wait for a reading is no wait",
-         "TASK;LOOP(4);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK", echo),
+         "TASK;LOOP(4);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK", echo_pace),
         ("a move that is over does not wait for its look",
          "F(0.05, 60) UNTIL(DISTANCE < 3);SHOW(TIME);F(0.05, 60)", Pace(1, ECHO, 1000, 15, 47)),
         ("values stay on the stack", "SHOW(1 + MAX(DISTANCE, LIGHT_R) * 2);W(0.01);SHOW(TIME)",
          Pace(1, ("LIGHT_R",), 1000, 0, 7)),
     ):  # fmt: skip
         senses = Senses({"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}, 300)
-        run = Run(f"late: {name}", TINIBOT, compile_image(text), senses, text=text)
-        yield from (run.at(pace._replace(every_ms=every_ms)) for every_ms in (1, *OFTEN))
+        run = Run(f"late: {name}", TINIBOT_KIT, compile_image(text), senses, text=text)
+        yield from (run.at_pace(pace._replace(every_ms=every_ms)) for every_ms in (1, *OFTEN_MS))
 
 
-def devices() -> Iterator[Run]:
+def device_runs() -> Iterator[Run]:
     """Return a run with as many devices as a kit may have, by each way to name one."""
     kinds = ((NUMBER, "cm", -1000, 400_000), (YES_NO, "", 0, 1))
     kit = Kit(
@@ -317,7 +328,7 @@ def devices() -> Iterator[Run]:
             code += assemble_bytes(name)
         code += assemble_bytes(f"PUSH_READ{sensor}") + assemble_bytes("SHOW")
     readings = {
-        device.name: [0, 1, 1, 0] if device.is_yes_no else [1000 * k + many for many in range(4)]
+        device.name: [0, 1, 1, 0] if device.is_yes_no else [1000 * k + count for count in range(4)]
         for k, device in enumerate(kit.sensors)
     }
     yield Run("devices: 32 of each", kit, image_for(code, kit), Senses(readings))
@@ -329,90 +340,95 @@ def assemble_bytes(text: str) -> bytes:
     return bytes([BY_NAME[name].code, *([int(device[1:])] if device else [])])
 
 
-def images() -> Iterator[Run]:
+def image_runs() -> Iterator[Run]:
     """Return images that are cut, longer, of other versions, and wrong in more ways than one."""
-    good = compile_image("F(1, 80) UNTIL(DISTANCE < 10)")
+    good_image = compile_image("F(1, 80) UNTIL(DISTANCE < 10)")
     for name, image in {
-        "whole": good,
+        "whole": good_image,
         "a header that is longer": pack("SI", 0, bytes.fromhex("440150"), b"later"),
         "the longest header": pack("SI", 0, bytes.fromhex("440150"), bytes(range(240))),
         "no code": pack("SI", 0, b""),
-        "the longest code": pack("SI", 0, NOTHING * 10922 + b"\x58"),
+        "the longest code": pack("SI", 0, NO_OP_CODE * 10922 + b"\x58"),
         "waits for a button": pack("SB", 0, bytes.fromhex("440150")),
         "only PING": pack("PING", 0, b""),
         "PING with code": pack("PING", 0, b"\x58"),
-        "a start that is not known": change_byte(good, 4, 3),
-        "something of needs": change_byte(good, 14, 4),
-        "the last bit of needs": change_byte(good, 14, 128),
-        "an older major version": change_byte(good, 2, 1),
-        "a later major version": change_byte(good, 2, 3),
-        "a later minor version": change_byte(good, 3, ISA_MINOR + 1),
+        "a start that is not known": change_byte(good_image, 4, 3),
+        "something of needs": change_byte(good_image, 14, 4),
+        "the last bit of needs": change_byte(good_image, 14, 128),
+        "an older major version": change_byte(good_image, 2, 1),
+        "a later major version": change_byte(good_image, 2, 3),
+        "a later minor version": change_byte(good_image, 3, ISA_MINOR + 1),
         "another version, and nothing after it": b"TS\x01\x00",
-        "another version, and no checksum": b"TS\x03" + good[3:10] + bytes(4) + good[14:],
-        "a header of 14 bytes": change_byte(good, 5, 14),
-        "a header of 0 bytes": change_byte(good, 5, 0),
-        "more code than there may be": good[:8] + b"\x00\x80" + good[10:],
-        "one byte more": good + b"\0",
-        "one byte more, and a wrong checksum": good[:-1] + b"\0\0",
-        "a letter of another kind": b"Ts" + good[2:],
+        "another version, and no checksum": b"TS\x03" + good_image[3:10] + bytes(4)
+        + good_image[14:],
+        "a header of 14 bytes": change_byte(good_image, 5, 14),
+        "a header of 0 bytes": change_byte(good_image, 5, 0),
+        "more code than there may be": good_image[:8] + b"\x00\x80" + good_image[10:],
+        "one byte more": good_image + b"\0",
+        "one byte more, and a wrong checksum": good_image[:-1] + b"\0\0",
+        "a letter of another kind": b"Ts" + good_image[2:],
         "one letter, another one": b"X",
         "nothing": b"",
-        "needs before the start": change_byte(change_byte(good, 14, 4), 4, 9),
-        "a checksum before needs": change_byte(good, 14, 4)[:-1] + b"\0",
+        "needs before the start": change_byte(change_byte(good_image, 14, 4), 4, 9),
+        "a checksum before needs": change_byte(good_image, 14, 4)[:-1] + b"\0",
         "a start before a rule": change_byte(pack("SI", 0, b"\xff"), 4, 3),
         "a rule before another kit": pack("SI", 0x1234, b"\x92\xff"),
         "another sensor": pack("SI", 0x1234, bytes.fromhex("9a")),
         "devices where there are none": pack("SI", 1, bytes.fromhex("58")),
         "none where there are devices": pack("SI", 0, bytes.fromhex("9a")),
     }.items():  # fmt: skip
-        yield Run(f"images: {name}", TINIBOT, image)
-    for length in range(1, len(good)):
-        yield Run(f"images: the first {length} bytes", TINIBOT, good[:length])
-    for at in range(len(good)):
-        flipped = good[:at] + bytes([good[at] ^ 0x10]) + good[at + 1 :]
-        yield Run(f"images: byte {at} is another one", TINIBOT, flipped)
+        yield Run(f"images: {name}", TINIBOT_KIT, image)
+    for length in range(1, len(good_image)):
+        yield Run(f"images: the first {length} bytes", TINIBOT_KIT, good_image[:length])
+    for offset in range(len(good_image)):
+        changed_image = (
+            good_image[:offset] + bytes([good_image[offset] ^ 0x10]) + good_image[offset + 1 :]
+        )
+        yield Run(f"images: byte {offset} is another one", TINIBOT_KIT, changed_image)
     for name in ("liner", "grabber"):
-        yield Run(f"images: on a {name}", robots.load(name).kit, good)
+        yield Run(f"images: on a {name}", robots.load(name).kit, good_image)
 
 
-def needs() -> Iterator[Run]:
+def needs_runs() -> Iterator[Run]:
     """Return instructions that an image has, and does not say that it needs them."""
     for name in ("TASK", "WHEN", "LOOK", "END_TASK", "END_WHEN", "GO_F", "WATCH_GO_F"):
         op = BY_NAME[name]
         values = bytes([BY_NAME["PUSH_NUM_1"].code]) * op.pops
         code = values + op.opcode + bytes(op.size - len(op.opcode))
-        yield Run(f"needs: {name} without its bit", TINIBOT, pack("SI", 0, code))
+        yield Run(f"needs: {name} without its bit", TINIBOT_KIT, pack("SI", 0, code))
         yield Run(
-            f"needs: {name} without its bit, cut", TINIBOT, pack("SI", 0, code[: len(values) + 1])
+            f"needs: {name} without its bit, cut",
+            TINIBOT_KIT,
+            pack("SI", 0, code[: len(values) + 1]),
         )
-        yield Run(f"needs: {name} with the other bit", TINIBOT,
+        yield Run(f"needs: {name} with the other bit", TINIBOT_KIT,
                   pack("SI", 0, code, needs=GO if op.needs == TASKS else TASKS))  # fmt: skip
 
 
 def compile_image(text: str) -> bytes:
-    return compile_text(text, TINIBOT).image
+    return compile_text(text, TINIBOT_KIT).image
 
 
-def change_byte(image: bytes, at: int, value: int) -> bytes:
+def change_byte(image: bytes, offset: int, value: int) -> bytes:
     """Return an image with another byte, and the checksum that fits."""
-    return with_checksum(image[:at] + bytes([value]) + image[at + 1 :])
+    return with_checksum(image[:offset] + bytes([value]) + image[offset + 1 :])
 
 
-def arithmetic() -> Iterator[Run]:
+def arithmetic_runs() -> Iterator[Run]:
     """Return operations on the edges of numbers: what faults ends a run, the rest shares one."""
     for op in map(BY_NAME.__getitem__, CALCULATIONS):
         show_op = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
         joined_code = b""
-        for values in product(EDGES, repeat=op.pops):
+        for values in product(EDGE_NUMBERS, repeat=op.pops):
             code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[show_op].code])
-            run = Run(title(op, values), TINIBOT, pack("SI", 0, code))
+            run = Run(title(op, values), TINIBOT_KIT, pack("SI", 0, code))
             answer = answer_of(run)
             assert answer is not None
             if answer[-1].endswith("DONE"):
                 joined_code += code
             else:
                 yield run
-        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, joined_code))
+        yield Run(f"arithmetic: {op.name}", TINIBOT_KIT, pack("SI", 0, joined_code))
 
 
 def push32(value: int) -> bytes:
@@ -423,7 +439,7 @@ def title(op: Op, values: tuple[int, ...]) -> str:
     return f"arithmetic: {op.name} {' '.join(str(value / 1000) for value in values)}"
 
 
-def random_programs() -> Iterator[Run]:
+def random_program_runs() -> Iterator[Run]:
     """Return programs at random, at the usual times and at others."""
     for seed in RANDOM_PROGRAMS:
         program = random_program(seed)
@@ -432,13 +448,13 @@ def random_programs() -> Iterator[Run]:
         yield run
         if takes_time(run):
             yield run._replace(
-                name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM
+                name=f"{run.name} (called every 7 ms, time wraps around)", schedule=SELDOM_SCHEDULE
             )
             sensors = tuple(reading.name for reading in program.kit.readings)
-            yield run.at(Pace(OFTEN[seed % len(OFTEN)], sensors, 130, 20, 90))
+            yield run.at_pace(Pace(OFTEN_MS[seed % len(OFTEN_MS)], sensors, 130, 20, 90))
 
 
-def task_programs() -> Iterator[Run]:
+def task_program_runs() -> Iterator[Run]:
     """Return programs with tasks at random, at the usual times and at others; with readings that
     come late, too, and tasks that take the motors from each other meanwhile."""
     for seed in TASK_PROGRAMS:
@@ -446,19 +462,21 @@ def task_programs() -> Iterator[Run]:
         text, readings = task_program(rng)
         run = task_run(f"tasks: {seed}", text, readings)
         yield run
-        yield from (run.call_every(every_ms) for every_ms in OFTEN)
-        yield run._replace(name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM)
-        yield run.at(a_pace(rng))
+        yield from (run.call_every(every_ms) for every_ms in OFTEN_MS)
+        yield run._replace(
+            name=f"{run.name} (called every 7 ms, time wraps around)", schedule=SELDOM_SCHEDULE
+        )
+        yield run.at_pace(a_pace(rng))
         run = task_run(f"tasks: rivals {seed}", *rival_program(rng))
         yield run
-        yield from (run.at(a_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN)
+        yield from (run.at_pace(a_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN_MS)
 
 
 def task_run(name: str, text: str, readings: Mapping[str, Sequence[int]]) -> Run:
-    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_RUN_MS), text=text)
+    return Run(name, TINIBOT_KIT, compile_image(text), Senses(readings, TASK_RUN_MS), text=text)
 
 
-def ways() -> Iterator[Run]:
+def way_runs() -> Iterator[Run]:
     """Return moves by centimetres and degrees: their edges, with tasks, at random and refused."""
     longest = "2147483.647"
     for text in (
@@ -475,20 +493,20 @@ def ways() -> Iterator[Run]:
         "F(45 CM, 50) UNTIL(TIME > 0.5); WHEN(TIME > 0.1 AND TIME < 0.2); S; END_WHEN",
         "F(FOREVER, 60); WHEN(TIME > 0.1); B(1 CM, 0); END_WHEN",
     ):
-        senses = FAR._replace(max_ms=5000)
-        run = Run(f"ways: {text}", TINIBOT, compile_image(text), senses, text=text)
+        senses = FAR_SENSES._replace(max_ms=5000)
+        run = Run(f"ways: {text}", TINIBOT_KIT, compile_image(text), senses, text=text)
         yield run
         yield run.call_every(LATE_CALL_MS)
-    go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
-    two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
-    for name, code, needs in (
-        ("no such code", two + bytes([ESCAPE, 0]), GO),
-        ("half a code", two + bytes([ESCAPE]), GO),
-        ("one value", two[:1] + go, GO),
-        ("no check", two + watch, GO),
-        ("needs that say tasks", two + go, TASKS),
+    go_code, watch_code = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
+    two_values = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
+    for name, code, needs_runs in (
+        ("no such code", two_values + bytes([ESCAPE, 0]), GO),
+        ("half a code", two_values + bytes([ESCAPE]), GO),
+        ("one value", two_values[:1] + go_code, GO),
+        ("no check", two_values + watch_code, GO),
+        ("needs that say tasks", two_values + go_code, TASKS),
     ):
-        yield Run(f"ways: {name}", TINIBOT, pack("SI", 0, code, needs=needs))
+        yield Run(f"ways: {name}", TINIBOT_KIT, pack("SI", 0, code, needs=needs_runs))
     for seed in WAY_PROGRAMS:
         oracle_kit, kit = KITS[seed % len(KITS)]
         rng = random.Random(seed)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 END_CODE = 0  # of a text; the pairs are numbered from 1
 FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
 FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
-COMMON = 16 - FIRST_COMMON
+COMMON_COUNT = 16 - FIRST_COMMON
 MOST_NESTED_PAIRS = 3  # pairs in pairs: the robot's stack holds a call for each
 LEAST_SAVED = 4  # halves of bytes, of which a pair itself takes 4
 ROUND_COUNT = 8  # which codes are common, and which pairs save most, depends on each other
@@ -23,7 +23,7 @@ ROUND_COUNT = 8  # which codes are common, and which pairs save most, depends on
 Pair = tuple[int, int]
 
 
-class Packed(NamedTuple):
+class PackedTexts(NamedTuple):
     """Texts, one after the other; the codes of 4 bits, and those of which the pairs are made."""
 
     common: tuple[int, ...]
@@ -35,27 +35,27 @@ class Packed(NamedTuple):
         return len(self.common) + 2 * len(self.pairs) + len(self.texts)
 
 
-def pack(texts: Sequence[str]) -> Packed:
+def pack_texts(texts: Sequence[str]) -> PackedTexts:
     """Return the texts in as few bytes as are found."""
     rows = [[*text.encode("ascii"), END_CODE] for text in texts]
     common = _most_common(rows)
     candidates = []
     for _ in range(ROUND_COUNT):
         pairs, shorter = _pair_codes(rows, common)
-        candidates.append(Packed(common, pairs, _split_halves(shorter, common)))
+        candidates.append(PackedTexts(common, pairs, _split_halves(shorter, common)))
         common = _most_common(shorter)
-    return min(candidates, key=lambda each: each.size)
+    return min(candidates, key=lambda packed: packed.size)
 
 
-def unpack(data: Packed) -> list[str]:
+def unpack_texts(data: PackedTexts) -> list[str]:
     """Return what packed texts say."""
     halves = [half for byte in data.texts for half in (byte >> 4, byte & 15)]
-    texts, text, at = [], bytearray(), 0
-    while at < len(halves):
-        if halves[at] >= FIRST_COMMON:
-            code, at = data.common[halves[at] - FIRST_COMMON], at + 1
-        elif at + 1 < len(halves):
-            code, at = 16 * halves[at] + halves[at + 1], at + 2
+    texts, text, index = [], bytearray(), 0
+    while index < len(halves):
+        if halves[index] >= FIRST_COMMON:
+            code, index = data.common[halves[index] - FIRST_COMMON], index + 1
+        elif index + 1 < len(halves):
+            code, index = 16 * halves[index] + halves[index + 1], index + 2
         else:
             break  # the rest of the last byte
         if code == END_CODE:
@@ -71,9 +71,9 @@ def letters_of(code: int, pairs: Sequence[Pair]) -> bytes:
     letters = [code]
     while any(letter < FIRST_LETTER for letter in letters):
         letters = [
-            item
+            new_letter
             for letter in letters
-            for item in (pairs[letter - 1] if letter < FIRST_LETTER else (letter,))
+            for new_letter in (pairs[letter - 1] if letter < FIRST_LETTER else (letter,))
         ]
     return bytes(letters)
 
@@ -81,7 +81,7 @@ def letters_of(code: int, pairs: Sequence[Pair]) -> bytes:
 def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
     """Return the end and the most frequent letters, which take 4 bits."""
     uses = Counter(code for row in rows for code in row if code >= FIRST_LETTER)
-    commonest_codes = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON - 1]
+    commonest_codes = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON_COUNT - 1]
     return (END_CODE, *sorted(commonest_codes))
 
 
@@ -89,7 +89,7 @@ def _pair_codes(
     rows: Sequence[Sequence[int]], common: Sequence[int]
 ) -> tuple[list[Pair], list[list[int]]]:
     """Return pairs, and the texts with their codes."""
-    items = [list(row) for row in rows]
+    new_rows = [list(row) for row in rows]
     pairs: list[Pair] = []
     depths: dict[int, int] = {}
 
@@ -97,20 +97,20 @@ def _pair_codes(
         return 1 if code in common else 2
 
     while len(pairs) < FIRST_LETTER - 1:
-        uses = Counter(pair for row in items for pair in _row_pairs(row) if END_CODE not in pair)
+        uses = Counter(pair for row in new_rows for pair in _row_pairs(row) if END_CODE not in pair)
         possible_pairs = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
-            if max(depths.get(item, 0) for item in pair) < MOST_NESTED_PAIRS
+            if max(depths.get(part, 0) for part in pair) < MOST_NESTED_PAIRS
         ]
-        saved, pair = max(possible_pairs, default=(0, (END_CODE, END_CODE)))
-        if saved <= LEAST_SAVED:
+        saved_halves, pair = max(possible_pairs, default=(0, (END_CODE, END_CODE)))
+        if saved_halves <= LEAST_SAVED:
             break
         code = 1 + len(pairs)
-        depths[code] = 1 + max(depths.get(item, 0) for item in pair)
+        depths[code] = 1 + max(depths.get(part, 0) for part in pair)
         pairs.append(pair)
-        items = [_replace_pair(row, pair, code) for row in items]
-    return pairs, items
+        new_rows = [_replace_pair(row, pair, code) for row in new_rows]
+    return pairs, new_rows
 
 
 def _split_halves(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
@@ -127,18 +127,18 @@ def _row_pairs(row: Sequence[int]) -> list[Pair]:
     """Return the pairs of a row; of a letter three times in a row there is one."""
     pairs: list[Pair] = []
     is_free = True
-    for before, pair in pairwise(((-1, -1), *pairwise(row))):
-        is_free = not (is_free and pair == before and pairs)
+    for previous_pair, pair in pairwise(((-1, -1), *pairwise(row))):
+        is_free = not (is_free and pair == previous_pair and pairs)
         if is_free:
             pairs.append((pair[0], pair[1]))
     return pairs
 
 
 def _replace_pair(row: Sequence[int], pair: Pair, code: int) -> list[int]:
-    result: list[int] = []
-    for letter in row:
-        if result and (result[-1], letter) == pair:
-            result[-1] = code
+    codes: list[int] = []
+    for code_in_row in row:
+        if codes and (codes[-1], code_in_row) == pair:
+            codes[-1] = code
         else:
-            result.append(letter)
-    return result
+            codes.append(code_in_row)
+    return codes

@@ -10,12 +10,12 @@ from html import escape
 from typing import NamedTuple
 
 WIDTH, HEIGHT = 595, 842
-SANS, BOLD, MONO = "sans", "bold", "mono"
+SANS_FONT, BOLD_FONT, MONO_FONT = "sans", "bold", "mono"
 # Of each font: that of PDF, whose metrics every viewer has, and that of SVG.
 FONTS = {
-    SANS: ("Helvetica", "font-family='Helvetica, Arial, sans-serif'"),
-    BOLD: ("Helvetica-Bold", "font-family='Helvetica, Arial, sans-serif' font-weight='bold'"),
-    MONO: ("Courier-Bold", "font-family='Courier New, Courier, monospace' font-weight='bold'"),
+    SANS_FONT: ("Helvetica", "font-family='Helvetica, Arial, sans-serif'"),
+    BOLD_FONT: ("Helvetica-Bold", "font-family='Helvetica, Arial, sans-serif' font-weight='bold'"),
+    MONO_FONT: ("Courier-Bold", "font-family='Courier New, Courier, monospace' font-weight='bold'"),
 }
 
 
@@ -71,7 +71,7 @@ def svg(page: Page, title: str, note: str) -> str:
 def pdf(page: Page, title: str, note: str) -> str:
     """Return the page as PDF, in ASCII. Its signs are those of Windows-1252."""
     names = list(FONTS)
-    content = "\n".join(_pdf_row(each, names) for each in page)
+    content = "\n".join(_pdf_row(object_text, names) for object_text in page)
     fonts = " ".join(f"/F{k} {5 + k} 0 R" for k in range(len(names)))
     objects = [
         "<< /Type /Catalog /Pages 2 0 R >>",
@@ -88,9 +88,9 @@ def pdf(page: Page, title: str, note: str) -> str:
     ]
     text = f"%PDF-1.4\n% {note}\n"
     offsets = []
-    for number, each in enumerate(objects, 1):
+    for number, object_text in enumerate(objects, 1):
         offsets.append(len(text))
-        text += f"{number} 0 obj\n{each}\nendobj\n"
+        text += f"{number} 0 obj\n{object_text}\nendobj\n"
     start = len(text)
     rows = "".join(f"{offset:010} 00000 n \n" for offset in offsets)
     count = len(objects) + 1

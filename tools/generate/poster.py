@@ -15,15 +15,15 @@ from tiniscript.base.languages import find_text as translated
 from tiniscript.base.languages import text, translated_languages
 from tiniscript.base.words import WORDS, Word
 from tools.generate import paper
-from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
+from tools.generate.paper import BOLD_FONT, MONO_FONT, SANS_FONT, Box, Line, Page
 
-LEFT, RIGHT = 36.0, 559.0
-CODE_X, SAYS_X = 44.0, 252.0
+LEFT_X, RIGHT_X = 36.0, 559.0
+CODE_X, SENTENCE_X = 44.0, 252.0
 HEAD_PT, ROW_PT, LEAST_ROW_PT = 20.5, 15.4, 12.0
-CODE_SIZE, SAYS_SIZE = 9.8, 10.0
-CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
+CODE_SIZE, SENTENCE_SIZE = 9.8, 10.0
+MOST_CODE_SIGNS, MOST_SENTENCE_SIGNS = 34, 60  # that fit
 BLACK, GREY, WHITE = (20, 20, 20), (90, 90, 90), (255, 255, 255)
-BLUE, PALE = (18, 92, 160), (238, 243, 248)
+BLUE, PALE_BLUE = (18, 92, 160), (238, 243, 248)
 # A heading, and the words below it: `{F}` is the example that the table has for F.
 # fmt: off
 GROUPS = (
@@ -84,7 +84,7 @@ GROUPS = (
     )),
 )
 # fmt: on
-OTHERS = "Tell"  # the heading of instructions that have no row above
+HEADING_OF_OTHERS = "Tell"  # the heading of instructions that have no row above
 
 
 def _poster_text(key: str, language: str) -> str:
@@ -94,18 +94,18 @@ def _poster_text(key: str, language: str) -> str:
 def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]:
     """Yield words and what is said of them; below a word those which stand for it with fixed values."""
     for code in rows:
-        code_shown = translated("documents", f"code/{code}", language) or code
+        shown_code = translated("documents", f"code/{code}", language) or code
         yield (
-            re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, code_shown),
+            re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, shown_code),
             _poster_text(code, language),
         )
         for word in WORDS.values():
-            first = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
-            if first and f"{{{first}}}" in code:
+            first_word = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
+            if first_word and f"{{{first_word}}}" in code:
                 yield word.example, as_block(word, language) or f"= {word.stands_for}"
 
 
-def _others(language: str) -> Iterator[tuple[str, str]]:
+def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
     """Yield the instructions that no row of GROUPS has, and what is said of them."""
     shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
     for word in WORDS.values():
@@ -137,35 +137,39 @@ def poster(language: str, form: str, command: str) -> str:
 def page(language: str) -> Page:
     page: Page = [
         Box(0, 0, paper.WIDTH, 64, BLUE),
-        Line(LEFT, 34, 24, BOLD, WHITE, _poster_text("title", language)),
-        Line(LEFT, 53, 10, SANS, WHITE, _poster_text("subtitle", language)),
+        Line(LEFT_X, 34, 24, BOLD_FONT, WHITE, _poster_text("title", language)),
+        Line(LEFT_X, 53, 10, SANS_FONT, WHITE, _poster_text("subtitle", language)),
     ]
     y = 74.0
     shown_words: list[str] = []
     groups = [(heading, list(_with_fixed(rows, language))) for heading, rows in GROUPS]
-    next(rows for heading, rows in groups if heading == OTHERS).extend(_others(language))
+    next(rows for heading, rows in groups if heading == HEADING_OF_OTHERS).extend(
+        _other_instructions(language)
+    )
     room = paper.HEIGHT - 26 - y - (HEAD_PT + 2) * len(groups)
     row_pt = min(ROW_PT, room / sum(len(rows) for _, rows in groups))
     assert row_pt >= LEAST_ROW_PT, f"the page has room for {room / LEAST_ROW_PT:.0f} rows"
     for heading, rows in groups:
-        page.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _poster_text(heading, language)))
+        page.append(Line(LEFT_X, y + 15, 12, BOLD_FONT, BLUE, _poster_text(heading, language)))
         y += HEAD_PT
         for number, (code, sentence) in enumerate(rows):
             key = f"block/{code.partition('(')[0]} in languages/{language}/studio.toml"
-            assert len(code) <= CODE_SIGNS, f"too long for the poster: {code}"
-            assert len(sentence) <= SAYS_SIGNS, (
+            assert len(code) <= MOST_CODE_SIGNS, f"too long for the poster: {code}"
+            assert len(sentence) <= MOST_SENTENCE_SIGNS, (
                 f"too long for the poster: {code} {sentence}; {key} is shorter"
             )
             assert sentence, f"the poster has nothing to say of {code}: {key}"
             shown_words += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
             shown_words += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:
-                page.append(Box(LEFT, y, RIGHT - LEFT, row_pt, PALE))
-            page.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO, BLACK, code))
-            page.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, sentence))
+                page.append(Box(LEFT_X, y, RIGHT_X - LEFT_X, row_pt, PALE_BLUE))
+            page.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO_FONT, BLACK, code))
+            page.append(
+                Line(SENTENCE_X, y + (row_pt + 8.2) / 2, SENTENCE_SIZE, SANS_FONT, BLACK, sentence)
+            )
             y += row_pt
         y += 2
     missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown_words)
     assert not missing, f"the poster lacks {sorted(missing)}"
-    page.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _poster_text("foot", language)))
+    page.append(Line(LEFT_X, paper.HEIGHT - 16, 9, SANS_FONT, GREY, _poster_text("foot", language)))
     return page

@@ -15,11 +15,11 @@ from tools.generate.packed_texts import (
     FIRST_LETTER,
     MOST_NESTED_PAIRS,
     letters_of,
-    pack,
+    pack_texts,
 )
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
-SMALLEST = "uno"
+SMALLEST_LEVEL = "uno"
 
 
 def remarks_header(command: str) -> str:
@@ -32,8 +32,8 @@ def texts_header(command: str) -> str:
     """Return `texts.h`. The last of the names of faults is that of the highest number."""
     first, last = LINK_FAULTS[0][0], LINK_FAULTS[-1][0]
     own_fault_count = sum(number < first for number, *_ in FAULTS)
-    before = len(PROBLEMS) + len(REMARKS) - 1
-    after = before + len(FAULTS) + len(LINK_FAULTS)
+    fault_offset = len(PROBLEMS) + len(REMARKS) - 1
+    unknown_fault_number = fault_offset + len(FAULTS) + len(LINK_FAULTS)
     return file_of(
         command,
         "texts.h",
@@ -48,8 +48,10 @@ def texts_header(command: str) -> str:
             "}",
             "constexpr uint8_t name_of_fault(uint8_t fault) {",
             "  return static_cast<uint8_t>(",
-            f"      fault > {last} ? {after} : fault < {first} ? fault + {before}",
-            f"                             : fault - {first} + {before + own_fault_count + 1});",
+            f"      fault > {last} ? {unknown_fault_number} "
+            f": fault < {first} ? fault + {fault_offset}",
+            "                             "
+            f": fault - {first} + {fault_offset + own_fault_count + 1});",
             "}",
             "",
             "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",
@@ -79,10 +81,10 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     rows = [("problem", problem) for problem in PROBLEMS] + [
         ("remark", remark) for remark in REMARKS
     ]
-    unsaid = _unused_remarks() if is_small else set()
+    unused = _unused_remarks() if is_small else set()
     return [
-        *("" if row in unsaid else problem_text(*row, language) for row in rows),
-        *("" if ("fault", name) in unsaid else name for name in names),
+        *("" if row in unused else problem_text(*row, language) for row in rows),
+        *("" if ("fault", name) in unused else name for name in names),
     ]
 
 
@@ -92,8 +94,8 @@ def _unused_remarks() -> set[tuple[str, str]]:
     Its own level is the only one, it has no place for words that it does not read, nor for lines of
     keys, and with discs on its wheels it reads no text.
     """
-    levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
-    assert "DEF" in LEVELS[SMALLEST].lacks
+    levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST_LEVEL}
+    assert "DEF" in LEVELS[SMALLEST_LEVEL].lacks
     words = {("problem", name) for name in DEF_PROBLEMS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
     return levels | words | faults | {("remark", "NO_KEYS")}
@@ -101,15 +103,15 @@ def _unused_remarks() -> set[tuple[str, str]]:
 
 def tables_of_texts(command: str, name: str, is_small: bool) -> str:
     """Return a header with the packed texts, for `texts.cpp` alone."""
-    about = "The packed texts of a robot that says all."
+    comment = "The packed texts of a robot that says all."
     if is_small:
-        about = "The packed texts of an ATmega328P that reads text: what it never says is empty."
+        comment = "The packed texts of an ATmega328P that reads text: what it never says is empty."
     tables = [
         row
-        for item in answer_languages()
-        for row in (*_tables(item, rows(item, is_small=is_small)), "")
+        for language in answer_languages()
+        for row in (*_tables(language, rows(language, is_small=is_small)), "")
     ]
-    return file_of(command, name, about, ["namespace {", "", *tables, "}  // namespace"])
+    return file_of(command, name, comment, ["namespace {", "", *tables, "}  // namespace"])
 
 
 def texts(command: str, all_texts: str, small_texts: str) -> str:
@@ -140,16 +142,16 @@ def texts(command: str, all_texts: str, small_texts: str) -> str:
     )
 
 
-def _table_function(function: str, table: str, at: str = "") -> list[str]:
+def _table_function(function: str, table: str, index_text: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    first_table, *other_tables = (f"k{item.title()}{table}" for item in answer_languages())
-    numbers = [language_number(item) for item in answer_languages()[1:]]
+    first_table, *other_tables = (f"k{language.title()}{table}" for language in answer_languages())
+    numbers = [language_number(language) for language in answer_languages()[1:]]
     pairs = zip(numbers, other_tables, strict=True)
     choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
     choice += first_table
     return [
         f"const uint8_t* {function} {{",
-        f"  return {f'({choice}){at}' if at else choice};",
+        f"  return {f'({choice}){index_text}' if index_text else choice};",
         "}",
     ]
 
@@ -157,22 +159,22 @@ def _table_function(function: str, table: str, at: str = "") -> list[str]:
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
     """Return the texts of a language. On a board the linker leaves the others out."""
     language = language.title()
-    data = pack(rows)
-    lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
+    packed = pack_texts(rows)
+    lines = [packed.texts[offset : offset + 16] for offset in range(0, len(packed.texts), 16)]
     return [
         f"const uint8_t k{language}[] tini_progmem = {{",
         *(f"    {bytes_of_table(line)}" for line in lines),
         "};",
         "",
         f"const uint8_t k{language}Codes[] tini_progmem = {{",
-        f"    {bytes_of_table(data.common)}  // {_c_bytes(data.common)}",
+        f"    {bytes_of_table(packed.common)}  // {_c_bytes(packed.common)}",
         "};",
         "",
         f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
         *(
-            f"    {{0x{one:02x}, 0x{two:02x}}},"
-            f"  // 0x{number:02x}: {letters_of(number, data.pairs).decode('ascii')}"
-            for number, (one, two) in enumerate(data.pairs, 1)
+            f"    {{0x{first_code:02x}, 0x{second_code:02x}}},"
+            f"  // 0x{number:02x}: {letters_of(number, packed.pairs).decode('ascii')}"
+            for number, (first_code, second_code) in enumerate(packed.pairs, 1)
         ),
         "};",
     ]

@@ -16,7 +16,7 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen.text.problems import PROBLEMS, problem_text
 from tiniscript.robots.kit_words import pack_range, pack_word
-from tiniscript.robots.text_levels import OF_TASKS_AND_WAYS, UNREAD
+from tiniscript.robots.text_levels import TASK_AND_EXTENT_WORDS, UNREAD_WORDS
 from tools.generate.cpp_header import camel, cpp_file, enumeration
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
@@ -24,7 +24,7 @@ FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and a
 ROLES = ("move", "wait", "motors", "beep", "show", "loop", "question", "stop", "start", "else",
          "def", "break", "end", "value", "operator", "function", "forever", "setup",
          "task", "later")  # fmt: skip
-ANY, YES_NO, NUMBER, FIRST_RANGE = 1, 2, 3, 4  # kinds of arguments
+ANY_KIND, YES_NO_KIND, NUMBER_KIND, FIRST_RANGE = 1, 2, 3, 4  # kinds of arguments
 OPCODES = {"W": "WAIT", "M": "MOTORS", "BEEP": "BEEP", "SHOW": "SHOW", "LOOP": "LOOP", "IF": "IF",
            "ELSEIF": "IF", "WHILE": "IF", "UNTIL": "UNTIL"}  # fmt: skip
 
@@ -35,9 +35,9 @@ def role_of(word: Word) -> str:
     A word that no level reads is like those of later versions: its name is taken, and that is all.
     They are not said, and no more are other spellings of the ends of tasks.
     """
-    if word.text in UNREAD:
+    if word.text in UNREAD_WORDS:
         return "later"
-    if word.text in OF_TASKS_AND_WAYS:
+    if word.text in TASK_AND_EXTENT_WORDS:
         return "later" if word.text in ALIASES else "task"
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
@@ -45,9 +45,9 @@ def role_of(word: Word) -> str:
     role = roles.get(word.role.name, word.role.name)
     if role not in ROLES:
         raise LookupError(
-            f"a robot's reader of text is to know {word.text} (READ in robots/text_levels.py): "
-            f"its role, {role}, needs a name in ROLES of tools/generate/text_tables.py, and what "
-            "it does in vm_arduino/src/text/"
+            f"a robot's reader of text is to know {word.text} "
+            f"(READ_ROLES in robots/text_levels.py): its role, {role}, needs a name in ROLES of "
+            "tools/generate/text_tables.py, and what it does in vm_arduino/src/text/"
         )
     return role
 
@@ -78,25 +78,25 @@ def words_in_order() -> list[Word]:
         "ROUND",
     ]
 
-    def place(word: Word) -> tuple[int, int]:
+    def sort_key(word: Word) -> tuple[int, int]:
         number = (
             numbered_words.index(word.text) if word.text in numbered_words else len(numbered_words)
         )
         role = ROLES.index(role_of(word))
         return role, number if role_of(word) in ("setup", "value", "function") else 0
 
-    return sorted(WORDS.values(), key=place)
+    return sorted(WORDS.values(), key=sort_key)
 
 
 def ranges() -> list[tuple[int, int]]:
     """Return the ranges of arguments, each once, in the order of their words."""
-    result: list[tuple[int, int]] = []
+    argument_ranges: list[tuple[int, int]] = []
     for word in words_in_order():
         for argument in word.arguments if role_of(word) not in ("function", "later") else ():
             pair = (argument.low, argument.high)
-            if pair not in result and pair != (LOWEST, HIGHEST):
-                result.append(pair)
-    return result
+            if pair not in argument_ranges and pair != (LOWEST, HIGHEST):
+                argument_ranges.append(pair)
+    return argument_ranges
 
 
 def _kinds(word: Word) -> int:
@@ -104,9 +104,9 @@ def _kinds(word: Word) -> int:
     role, kinds = role_of(word), 0
     for k, argument in enumerate(word.arguments):
         if role in ("question", "show"):
-            kind = YES_NO if role == "question" else ANY
+            kind = YES_NO_KIND if role == "question" else ANY_KIND
         elif (argument.low, argument.high) == (LOWEST, HIGHEST):
-            kind = NUMBER
+            kind = NUMBER_KIND
         else:
             kind = FIRST_RANGE + ranges().index((argument.low, argument.high))
         kinds |= kind << 4 * k
@@ -116,15 +116,17 @@ def _kinds(word: Word) -> int:
 def bytes_before(name: str) -> int:
     """Return how many letters the words have before this one, or before the first of this role."""
     words = words_in_order()
-    (first, *_) = (
-        at for at, word in enumerate(words) if name in (word.text, word.role.name, role_of(word))
+    (first_index, *_) = (
+        index
+        for index, word in enumerate(words)
+        if name in (word.text, word.role.name, role_of(word))
     )
-    return sum(len(word.text) for word in words[:first])
+    return sum(len(word.text) for word in words[:first_index])
 
 
 def bytes_of(role: str) -> int:
     """Return how many letters the words of this role have, those of tasks apart."""
-    words = (word for word in words_in_order() if word.text not in OF_TASKS_AND_WAYS)
+    words = (word for word in words_in_order() if word.text not in TASK_AND_EXTENT_WORDS)
     return sum(len(word.text) for word in words if word.role.name == role)
 
 
@@ -151,9 +153,9 @@ def words_header(command: str) -> str:
             f"constexpr uint8_t kCommands = {command_count};",
             "",
             "// What an argument may be; from kFirstRange on a number in a range.",
-            f"constexpr uint8_t kAnyKind = {ANY};",
-            f"constexpr uint8_t kYesNoKind = {YES_NO};",
-            f"constexpr uint8_t kNumberKind = {NUMBER};",
+            f"constexpr uint8_t kAnyKind = {ANY_KIND};",
+            f"constexpr uint8_t kYesNoKind = {YES_NO_KIND};",
+            f"constexpr uint8_t kNumberKind = {NUMBER_KIND};",
             f"constexpr uint8_t kFirstRange = {FIRST_RANGE};",
             f"constexpr uint8_t kDeviceRange = {FIRST_RANGE + len(ranges())};  // of the kit",
             f"constexpr uint8_t kTimeRange = {FIRST_RANGE + ranges().index((0, HIGHEST))};",
@@ -224,13 +226,15 @@ def numbers_of(name: str, keys: Sequence[str]) -> str:
 
 def bytes_of_table(data: Iterable[int]) -> str:
     """Return bytes as a row of a table has them."""
-    return " ".join(f"0x{item:02x}," for item in data)
+    return " ".join(f"0x{byte:02x}," for byte in data)
 
 
 def file_of(command: str, name: str, comment: str, lines: Sequence[str], *includes: str) -> str:
     """Return a file of `vm_arduino/src/text/`; `includes` are more headers."""
-    first = ["../vm/cpu.h"] if name.endswith(".h") else [f"{Path(name).stem}.h"]
+    first_includes = ["../vm/cpu.h"] if name.endswith(".h") else [f"{Path(name).stem}.h"]
     if includes and not name.endswith(".h"):
-        first.append("")
-    rows = [comment] if comment else []
-    return cpp_file(command, f"text/{name}", rows, "\n".join([*lines, ""]), *first, *includes)
+        first_includes.append("")
+    comment_lines = [comment] if comment else []
+    return cpp_file(
+        command, f"text/{name}", comment_lines, "\n".join([*lines, ""]), *first_includes, *includes
+    )

@@ -33,39 +33,44 @@ from tools.release import facts
 from tools.release.packing import sha256
 from tools.release.parts import PARTS, Clone, chosen_parts
 
-SUMS = "SHA256SUMS"
+SUMS_FILE = "SHA256SUMS"
 # Two folders of other depths and names: what has a path in it differs.
-PLACES = ("one/tiniscript", "two/somewhere else/tiniscript-ñ")
-NEEDED = {"setuptools": "release", "twine": "release", "sphinx": "site", "platformio": "firmware"}
+CLONE_FOLDERS = ("one/tiniscript", "two/somewhere else/tiniscript-ñ")
+EXTRA_OF_MODULE = {
+    "setuptools": "release",
+    "twine": "release",
+    "sphinx": "site",
+    "platformio": "firmware",
+}
 
 
-def main(words: Sequence[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     description, _, epilog = (__doc__ or "").partition("\n\n")
-    reader = argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         prog="python -m tools.release", description=description, epilog=epilog,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
-    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
-    reader.add_argument("--url", default="", help="an address instead of pyproject.toml's")
-    reader.add_argument("--as-is", action="store_true", help="go on with what cannot be released")
-    reader.add_argument("--tag", action="store_true", help="tag this commit if it can be released")
-    reader.add_argument("--part", action="append", default=[], choices=PARTS, help="only this one")
-    reader.add_argument("--whole-stick", action="store_true", help="for every system and Python")
-    options = reader.parse_args(words)
+    parser.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    parser.add_argument("--url", default="", help="an address instead of pyproject.toml's")
+    parser.add_argument("--as-is", action="store_true", help="go on with what cannot be released")
+    parser.add_argument("--tag", action="store_true", help="tag this commit if it can be released")
+    parser.add_argument("--part", action="append", default=[], choices=PARTS, help="only this one")
+    parser.add_argument("--whole-stick", action="store_true", help="for every system and Python")
+    options = parser.parse_args(arguments)
     folder: Path = options.folder.absolute()
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        return _fail(f"{folder} is there already, and is not empty.")
+        return _fail_to_begin(f"{folder} is there already, and is not empty.")
     parts = chosen_parts(options.part)
-    lacking = lacks(parts)
-    if lacking:
-        return _fail(lacking)
+    missing_tool = find_missing_tool(parts)
+    if missing_tool:
+        return _fail_to_begin(missing_tool)
     try:
         folder.mkdir(parents=True, exist_ok=True)  # who cannot have it hears so before an hour
         return rehearse(folder, parts, options)
-    except OSError as why:
-        return _fail(f"{why.strerror or why}: {why.filename or folder}")
+    except OSError as error:
+        return _fail_to_begin(f"{error.strerror or error}: {error.filename or folder}")
     except KeyboardInterrupt:
-        return _fail("Ended. Nothing is in the folder.")
+        return _fail_to_begin("Ended. Nothing is in the folder.")
 
 
 def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) -> int:
@@ -73,45 +78,45 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
     with tempfile.TemporaryDirectory(prefix="tiniscript-release-") as scratch:
         try:
             clones = _clones(Path(scratch), options.url, options.whole_stick)
-        except CannotMake as why:
-            return _fail(str(why))
+        except CannotMake as error:
+            return _fail_to_begin(str(error))
         complaints = list(facts.complaints(clones[0].root))
         complaints += [
             complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint
         ]
-        for item in complaints:
-            _say(item)
+        for line in complaints:
+            _say(line)
         if complaints and not options.as_is:
-            return _fail("Nothing was made. To rehearse all the same:  --as-is")
+            return _fail_to_begin("Nothing was made. To rehearse all the same:  --as-is")
         try:
-            items = [_make(clone, parts) for clone in clones]
-            for file in (*items[0].get("wheel", ()), *items[0].get("sdist", ())):
+            files_of_part = [_make(clone, parts) for clone in clones]
+            for file in (*files_of_part[0].get("wheel", ()), *files_of_part[0].get("sdist", ())):
                 _say(f"twine check {file.name}")
                 clones[0].python("-m", "twine", "check", "--strict", str(file))
-        except CannotMake as why:
-            return _fail(str(why))
-        files = [file for paths in items[0].values() for file in paths]
+        except CannotMake as error:
+            return _fail_to_begin(str(error))
+        files = [file for paths in files_of_part[0].values() for file in paths]
         second_clone_parts = clones[1].parts
         failed_parts = [
             path.name for path in files if sha256(path) != sha256(second_clone_parts / path.name)
         ]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
-    sums = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
-    (folder / SUMS).write_text(sums, encoding="utf-8", newline="\n")
-    print(sums, end="")
+    sums_text = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
+    (folder / SUMS_FILE).write_text(sums_text, encoding="utf-8", newline="\n")
+    print(sums_text, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
-    if old := ", ".join(results.outdated_goals()):
-        _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
-    for item in failed_parts:
-        print(f"made twice, it is not the same: {item}", file=sys.stderr)
+    if outdated := ", ".join(results.outdated_goals()):
+        _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {outdated}")
+    for line in failed_parts:
+        print(f"made twice, it is not the same: {line}", file=sys.stderr)
     if complaints or failed_parts:
         return 1
     if options.tag:
         try:
             tag(ROOT, facts.version(ROOT))
-        except CannotMake as why:
-            return _fail(str(why))
+        except CannotMake as error:
+            return _fail_to_begin(str(error))
     return 0
 
 
@@ -121,30 +126,30 @@ def tag(root: Path, version: str) -> None:
         _git(root, [["tag", "--annotate", f"v{version}", "-m", f"TiniScript {version}"]])
 
 
-def lacks(parts: Sequence[str]) -> str:
+def find_missing_tool(parts: Sequence[str]) -> str:
     """Return a sentence about what this computer lacks to make parts, or nothing."""
-    for name, extra in NEEDED.items():
+    for name, extra in EXTRA_OF_MODULE.items():
         if find_spec(name) is None:
             return f'{name} is not installed. Do that with:  pip install -e ".[{extra}]"'
     if "studio" in parts:
         try:
             find_tools()
-        except CannotMake as why:
-            return str(why)
+        except CannotMake as error:
+            return str(error)
     return ""
 
 
 def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
     """Take the commit into clean folders, whose times, rights and address are the release's."""
     clones = []
-    for number, place in enumerate(PLACES, 1):
-        root, parts = scratch / place, scratch / f"parts{number}"
+    for number, clone_folder in enumerate(CLONE_FOLDERS, 1):
+        root, parts = scratch / clone_folder, scratch / f"parts{number}"
         parts.mkdir()
-        words = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
-        completed = subprocess.run(words, capture_output=True, text=True, umask=0o022)
-        if completed.returncode:
-            sentence = completed.stderr.strip().splitlines() or ["git says nothing"]
-            raise CannotMake(f"This folder is no clone that git can copy: {sentence[-1]}")
+        command = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
+        process = subprocess.run(command, capture_output=True, text=True, umask=0o022)
+        if process.returncode:
+            error_lines = process.stderr.strip().splitlines() or ["git says nothing"]
+            raise CannotMake(f"This folder is no clone that git can copy: {error_lines[-1]}")
         project_file = root / "pyproject.toml"
         text = project_file.read_text("utf-8")
         if url and facts.with_address(text, url) != text:
@@ -157,9 +162,9 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
 
 def _commit(root: Path) -> None:
     """Keep the address of a rehearsal, so that a clone is clean, and its tags stay where it is."""
-    steps = [["commit", "--quiet", "-am", "release: An address to rehearse with."]]
-    steps += [["tag", "--force", name] for name in facts.tags(root)]
-    _git(root, steps)
+    git_steps = [["commit", "--quiet", "-am", "release: An address to rehearse with."]]
+    git_steps += [["tag", "--force", name] for name in facts.tags(root)]
+    _git(root, git_steps)
 
 
 def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
@@ -168,30 +173,30 @@ def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
         "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false",
     ]  # fmt: skip
     for step in steps:
-        completed = subprocess.run([*git_command, *step], capture_output=True, text=True)
-        if completed.returncode:
-            text = (completed.stderr or completed.stdout).strip().splitlines() or [
+        process = subprocess.run([*git_command, *step], capture_output=True, text=True)
+        if process.returncode:
+            output_lines = (process.stderr or process.stdout).strip().splitlines() or [
                 "git says nothing"
             ]
-            raise CannotMake(f"git {step[0]} does not work: {text[-1]}")
+            raise CannotMake(f"git {step[0]} does not work: {output_lines[-1]}")
 
 
 def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
     """Make parts in a clone; return the files of each."""
-    result = {}
+    files_of_part = {}
     for name in parts:
         _say(f"{name}, in {clone.root.name}")
         begin_s = time.monotonic()
-        result[name] = PARTS[name].make(clone)
+        files_of_part[name] = PARTS[name].make(clone)
         _say(f"{name}: {time.monotonic() - begin_s:.0f} s")
-    return result
+    return files_of_part
 
 
 def _say(line: str) -> None:
     print(f"release: {line}", file=sys.stderr, flush=True)
 
 
-def _fail(line: str) -> int:
+def _fail_to_begin(line: str) -> int:
     _say(line)
     return 2
 

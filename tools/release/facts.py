@@ -12,15 +12,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PEOPLE = "The TiniScript developers"
-_DATED = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILINE)
+_DATED_SECTION = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILINE)
 # Each place that repeats the version, and how.
-_REPEATED = {
+_VERSION_PATTERNS = {
     "CITATION.cff": r"(?m)^version: (\S+)$",
     "docs/en/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
 }
 NO_CONTACT = "(whoever publishes this repository writes an address here)"
 # Each place that repeats who has made it.
-_PEOPLE = {
+_PEOPLE_PATTERNS = {
     "LICENSE": r"Copyright \(c\) \d{4} (.+)",
     "CITATION.cff": r'  - name: "(.+)"',
     "pyproject.toml": r'authors = \[\{ name = "([^"]+)" \}\]',
@@ -29,8 +29,8 @@ _PEOPLE = {
 
 def version(root: Path) -> str:
     """Return the version of a clone, `0.2.0`."""
-    home = root / "compiler" / "tiniscript" / "base" / "version.py"
-    return _first_match(home, r'(?m)^__version__ = "(.+)"$')
+    version_file = root / "compiler" / "tiniscript" / "base" / "version.py"
+    return _first_match(version_file, r'(?m)^__version__ = "(.+)"$')
 
 
 def address(root: Path) -> str:
@@ -40,8 +40,8 @@ def address(root: Path) -> str:
 
 def with_address(text: str, url: str) -> str:
     """Return `pyproject.toml` with another address."""
-    without = re.sub(r"(?m)^\[project\.urls\]\n(?:\w+ = .*\n)*\n?", "", text)
-    return f'{without.rstrip()}\n\n[project.urls]\nSource = "{url}"\n'
+    text_without_address = re.sub(r"(?m)^\[project\.urls\]\n(?:\w+ = .*\n)*\n?", "", text)
+    return f'{text_without_address.rstrip()}\n\n[project.urls]\nSource = "{url}"\n'
 
 
 def epoch(root: Path) -> int:
@@ -63,17 +63,17 @@ def complaints(root: Path) -> Iterator[str]:
     own_version = version(root)
     yield from _check_tags(root, own_version)
     yield from _check_changelog(root, own_version)
-    for name, pattern in _REPEATED.items():
-        result = _first_match(root / name, pattern)
-        if result != own_version:
+    for name, pattern in _VERSION_PATTERNS.items():
+        found_text = _first_match(root / name, pattern)
+        if found_text != own_version:
             yield (
-                f"{name} has version {result or 'none'}; "
+                f"{name} has version {found_text or 'none'}; "
                 f"tiniscript/base/version.py has {own_version}."
             )
-    for name, pattern in _PEOPLE.items():
-        result = _first_match(root / name, pattern)
-        if result != PEOPLE:
-            yield f"{name} names {result or 'nobody'}, not {PEOPLE}."
+    for name, pattern in _PEOPLE_PATTERNS.items():
+        found_text = _first_match(root / name, pattern)
+        if found_text != PEOPLE:
+            yield f"{name} names {found_text or 'nobody'}, not {PEOPLE}."
     if _first_match(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
         yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):
@@ -96,18 +96,18 @@ def _check_tags(root: Path, own_version: str) -> Iterator[str]:
 
 def _check_changelog(root: Path, own_version: str) -> Iterator[str]:
     text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
-    dated = _DATED.search(text)
+    dated_section = _DATED_SECTION.search(text)
     if f"\n## {own_version}" not in text:
         yield f"CHANGELOG.md has no section for {own_version}."
-    elif dated is None or dated.group(1) != own_version:
+    elif dated_section is None or dated_section.group(1) != own_version:
         yield f"CHANGELOG.md has no date for {own_version}. Write:  ## {own_version} (2026-01-31)"
     elif cited := _first_match(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
-        if cited != dated.group(2):
-            yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated.group(2)}."
-    _, _, rest = text.partition("\n## Unreleased\n")
-    if not rest:
+        if cited != dated_section.group(2):
+            yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated_section.group(2)}."
+    _, _, text_below = text.partition("\n## Unreleased\n")
+    if not text_below:
         yield "CHANGELOG.md has no section Unreleased: the next change has no place."
-    elif f"\n## {own_version}" in text and rest.partition("\n## ")[0].strip():
+    elif f"\n## {own_version}" in text and text_below.partition("\n## ")[0].strip():
         yield (
             f"CHANGELOG.md has changes under Unreleased, above {own_version}: "
             "they are not released."
@@ -119,6 +119,6 @@ def _first_match(path: Path, pattern: str) -> str:
     return match.group(1) if match else ""
 
 
-def _git(root: Path, *words: str) -> str:
-    completed = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True)
-    return completed.stdout.strip("\n") if completed.returncode == 0 else ""
+def _git(root: Path, *arguments: str) -> str:
+    process = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True)
+    return process.stdout.strip("\n") if process.returncode == 0 else ""

@@ -15,15 +15,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tools import CannotMake
-from tools.release.packing import pack
+from tools.release.packing import pack_folder
 
-_SETUPTOOLS = "import sys; from setuptools import build_meta; build_meta.build_{0}(sys.argv[1])"
-_FIRMWARE_BESIDE = """\
+_BUILD_CODE = "import sys; from setuptools import build_meta; build_meta.build_{0}(sys.argv[1])"
+_BRING_FIRMWARE_CODE = """\
 from tools.builds import studio
 studio.bring_firmware(studio.PAGE)
 """
-READY = "compiler/tiniscript/flash/ready"
-PAGE = "compiler/tiniscript/studio/page"
+READY_FOLDER = "compiler/tiniscript/flash/ready"
+PAGE_FOLDER = "compiler/tiniscript/studio/page"
 
 
 class Clone(NamedTuple):
@@ -51,93 +51,93 @@ class Clone(NamedTuple):
             "TZ": "UTC",
         }
 
-    def python(self, *words: str, good: tuple[int, ...] = (0,)) -> str:
+    def python(self, *arguments: str, good_codes: tuple[int, ...] = (0,)) -> str:
         """Run Python in the clone; return what it printed. Raises CannotMake.
 
-        `good` are the exit codes with which it has made what it should.
+        `good_codes` are the exit codes with which it has made what it should.
         """
-        command = [sys.executable, *words]
-        completed = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,
+        command = [sys.executable, *arguments]
+        process = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,
                               capture_output=True, text=True, errors="replace")  # fmt: skip
-        if completed.returncode not in good:
-            text = (completed.stdout + completed.stderr).strip().splitlines() or ["nothing"]
-            name = " ".join(words[:2]).partition("\n")[0]
-            raise CannotMake(f"python {name} said:\n" + "\n".join(text[-12:]))
-        return completed.stdout
+        if process.returncode not in good_codes:
+            output_lines = (process.stdout + process.stderr).strip().splitlines() or ["nothing"]
+            name = " ".join(arguments[:2]).partition("\n")[0]
+            raise CannotMake(f"python {name} said:\n" + "\n".join(output_lines[-12:]))
+        return process.stdout
 
     def file_of(self, part: str) -> Path:
         """Return the file of a part that is a folder."""
         return self.parts / f"tiniscript-{part}-{self.version}.zip"
 
 
-def firmware(clone: Clone) -> list[Path]:
+def make_firmware(clone: Clone) -> list[Path]:
     clone.python("-m", "tools.builds.firmware_files")
-    return [pack(clone.root / READY, clone.file_of("firmware"), clone.epoch)]
+    return [pack_folder(clone.root / READY_FOLDER, clone.file_of("firmware"), clone.epoch)]
 
 
-def studio(clone: Clone) -> list[Path]:
+def make_studio(clone: Clone) -> list[Path]:
     clone.python("-m", "tools.builds.studio")
-    page = clone.root / PAGE
-    if not (page / "licences.txt").is_file():
+    make_page = clone.root / PAGE_FOLDER
+    if not (make_page / "licences.txt").is_file():
         raise CannotMake("the page names no licences of the packages that are in it")
     return []
 
 
-def conformance(clone: Clone) -> list[Path]:
+def make_conformance(clone: Clone) -> list[Path]:
     clone.python("-m", "tools.builds.conformance")
     return []
 
 
-def wheel(clone: Clone) -> list[Path]:
-    clone.python("-c", _SETUPTOOLS.format("wheel"), str(clone.parts))
+def make_wheel(clone: Clone) -> list[Path]:
+    clone.python("-c", _BUILD_CODE.format("wheel"), str(clone.parts))
     return list(clone.parts.glob("*.whl"))
 
 
-def sdist(clone: Clone) -> list[Path]:
-    clone.python("-c", _SETUPTOOLS.format("sdist"), str(clone.parts))
+def make_sdist(clone: Clone) -> list[Path]:
+    clone.python("-c", _BUILD_CODE.format("sdist"), str(clone.parts))
     return list(clone.parts.glob("*.tar.gz"))
 
 
-def page(clone: Clone) -> list[Path]:
+def make_page(clone: Clone) -> list[Path]:
     """For a static host: with the firmware, which a wheel has elsewhere already."""
-    if (clone.root / READY).is_dir():
-        clone.python("-c", _FIRMWARE_BESIDE)
-    stamp = clone.root / PAGE / "build.json"
-    stamp_data = stamp.read_bytes()
-    stamp.unlink()  # says of which files it was built, not a file of the page
-    path = pack(clone.root / PAGE, clone.file_of("studio"), clone.epoch)
-    stamp.write_bytes(stamp_data)
+    if (clone.root / READY_FOLDER).is_dir():
+        clone.python("-c", _BRING_FIRMWARE_CODE)
+    stamp_path = clone.root / PAGE_FOLDER / "build.json"
+    stamp_data = stamp_path.read_bytes()
+    stamp_path.unlink()  # says of which files it was built, not a file of the page
+    path = pack_folder(clone.root / PAGE_FOLDER, clone.file_of("studio"), clone.epoch)
+    stamp_path.write_bytes(stamp_data)
     return [path]
 
 
-def library(clone: Clone) -> list[Path]:
+def make_library(clone: Clone) -> list[Path]:
     folder = clone.parts / "TiniScript"
     clone.python("-m", "tools.builds.library", str(folder))
     path = clone.parts / f"TiniScript-{clone.version}.zip"  # as Arduino's "Add .ZIP Library" takes
-    pack(folder, path, clone.epoch)
+    pack_folder(folder, path, clone.epoch)
     shutil.rmtree(folder)
     return [path]
 
 
-def site(clone: Clone) -> list[Path]:
+def make_site(clone: Clone) -> list[Path]:
     folder = clone.parts / "site"
-    no_studio = () if (clone.root / PAGE).is_dir() else ("--no-studio",)
+    no_studio = () if (clone.root / PAGE_FOLDER).is_dir() else ("--no-studio",)
     clone.python("-m", "tools.builds.site", str(folder), *no_studio)
-    path = pack(folder, clone.file_of("site"), clone.epoch)
+    path = pack_folder(folder, clone.file_of("site"), clone.epoch)
     shutil.rmtree(folder)
     return [path]
 
 
-def stick(clone: Clone) -> list[Path]:
+def make_stick(clone: Clone) -> list[Path]:
     folder = clone.parts / "stick"
-    words = ["--wheel", str(next(clone.parts.glob("*.whl")))]
+    arguments = ["--wheel", str(next(clone.parts.glob("*.whl")))]
     if not clone.whole_stick:
         python_version = f"{sys.version_info[0]}.{sys.version_info[1]}"
-        words += ["--system", "linux", "--python", python_version, "--no-installer"]
+        arguments += ["--system", "linux", "--python", python_version, "--no-installer"]
     # 1: something could not be had, which the stick's README.txt then names
-    good = (0, 1) if clone.whole_stick else (0,)
-    clone.python("-m", "tools.builds.usb_stick", str(folder), *words, good=good)
-    path = pack(folder, clone.file_of("stick"), clone.epoch)
+    good_codes = (0, 1) if clone.whole_stick else (0,)
+    clone.python("-m", "tools.builds.usb_stick", str(folder), *arguments, good_codes=good_codes)
+    path = pack_folder(folder, clone.file_of("stick"), clone.epoch)
     shutil.rmtree(folder)
     return [path]
 
@@ -150,22 +150,22 @@ class Part(NamedTuple):
 # In the order in which they are made: a wheel brings firmware, page and the cases of
 # tsc doctor --conform, a stick brings the wheel.
 PARTS = {
-    "firmware": Part(firmware),
-    "studio": Part(studio),
-    "conformance": Part(conformance),
-    "wheel": Part(wheel, ("conformance",)),
-    "sdist": Part(sdist),
-    "page": Part(page, ("studio",)),
-    "library": Part(library),
-    "site": Part(site),
-    "stick": Part(stick, ("wheel",)),
+    "firmware": Part(make_firmware),
+    "studio": Part(make_studio),
+    "conformance": Part(make_conformance),
+    "wheel": Part(make_wheel, ("conformance",)),
+    "sdist": Part(make_sdist),
+    "page": Part(make_page, ("studio",)),
+    "library": Part(make_library),
+    "site": Part(make_site),
+    "stick": Part(make_stick, ("wheel",)),
 }
 
 
 def chosen_parts(names: list[str]) -> list[str]:
     """Return parts with those that they need, in the order in which they are made."""
-    expected = set(names or PARTS)
+    wanted = set(names or PARTS)
     for name in reversed(PARTS):
-        if name in expected:
-            expected |= set(PARTS[name].needs)
-    return [name for name in PARTS if name in expected]
+        if name in wanted:
+            wanted |= set(PARTS[name].needs)
+    return [name for name in PARTS if name in wanted]

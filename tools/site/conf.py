@@ -49,40 +49,51 @@ html_sidebars = {
     ]
 }
 # Fences that show what a robot says or does: nothing in them is coloured.
-PLAIN = ("output", "robot", "senses", "terminal", "link", "bytecode", "plain", "mistake", "warning",
-         "line", "mermaid")  # fmt: skip
+PLAIN_FENCES = (
+    "output",
+    "robot",
+    "senses",
+    "terminal",
+    "link",
+    "bytecode",
+    "plain",
+    "mistake",
+    "warning",
+    "line",
+    "mermaid",
+)
 
 
-HALF = json.loads((Path(__file__).parent / "half.json").read_text(encoding="utf-8"))
+HALF_DATA = json.loads((Path(__file__).parent / "half.json").read_text(encoding="utf-8"))
 
 
 def lead_to_the_other_halves(
     app: Sphinx, name: str, template: str, context: dict[str, object], tree: object
 ) -> None:
     """Tell a page where it is in each other language, and where the studio is."""
-    up = "../" * (name.count("/") + 1)
-    languages_there = HALF["pages"].get(name, [])
+    way_to_root = "../" * (name.count("/") + 1)
+    languages_there = HALF_DATA["pages"].get(name, [])
     context["others"] = [
         (
             language,
             language_name,
-            f"{up}{language}/{name if language in languages_there else 'index'}.html",
+            f"{way_to_root}{language}/{name if language in languages_there else 'index'}.html",
         )
-        for language, language_name in HALF["others"].items()
+        for language, language_name in HALF_DATA["others"].items()
     ]
-    context["has_studio"] = HALF["has_studio"]
-    context["studio_address"] = f"{up}studio/index.html"
+    context["has_studio"] = HALF_DATA["has_studio"]
+    context["studio_address"] = f"{way_to_root}studio/index.html"
 
 
 def find_words_of_the_language() -> None:
     """Have the search find IF, UNTIL and SI, too: words that it leaves out as too common."""
-    ours = {word.lower() for word in WORDS}
-    for place in searches.values():  # a class, or where it is
-        search: Any = place
-        if isinstance(place, str):
-            module, _, name = place.rpartition(".")
+    own_words = {word.lower() for word in WORDS}
+    for class_or_name in searches.values():  # a class, or where it is
+        search: Any = class_or_name
+        if isinstance(class_or_name, str):
+            module, _, name = class_or_name.rpartition(".")
             search = getattr(import_module(module), name)
-        search.stopwords = frozenset(search.stopwords) - ours
+        search.stopwords = frozenset(search.stopwords) - own_words
 
 
 def setup(app: Sphinx) -> None:
@@ -90,5 +101,5 @@ def setup(app: Sphinx) -> None:
     app.connect("html-page-context", lead_to_the_other_halves)
     app.add_lexer("tiniscript", TiniScriptLexer)
     app.add_lexer("verifier", PythonLexer)
-    for name in PLAIN:
+    for name in PLAIN_FENCES:
         app.add_lexer(name, TextLexer)

@@ -20,7 +20,7 @@ INDEX_PAGE = "docs/README.md"  # of all others, made from here
 PAGES = "docs/en/"
 FRONT_PAGE = "README.md"  # of each half of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
-ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
+FILE_ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 
 
 class Document(NamedTuple):
@@ -37,13 +37,13 @@ def name_in(language: str, english: str) -> str:
         return english
     if english.startswith(PAGES):
         return f"docs/{language}/{english.removeprefix(PAGES)}"
-    return ENDING.sub(rf".{language}\1", english)
+    return FILE_ENDING.sub(rf".{language}\1", english)
 
 
 def language_of(name: str) -> str:
     """Return the language that a document is in, by the name of its file."""
     folder, code = PurePosixPath(name).parts[1:2], name.split(".")[-2:-1]
-    return next((item for item in (*folder, *code) if item in languages()), SOURCE_LANGUAGE)
+    return next((part for part in (*folder, *code) if part in languages()), SOURCE_LANGUAGE)
 
 
 def sources(root: Path, english: str) -> dict[str, str]:
@@ -70,33 +70,35 @@ def _relative_path(name: str, folder: PurePosixPath) -> str:
     return Path(os.path.relpath(name, folder)).as_posix()
 
 
-def _rows(root: Path, part: str, *files: str, folder: str = "") -> list[Document]:
+def _documents_of_files(root: Path, part: str, *files: str, folder: str = "") -> list[Document]:
     """Return documents whose pages are called as their English files."""
     return [
         Document(
-            folder + ENDING.sub("", PurePosixPath(file).name).lower(), part, sources(root, file)
+            folder + FILE_ENDING.sub("", PurePosixPath(file).name).lower(),
+            part,
+            sources(root, file),
         )
         for file in files
     ]
 
 
-def _guides(root: Path, part: str, *names: str) -> list[Document]:
-    return _rows(root, part, *(f"{PAGES}{name}.md" for name in names))
+def _guide_documents(root: Path, part: str, *names: str) -> list[Document]:
+    return _documents_of_files(root, part, *(f"{PAGES}{name}.md" for name in names))
 
 
-def _pages(root: Path, *names: str) -> list[Document]:
+def _developer_documents(root: Path, *names: str) -> list[Document]:
     """Return pages for developers, which are in English alone."""
-    return _rows(root, "build", *(f"docs/develop/{name}.md" for name in names))
+    return _documents_of_files(root, "build", *(f"docs/develop/{name}.md" for name in names))
 
 
-def _files(root: Path, pattern: str) -> list[str]:
+def _matching_files(root: Path, pattern: str) -> list[str]:
     return sorted(path.relative_to(root).as_posix() for path in root.glob(pattern))
 
 
-def _lessons(root: Path) -> list[Document]:
+def _lesson_documents(root: Path) -> list[Document]:
     return [
         Document(f"lessons/{Path(file).parent.name}_{reader}", f"{reader}s", sources(root, file))
-        for folder in _files(root, "compiler/tiniscript/lessons/[0-9]*")
+        for folder in _matching_files(root, "compiler/tiniscript/lessons/[0-9]*")
         for reader in ("pupil", "teacher")
         for file in [f"{folder}/{reader}.en.md"]
     ]
@@ -108,22 +110,28 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
     `built` are the names of those that are there beside its files.
     """
     documents_in_clone = [
-        *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
-        *_guides(root, "write", "language", "robots", "studio", "command"),
-        *_guides(root, "teach", "class"),
-        *_guides(root, "write", "worlds"),
+        *_guide_documents(
+            root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"
+        ),
+        *_guide_documents(root, "write", "language", "robots", "studio", "command"),
+        *_guide_documents(root, "teach", "class"),
+        *_guide_documents(root, "write", "worlds"),
         Document("library", "write", sources(root, f"{PAGES}api.md")),
-        *_rows(root, "wiring", *_files(root, f"{PAGES}wiring/*.md"), folder="wiring/"),
-        *_lessons(root),
+        *_documents_of_files(
+            root, "wiring", *_matching_files(root, f"{PAGES}wiring/*.md"), folder="wiring/"
+        ),
+        *_lesson_documents(root),
         Document("index", "trust", sources(root, FRONT_PAGE)),
-        *_guides(root, "trust", "comparison", "guarantees", "figures", "computer"),
-        *_rows(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
-        *_rows(root, "build", "CONTRIBUTING.md"),
-        *_pages(root, "first-change", "translating", "architecture", "decisions"),
-        *_rows(root, "build", "bytecode_spec.md"),
-        *_pages(root, "conformance", "link", "owners", "network", "text", "store", "runs", "esp32"),
-        *_guides(root, "build", "versions"),
-        *_rows(root, "build", "CHANGELOG.md"),
+        *_guide_documents(root, "trust", "comparison", "guarantees", "figures", "computer"),
+        *_documents_of_files(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
+        *_documents_of_files(root, "build", "CONTRIBUTING.md"),
+        *_developer_documents(root, "first-change", "translating", "architecture", "decisions"),
+        *_documents_of_files(root, "build", "bytecode_spec.md"),
+        *_developer_documents(
+            root, "conformance", "link", "owners", "network", "text", "store", "runs", "esp32"
+        ),
+        *_guide_documents(root, "build", "versions"),
+        *_documents_of_files(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE_LANGUAGE: INDEX_PAGE}),
     ]
     readable_documents = [

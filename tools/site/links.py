@@ -12,10 +12,25 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 # What a page fetches by itself, and what a reader follows.
-_FETCHED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
-_FOLLOWED = {"a": "href", "area": "href"}
-_NOT_FETCHED = ("canonical", "alternate", "author", "copyright", "index", "next", "prev", "search",
-                "help")  # fmt: skip
+_FETCHED_ATTRIBUTES = {
+    "img": "src",
+    "script": "src",
+    "link": "href",
+    "iframe": "src",
+    "source": "src",
+}
+_FOLLOWED_ATTRIBUTES = {"a": "href", "area": "href"}
+_LINKS_NOT_FETCHED = (
+    "canonical",
+    "alternate",
+    "author",
+    "copyright",
+    "index",
+    "next",
+    "prev",
+    "search",
+    "help",
+)
 
 
 class _Page(HTMLParser):
@@ -29,9 +44,9 @@ class _Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         values = dict(attrs)
         self.names |= {name for name in (values.get("id"), values.get("name")) if name}
-        address = values.get(_FETCHED.get(tag, _FOLLOWED.get(tag, "")))
+        address = values.get(_FETCHED_ATTRIBUTES.get(tag, _FOLLOWED_ATTRIBUTES.get(tag, "")))
         if address:
-            is_fetched = tag in _FETCHED and values.get("rel") not in _NOT_FETCHED
+            is_fetched = tag in _FETCHED_ATTRIBUTES and values.get("rel") not in _LINKS_NOT_FETCHED
             self.links.append((address, is_fetched))
 
 
@@ -44,16 +59,16 @@ def dead_links(folder: Path) -> list[str]:
     pages = {path: _read(path) for path in sorted(folder.rglob("*.html"))}
 
     @cache  # what is around a page is the same on each
-    def wrong(path: Path, address: str, is_fetched: bool) -> str:
+    def find_problem(path: Path, address: str, is_fetched: bool) -> str:
         return _link_problem(folder, path, address, is_fetched, pages)
 
-    result: list[str] = []
+    problem_lines: list[str] = []
     for path, page in pages.items():
         for address, is_fetched in page.links:
             is_here = address.startswith(("#", "?"))
-            if why := wrong(path if is_here else path.parent / "*", address, is_fetched):
-                result.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
-    return result
+            if why := find_problem(path if is_here else path.parent / "*", address, is_fetched):
+                problem_lines.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+    return problem_lines
 
 
 def _read(path: Path) -> _Page:

@@ -21,10 +21,10 @@ from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
-FILES = "files"  # the folder of the copies, beside the halves of the languages
+FILES_FOLDER = "files"  # the folder of the copies, beside the halves of the languages
 
 
-class Place(NamedTuple):
+class SitePage(NamedTuple):
     """A page: which half of the site it is in, and its name without an ending."""
 
     language: str
@@ -39,44 +39,48 @@ class Place(NamedTuple):
 class Shelf:
     """Where the documents of a clone are on the site, and which files they lead to besides.
 
-    `built` are texts beside the files of the clone, by the names that they would have there.
+    `built_texts` are texts beside the files of the clone, by the names that they would have there.
     """
 
     root: Path
-    places: dict[str, Place]
-    twins: dict[str, dict[str, Place]]  # by source: the places of a document, by language
-    built: dict[str, str] = field(default_factory=dict)
-    files: set[str] = field(default_factory=set)
+    places: dict[str, SitePage]
+    pages_of_source: dict[
+        str, dict[str, SitePage]
+    ]  # by source: the places of a document, by language
+    built_texts: dict[str, str] = field(default_factory=dict)
+    linked_files: set[str] = field(default_factory=set)
     pictures: set[str] = field(default_factory=set)
 
     def text(self, name: str) -> str:
-        return self.built.get(name) or (self.root / name).read_text(encoding="utf-8")
+        return self.built_texts.get(name) or (self.root / name).read_text(encoding="utf-8")
 
     def has(self, name: str) -> bool:
-        return name in self.built or (self.root / name).is_file()
+        return name in self.built_texts or (self.root / name).is_file()
 
     def copy(self, name: str, target: Path) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
-        if name in self.built:
-            target.write_text(self.built[name], encoding="utf-8")
+        if name in self.built_texts:
+            target.write_text(self.built_texts[name], encoding="utf-8")
         else:
             shutil.copyfile(self.root / name, target)
 
 
-def shelf(root: Path, documents: list[Document], built: dict[str, str] | None = None) -> Shelf:
+def shelf(
+    root: Path, documents: list[Document], built_texts: dict[str, str] | None = None
+) -> Shelf:
     """Return the shelf of a clone's documents."""
-    places: dict[str, Place] = {}
-    twins: dict[str, dict[str, Place]] = {}
+    places: dict[str, SitePage] = {}
+    pages_of_source: dict[str, dict[str, SitePage]] = {}
     for document in documents:
         place_of_language = {
-            language: Place(language, document.name) for language in document.sources
+            language: SitePage(language, document.name) for language in document.sources
         }
         for language, source in document.sources.items():
-            places[source], twins[source] = place_of_language[language], place_of_language
-    return Shelf(root, places, twins, built or {})
+            places[source], pages_of_source[source] = place_of_language[language], place_of_language
+    return Shelf(root, places, pages_of_source, built_texts or {})
 
 
-def page(source: str, shelf: Shelf, place: Place | None = None) -> str:
+def page(source: str, shelf: Shelf, place: SitePage | None = None) -> str:
     """Return the Markdown of a document's page; note the files that it leads to.
 
     `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
@@ -98,30 +102,35 @@ def page(source: str, shelf: Shelf, place: Place | None = None) -> str:
     return "".join(parts)
 
 
-def _resolved_link(link: re.Match[str], source: str, place: Place, shelf: Shelf) -> str:
+def _resolved_link(link: re.Match[str], source: str, place: SitePage, shelf: Shelf) -> str:
     """Return a link of a document as the page has it."""
-    mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
+    picture_mark, text, path, anchor = (
+        link.group(1),
+        link.group(2),
+        link.group(3),
+        link.group(4) or "",
+    )
     if not path or ":" in path:
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
-    twins = shelf.twins.get(target, {})
-    is_itself = place in twins.values()  # in another language
+    pages_of_target = shelf.pages_of_source.get(target, {})
+    is_itself = place in pages_of_target.values()  # in another language
     target_place = (
         shelf.places.get(target)
         if is_itself
-        else twins.get(place.language, shelf.places.get(target))
+        else pages_of_target.get(place.language, shelf.places.get(target))
     )
     if target_place is not None and target_place.language == place.language:
-        return f"[{text}]({way(place.name, target_place.name)}.md{anchor})"
+        return f"[{text}]({relative_address(place.name, target_place.name)}.md{anchor})"
     if target_place is not None:
-        return _outside_link(text, way(place.address, target_place.address) + anchor)
+        return _outside_link(text, relative_address(place.address, target_place.address) + anchor)
     if not shelf.has(target):
         raise CannotMake(f"{source}: {path}")
-    if mark:
+    if picture_mark:
         shelf.pictures.add(target)
-        return f"![{text}](/{FILES}/{target})"
-    shelf.files.add(target)
-    return _outside_link(text, way(place.address, f"{FILES}/{target}"))
+        return f"![{text}](/{FILES_FOLDER}/{target})"
+    shelf.linked_files.add(target)
+    return _outside_link(text, relative_address(place.address, f"{FILES_FOLDER}/{target}"))
 
 
 def _outside_link(text: str, address: str) -> str:
@@ -129,6 +138,6 @@ def _outside_link(text: str, address: str) -> str:
     return f'<a href="{escape(address)}">{text}</a>'
 
 
-def way(source_page: str, target_page: str) -> str:
+def relative_address(source_page: str, target_page: str) -> str:
     """Return the relative address of one page on another, both named from the same folder."""
     return Path(os.path.relpath(target_page, start=PurePosixPath(source_page).parent)).as_posix()

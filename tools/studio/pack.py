@@ -16,31 +16,41 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from types import CodeType
 
-ROOT = "tiniscript.studio.worker"
+ROOT_MODULE = "tiniscript.studio.worker"
 # Fetched when they are first needed; what few pages need is as small as it can be.
-LESSONS = "tiniscript.studio.page_lessons"
-TOGETHER = "tiniscript.studio.page_together"
+LESSONS_MODULE = "tiniscript.studio.page_lessons"
+TOGETHER_MODULE = "tiniscript.studio.page_together"
 # What needs what no browser has: ports, a terminal, other programs, files of profiles.
-LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.link.modules",
-            "tiniscript.link.sharing", "tiniscript.robots.reader",
-            "tiniscript.robots.wiring")  # fmt: skip
+LEFT_OUT_MODULES = (
+    "tiniscript.cli",
+    "tiniscript.doctor",
+    "tiniscript.flash",
+    "tiniscript.link.modules",
+    "tiniscript.link.sharing",
+    "tiniscript.robots.reader",
+    "tiniscript.robots.wiring",
+)
 # Imported where there is a port, wasmtime or another system; never in a browser, nor a part of it.
-NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
+MODULES_NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
-DATA = {
+DATA_PATTERNS = {
     "languages": ("*/lexicon.txt", "*/sounds.txt"),
     "virtual": ("*.wasm",),
     "virtual/worlds": ("*.toml",),
 }
-DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
+LESSON_DATA_PATTERNS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
                    "languages": ("*/lessons.texts",)}  # fmt: skip
 PRINTED_LINE = re.compile(r"((?:-|[0-9]{1,2}\.) +)?\[print\]")  # a line that is only on paper
 INDENT = re.compile(r"^(?: {4})+", re.MULTILINE)
-ON_PAGE = (0, 2, 3)  # sections of a pupil's page that are read beside the simulator: `page_lessons`
+PAGE_SECTIONS = (
+    0,
+    2,
+    3,
+)  # sections of a pupil's page that are read beside the simulator: `page_lessons`
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
-STAMP = (1980, 1, 1, 0, 0, 0)
+ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
 
 
@@ -50,7 +60,7 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
     skipped: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            skipped |= {item for part in node.body for item in ast.walk(part)}
+            skipped |= {inner_node for part in node.body for inner_node in ast.walk(part)}
         elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped |= set(ast.walk(node))
     imports: set[str] = set()
@@ -77,21 +87,25 @@ class Packer:
         self.folders = folders
         self.library = library
         self.names = set(library.namelist())
-        self.own: Files = {}
-        self.standard: Files = {}
+        self.own_files: Files = {}
+        self.standard_files: Files = {}
         self._seen: set[str] = set()
 
     def add(self, name: str) -> None:
         """Add a module and what it needs; a list, as nothing here recurses."""
-        expected = [name]
-        while expected:
-            name = expected.pop()
+        names_left = [name]
+        while names_left:
+            name = names_left.pop()
             for k in range(1, name.count(".") + 2):
-                expected += self._pack_module(".".join(name.split(".")[:k]))
+                names_left += self._pack_module(".".join(name.split(".")[:k]))
 
     def _pack_module(self, name: str) -> list[str]:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
-        if name in self._seen or not NOT_HERE.isdisjoint(parents) or name.startswith(LEFT_OUT):
+        if (
+            name in self._seen
+            or not MODULES_NOT_HERE.isdisjoint(parents)
+            or name.startswith(LEFT_OUT_MODULES)
+        ):
             return []
         if name.startswith("_py") and f"_{name[3:]}" in sys.builtin_module_names:
             return []  # `_pydatetime`, which takes the place of `_datetime` where there is none
@@ -102,11 +116,11 @@ class Packer:
             for folder in self.folders:
                 if (folder / candidate).is_file():
                     source = (folder / candidate).read_bytes()
-                    self.own[candidate] = source
+                    self.own_files[candidate] = source
                     return sorted(imports_of(source, name, is_package, True))
             if candidate in self.names:
                 source = self.library.read(candidate)
-                self.standard[candidate] = source
+                self.standard_files[candidate] = source
                 return sorted(imports_of(source, name, is_package, False))
         return []
 
@@ -117,8 +131,10 @@ MOST_ENTRY_UNITS = 8  # the most of one entry
 
 def _without_lines(code: CodeType) -> CodeType:
     """Return code without the lines of its source, which are a fifth of it and pack badly."""
-    entries, rest = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
-    lines = bytes([NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
+    entries, rest_units = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
+    lines = bytes(
+        [NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest_units - 1] * (rest_units > 0)
+    )
     constants = tuple(_without_lines(constant) if isinstance(constant, CodeType) else constant
                       for constant in code.co_consts)  # fmt: skip
     return code.replace(co_linetable=lines, co_consts=constants)
@@ -135,13 +151,13 @@ def _without_types(source: bytes) -> ast.Module:
     return tree
 
 
-def pyc(source: bytes, name: str) -> bytes:
+def compile_module(source: bytes, name: str) -> bytes:
     """Return the bytecode of a module, without docstrings, asserts and types of functions."""
     tree = _without_types(source)
     code = _without_lines(compile(tree, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
-    result = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
-    return bytes(result)
+    pyc_data = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
+    return bytes(pyc_data)
 
 
 def small_source(source: bytes) -> bytes:
@@ -155,30 +171,30 @@ def small_source(source: bytes) -> bytes:
     return INDENT.sub(lambda found: "\t" * (len(found[0]) // 4), ast.unparse(tree)).encode()
 
 
-def write(path: str, files: Files) -> None:
+def write_archive(path: str, files: Files) -> None:
     """Write an archive, the same bytes for the same files. The server packs, if it does."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
         for name, data in sorted(files.items()):
-            archive.writestr(zipfile.ZipInfo(name, STAMP), data)
+            archive.writestr(zipfile.ZipInfo(name, ZIP_TIME), data)
 
 
 def compile_all(files: Files) -> Files:
     return {
-        str(PurePosixPath(name).with_suffix(".pyc")): pyc(source, name)
+        str(PurePosixPath(name).with_suffix(".pyc")): compile_module(source, name)
         for name, source in files.items()
     }
 
 
-def on_page(written: str) -> str:
+def text_on_page(page_text: str) -> str:
     """Return of a pupil's page what the studio shows, and all its headings."""
-    kept: list[str] = []
+    shown_lines: list[str] = []
     section = 0
-    for line in written.split("\n"):
+    for line in page_text.split("\n"):
         is_heading = line.startswith("## ")
         section += is_heading
-        if is_heading or (section in ON_PAGE and not PRINTED_LINE.match(line)):
-            kept.append(line)
-    return "\n".join(kept)
+        if is_heading or (section in PAGE_SECTIONS and not PRINTED_LINE.match(line)):
+            shown_lines.append(line)
+    return "\n".join(shown_lines)
 
 
 def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
@@ -191,25 +207,29 @@ def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
     }
 
 
-def pack(start: list[str], package: str, cobs: str, standard: str, target: str) -> str:
+def pack(start_modules: list[str], package: str, cobs: str, library_path: str, target: str) -> str:
     """Write `python.zip`, `tiniscript.zip`, `lessons.zip` and `together.zip`; return what was
     packed, in words."""
-    library = zipfile.ZipFile(standard)
+    library = zipfile.ZipFile(library_path)
     packer = Packer([Path(package), Path(cobs)], library)
-    for name in (*start, *ENCODINGS, ROOT):
+    for name in (*start_modules, *ENCODINGS, ROOT_MODULE):
         packer.add(name)
-    packed = set(packer.own)
-    write(f"{target}/tiniscript.zip", {**compile_all(packer.own), **data_of(package, DATA)})
-    packer.add(LESSONS)  # what of Python's library these need is in the archive of that
-    lessons = {name: source for name, source in packer.own.items() if name not in packed}
+    packed = set(packer.own_files)
+    write_archive(
+        f"{target}/tiniscript.zip",
+        {**compile_all(packer.own_files), **data_of(package, DATA_PATTERNS)},
+    )
+    packer.add(LESSONS_MODULE)  # what of Python's library these need is in the archive of that
+    lessons = {name: source for name, source in packer.own_files.items() if name not in packed}
     packed |= set(lessons)
-    packer.add(TOGETHER)
-    together = {name: source for name, source in packer.own.items() if name not in packed}
-    data = data_of(package, DATA_OF_LESSONS)
-    data |= {name: on_page(page.decode()).encode() for name, page in data.items()
+    packer.add(TOGETHER_MODULE)
+    together = {name: source for name, source in packer.own_files.items() if name not in packed}
+    data = data_of(package, LESSON_DATA_PATTERNS)
+    data |= {name: text_on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip
-    write(f"{target}/lessons.zip", {**compile_all(lessons), **data})
-    small = {name: small_source(source) for name, source in together.items()}
-    write(f"{target}/together.zip", small)
-    write(f"{target}/python.zip", compile_all(packer.standard))
-    return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"
+    write_archive(f"{target}/lessons.zip", {**compile_all(lessons), **data})
+    small_files = {name: small_source(source) for name, source in together.items()}
+    write_archive(f"{target}/together.zip", small_files)
+    write_archive(f"{target}/python.zip", compile_all(packer.standard_files))
+    own_count, standard_count = len(packer.own_files), len(packer.standard_files)
+    return f"{own_count} modules of tiniscript and cobs, {standard_count} of Python"

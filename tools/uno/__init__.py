@@ -89,7 +89,7 @@ class Uno:
         self._has_ended = False
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        self.pty = str(self.wait_for(lambda event: event.what == "pty")["name"])
+        self.pty = str(self.wait_for(lambda event: event.kind == "pty")["name"])
 
     def __enter__(self) -> Uno:
         return self
@@ -100,7 +100,7 @@ class Uno:
     def close(self) -> None:
         """Let the simulator end; what it has told stays."""
         if not self._has_ended:
-            self._print_state("quit")
+            self._send_lines("quit")
         try:
             self._process.wait(5)
         except subprocess.TimeoutExpired:
@@ -125,7 +125,7 @@ class Uno:
     def run_to(self, cycle: int) -> None:
         """Run until a cycle, within the instruction that is at work then."""
         mark = len(self.events)
-        self._print_state(f"run {cycle} 0")
+        self._send_lines(f"run {cycle} 0")
         self._wait_for_pause(mark)
 
     def run_until(self, pin: str, state: str, limit_ms: float) -> PinChange:
@@ -133,14 +133,14 @@ class Uno:
         number = self.pins.number(pin)
         mark = len(self.events)
         end = self.cycle + round(limit_ms * CYCLES_PER_MS)
-        self._print_state(f"watch {number} {state}", f"run {end} 0")
+        self._send_lines(f"watch {number} {state}", f"run {end} 0")
         why = self._wait_for_pause(mark)["why"]
         assert why == "pin", f"{pin} has not become {state} in {limit_ms} ms"
         return self.pins[pin]
 
     def go(self, speed: float = 1.0) -> None:
         """Run until `pause`; speed 1 is real time, 0 as fast as it goes."""
-        self._print_state(f"run forever {speed}")
+        self._send_lines(f"run forever {speed}")
 
     @contextmanager
     def try_out(self) -> Iterator[None]:
@@ -150,19 +150,19 @@ class Uno:
         """
         assert not self._keeps_eeprom
         mark = len(self.events)
-        self._print_state("aside")
+        self._send_lines("aside")
         self._wait_for_pause(mark)
         try:
             yield
         finally:
             event_count = len(self.events)
-            self._print_state("back")
+            self._send_lines("back")
             self._wait_for_pause(event_count)
             del self.events[mark:]
 
     def pause(self) -> None:
         mark = len(self.events)
-        self._print_state("pause")
+        self._send_lines("pause")
         self._wait_for_pause(mark)
 
     def wait_for(
@@ -173,17 +173,17 @@ class Uno:
     ) -> Event:
         """Return the first wanted event from `first_number` on; wait for it if need be."""
         end = time.monotonic() + timeout_s
-        at = first_number
+        number = first_number
         while True:
             with self._news:
-                while at >= len(self.events) and not self._has_ended:
+                while number >= len(self.events) and not self._has_ended:
                     if not self._news.wait(max(0.0, end - time.monotonic())):
                         raise TimeoutError(f"the Uno has not told it in {timeout_s} s")
-                if at >= len(self.events):
+                if number >= len(self.events):
                     raise RuntimeError(f"the Uno has ended: {self._serial_output()}")
-                event = self.events[at]
-            at += 1
-            if event.what == "mistake":
+                event = self.events[number]
+            number += 1
+            if event.kind == "mistake":
                 raise ValueError(event["text"])
             if is_wanted(event):
                 return event
@@ -193,65 +193,63 @@ class Uno:
     def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
         """Give a pin a level from outside, or leave it alone; at a cycle, or at once."""
         word = {None: "none", False: "low", True: "high"}[level]
-        self._print_state(_at_cycle(at) + f"pin {self.pins.number(pin)} {word}")
+        self._send_lines(_at_cycle(at) + f"pin {self.pins.number(pin)} {word}")
 
     def press(self, pin: str, ms: float = 50.0, at: int | None = None) -> None:
         """Connect a pin to ground for a while, as a button does; it stays so while time passes."""
         self.drive(pin, False, at)
-        length = round(ms * CYCLES_PER_MS)
-        begin = f"after {length} " if at is None else f"at {at + length} "
-        self._print_state(begin + f"pin {self.pins.number(pin)} none")
+        cycle_count = round(ms * CYCLES_PER_MS)
+        begin = f"after {cycle_count} " if at is None else f"at {at + cycle_count} "
+        self._send_lines(begin + f"pin {self.pins.number(pin)} none")
 
     def analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
         assert 0 <= count <= 1023, count
-        self._print_state(f"analog {self.pins.number(pin)} {count}")
+        self._send_lines(f"analog {self.pins.number(pin)} {count}")
 
     def supply(self, volts: float) -> None:
         """Let the chip have another voltage than 5 V. Only its analog converter knows of that."""
         assert 2 <= volts <= 6, volts
-        self._print_state(f"supply {round(volts * 1000)}")
+        self._send_lines(f"supply {round(volts * 1000)}")
 
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
     ) -> None:
         """Put an HC-SR04 at two pins, or move what is in front of it; None: nothing."""
         numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
-        self._print_state(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
+        self._send_lines(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
 
     # -- its serial port ----------------------------------------------------------------------
 
     def send(self, data: bytes, at: int | None = None, *, stop_bits_fail: bool = False) -> None:
         """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
         if data:
-            self._print_state(
-                _at_cycle(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}"
-            )
+            self._send_lines(_at_cycle(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}")
 
     def hold(self, level: bool, bits: int, at: int | None = None) -> None:
         """Hold the wire low (a break) or leave it alone for so many bits, after what is sent."""
-        self._print_state(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
+        self._send_lines(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
 
     @property
     def sent_bytes(self) -> list[Byte]:
         """What the chip has sent."""
-        return [Byte.of(event) for event in list(self.events) if event.what == "sent"]
+        return [Byte.of(event) for event in list(self.events) if event.kind == "sent"]
 
     @property
     def received_bytes(self) -> list[Byte]:
         """What has come into the chip's buffer or shift register."""
-        return [Byte.of(event) for event in list(self.events) if event.what == "received"]
+        return [Byte.of(event) for event in list(self.events) if event.kind == "received"]
 
     @property
     def lost_bytes(self) -> bytes:
         """What was received and then overwritten, because nobody fetched what was before it."""
-        return bytes(int(event["byte"]) for event in list(self.events) if event.what == "lost")
+        return bytes(int(event["byte"]) for event in list(self.events) if event.kind == "lost")
 
     # -- resets -------------------------------------------------------------------------------
 
     def reset(self, cause: str = "external", at: int | None = None) -> None:
         """Reset it: `external` (button, DTR), `power-on` (a cut: RAM is lost), `brown-out`."""
-        self._print_state(_at_cycle(at) + f"reset {cause}")
+        self._send_lines(_at_cycle(at) + f"reset {cause}")
 
     # -- memory -------------------------------------------------------------------------------
 
@@ -261,8 +259,8 @@ class Uno:
         Needs `watches_stack`, which makes it about half as fast.
         """
         mark = len(self.events)
-        self._print_state(f"stack {from_address}")
-        return Stack.of(self.wait_for(lambda event: event.what == "stack", first_number=mark))
+        self._send_lines(f"stack {from_address}")
+        return Stack.of(self.wait_for(lambda event: event.kind == "stack", first_number=mark))
 
     # -- interrupts ---------------------------------------------------------------------------
 
@@ -272,16 +270,16 @@ class Uno:
         Needs `watches_masked`, which makes it about half as fast.
         """
         mark = len(self.events)
-        self._print_state("masked")
+        self._send_lines("masked")
         self.wait_for(
-            lambda event: event.what == "masked" and "places" in event.rest, first_number=mark
+            lambda event: event.kind == "masked" and "places" in event.values, first_number=mark
         )
-        events = [event for event in self.events[mark:] if event.what == "masked"]
-        return [Masked.of(event) for event in events if "vector" in event.rest]
+        events = [event for event in self.events[mark:] if event.kind == "masked"]
+        return [Masked.of(event) for event in events if "vector" in event.values]
 
     # -- inside -------------------------------------------------------------------------------
 
-    def _print_state(self, *lines: str) -> None:
+    def _send_lines(self, *lines: str) -> None:
         pipe = self._process.stdin
         assert pipe
         try:
@@ -291,7 +289,7 @@ class Uno:
             raise RuntimeError(f"the Uno has ended: {self._serial_output()}") from None
 
     def _wait_for_pause(self, first_number: int) -> Event:
-        event = self.wait_for(lambda event: event.what == "paused", first_number=first_number)
+        event = self.wait_for(lambda event: event.kind == "paused", first_number=first_number)
         self.cycle = event.cycle
         return event
 

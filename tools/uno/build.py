@@ -13,8 +13,8 @@ import tempfile
 from functools import lru_cache
 from pathlib import Path
 
-SOURCES = Path(__file__).resolve().parent
-HEADER = Path("/usr/include/simavr/sim_avr.h")
+SOURCE_FOLDER = Path(__file__).resolve().parent
+SIMULATOR_HEADER = Path("/usr/include/simavr/sim_avr.h")
 FLAGS = ("-std=gnu11", "-O2", "-flto")
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 LIBRARIES = ("-Wl,-Bstatic", "-lsimavr", "-Wl,-Bdynamic", "-lelf", "-lutil", "-lm")
@@ -24,7 +24,7 @@ def missing() -> str:
     """Return why there is no simulated Uno, or nothing."""
     if not shutil.which("gcc"):
         return "no gcc: the simulated Uno is not built"
-    if not HEADER.exists():
+    if not SIMULATOR_HEADER.exists():
         return "no libsimavr: no simulated Uno (apt-get install libsimavr-dev libelf-dev)"
     return ""
 
@@ -37,8 +37,10 @@ def build() -> Path:
     """
     if why := missing():
         raise RuntimeError(why)
-    inputs = sorted(SOURCES.glob("*.[ch]"))
-    key = hashlib.sha256(repr((WARNINGS, FLAGS, LIBRARIES)).encode() + HEADER.read_bytes())
+    inputs = sorted(SOURCE_FOLDER.glob("*.[ch]"))
+    key = hashlib.sha256(
+        repr((WARNINGS, FLAGS, LIBRARIES)).encode() + SIMULATOR_HEADER.read_bytes()
+    )
     for path in inputs:
         key.update(path.name.encode() + path.read_bytes())
     folder = Path(tempfile.gettempdir()) / f"tiniscript-uno-{os.getuid()}"
@@ -46,13 +48,13 @@ def build() -> Path:
     if not program.exists():
         folder.mkdir(mode=0o700, exist_ok=True)
         temporary = program.with_suffix(f".{os.getpid()}")
-        code = [str(path) for path in inputs if path.suffix == ".c"]
-        completed = subprocess.run(
-            ["gcc", *FLAGS, *WARNINGS, *code, *LIBRARIES, "-o", str(temporary)],
+        source_paths = [str(path) for path in inputs if path.suffix == ".c"]
+        process = subprocess.run(
+            ["gcc", *FLAGS, *WARNINGS, *source_paths, *LIBRARIES, "-o", str(temporary)],
             capture_output=True,
             text=True,
         )
-        if completed.returncode != 0:
-            raise RuntimeError(f"gcc refuses the simulated Uno:\n{completed.stderr[:4000]}")
+        if process.returncode != 0:
+            raise RuntimeError(f"gcc refuses the simulated Uno:\n{process.stderr[:4000]}")
         temporary.replace(program)
     return program

@@ -13,18 +13,18 @@ PINS = {"uno": (14, 6), "mega": (54, 16)}  # of each board: digital, analog
 
 @dataclass(frozen=True)
 class Event:
-    """One line. `what` it is says what else it has (`tools/uno/README.md`)."""
+    """One line. `kind` it is says what else it has (`tools/uno/README.md`)."""
 
     cycle: int
-    what: str
-    rest: Mapping[str, Any]
+    kind: str
+    values: Mapping[str, Any]
 
     @classmethod
-    def of(cls, line: dict[str, Any]) -> Event:
-        return cls(line.pop("cycle"), line.pop("what"), line)
+    def of(cls, fields: dict[str, Any]) -> Event:
+        return cls(fields.pop("cycle"), fields.pop("what"), fields)
 
     def __getitem__(self, name: str) -> Any:
-        return self.rest[name]
+        return self.values[name]
 
     @property
     def ms(self) -> float:
@@ -127,7 +127,7 @@ class Pins:
         return tuple(
             PinChange(event.cycle, name, event["is"], **_wave(event))
             for event in list(self._events)
-            if event.what == "pin" and event["pin"] == name
+            if event.kind == "pin" and event["pin"] == name
         )
 
     def __getitem__(self, pin: str) -> PinChange:

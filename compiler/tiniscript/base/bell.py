@@ -24,14 +24,14 @@ class Bell:
         with suppress(RuntimeError):  # it has rung, and nobody has heard it yet
             self._silence.release()
 
-    def wait(self, limit_s: float) -> bool:
+    def wait(self, timeout_s: float) -> bool:
         """Wait for a ring, at most so long; return whether there was one."""
-        return self._silence.acquire(timeout=limit_s)
+        return self._silence.acquire(timeout=timeout_s)
 
-    def wait_until(self, is_so: Callable[[], bool], limit_s: float) -> bool:
+    def wait_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Wait at most so long until something is so, of which a ring tells; return whether."""
-        end_s = monotonic() + limit_s
-        while not is_so():
+        end_s = monotonic() + timeout_s
+        while not condition():
             left_s = end_s - monotonic()
             if left_s <= 0:
                 return False

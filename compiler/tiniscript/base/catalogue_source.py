@@ -35,10 +35,10 @@ Problem = tuple[int, str]  # a line of a file, and a sentence
 class Entry:
     """An English text, and what a language has of it.
 
-    `said` are the forms of its translation, empty without one, and `seen_hash` is the hash of the
+    `translation` has its forms, empty without one, and `seen_hash` is the hash of the
     text that it translates, UNKNOWN where nobody has said that. A stale one is of what the English
     text was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
-    language says it in another way, or since its words stand under the key `like`, too.
+    language says it in another way, or since its words stand under the key `same_text_key`, too.
     """
 
     key: str
@@ -48,11 +48,11 @@ class Entry:
     seen_hash: str = ""
     notes: list[str] = field(default_factory=list)
     is_same: bool = False
-    like: str = ""
+    same_text_key: str = ""
     line: int = 0
 
     @property
-    def at(self) -> tuple[str, str]:
+    def identity(self) -> tuple[str, str]:
         return self.key, self.english
 
     @property
@@ -102,16 +102,16 @@ class Row:
     text_above: str = ""
     table: str = ""
 
-    def takes(self, other: Row) -> bool:
+    def merge_forms(self, other: Row) -> bool:
         """Take other forms of the same text from another row, `KEY.one` and `KEY.other`."""
-        one, other_value = self.value, other.value
+        own_forms, other_forms = self.value, other.value
         if (
-            not isinstance(one, dict)
-            or not isinstance(other_value, dict)
-            or one.keys() & other_value.keys()
+            not isinstance(own_forms, dict)
+            or not isinstance(other_forms, dict)
+            or own_forms.keys() & other_forms.keys()
         ):
             return False
-        self.value = {**one, **other_value}
+        self.value = {**own_forms, **other_forms}
         self.text += other.text_above + other.text
         return True
 
@@ -133,33 +133,38 @@ def decode_file(path: Path) -> tuple[str, list[Problem]]:
     return text, []
 
 
-def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
+def parse_rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     """Return the rows of a TOML file, what stands below all of them, and what is no TOML."""
     row_by_key: dict[str, Row] = {}
     repeated_rows: list[Row] = []  # a key that is there twice
     problems: list[Problem] = []
     text_above, table = "", ""
     lines = re.findall(r".*\n|.+", text)
-    at = 0
-    while at < len(lines):
-        is_row = _ROW_START.match(lines[at]) is not None
-        end = _row_end(lines, at) if is_row else at + 1
-        value, why = _parse_block(block := "".join(lines[at:end]))
-        if why:  # the next row is what begins as one, whatever is open here
-            problems.append((at + 1, f"this is no TOML: {why[1]}"))
+    start = 0
+    while start < len(lines):
+        is_row = _ROW_START.match(lines[start]) is not None
+        end = _row_end(lines, start) if is_row else start + 1
+        value, parse_error = _parse_block(block := "".join(lines[start:end]))
+        if parse_error:  # the next row is what begins as one, whatever is open here
+            problems.append((start + 1, f"this is no TOML: {parse_error[1]}"))
             end = next(
-                (k for k in range(at + 1, len(lines)) if _is_row_start(lines[k])), len(lines)
+                (k for k in range(start + 1, len(lines)) if _is_row_start(lines[k])), len(lines)
             )
-            value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
+            value, block = (
+                {_row_key(lines[start]): None} if is_row else {},
+                "".join(lines[start:end]),
+            )
         if is_row:
-            row = Row(*next(iter(value.items())), at + 1, block, text_above, table)
-            if (first := row_by_key.setdefault(row.key, row)) is not row and not first.takes(row):
+            row = Row(*next(iter(value.items())), start + 1, block, text_above, table)
+            if (
+                earlier_row := row_by_key.setdefault(row.key, row)
+            ) is not row and not earlier_row.merge_forms(row):
                 repeated_rows.append(row)
             text_above = ""
         else:
             text_above += block
             table = next(iter(value), table)
-        at = end
+        start = end
     if not problems and not repeated_rows:
         problems = [(line, f"this is no TOML: {reason}") for line, reason in _toml_problems(text)]
     return (
@@ -174,17 +179,21 @@ def _is_row_start(line: str) -> bool:
     return _ROW_START.match(line) is not None or _TABLE_HEADER.fullmatch(line.rstrip()) is not None
 
 
-def _row_end(lines: list[str], at: int) -> int:
+def _row_end(lines: list[str], start: int) -> int:
     """Return where a row ends: a text of several lines or a list goes on."""
     quotes = ""
-    if not _parse_block(lines[at])[1]:
-        return at + 1
-    for k in range(at, len(lines)):
-        if k > at and not quotes and (_is_row_start(lines[k]) or lines[k].strip()[:1] in ("", "#")):
-            if _is_row_start(lines[k]) or not _parse_block("".join(lines[at:k]))[1]:
+    if not _parse_block(lines[start])[1]:
+        return start + 1
+    for k in range(start, len(lines)):
+        if (
+            k > start
+            and not quotes
+            and (_is_row_start(lines[k]) or lines[k].strip()[:1] in ("", "#"))
+        ):
+            if _is_row_start(lines[k]) or not _parse_block("".join(lines[start:k]))[1]:
                 return k
-        for item in _QUOTES.findall(lines[k]):
-            quotes = "" if quotes == item else quotes or item
+        for delimiter in _QUOTES.findall(lines[k]):
+            quotes = "" if quotes == delimiter else quotes or delimiter
     return len(lines)
 
 
@@ -198,55 +207,55 @@ def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
     try:
         return tomllib.loads(block), None
     except ValueError as error:
-        at = re.search(r"at line (\d+)", str(error))
-        return {}, (int(at[1]) - 1 if at else 0, _TOML_PLACE.sub("", str(error)))
+        line_match = re.search(r"at line (\d+)", str(error))
+        return {}, (int(line_match[1]) - 1 if line_match else 0, _TOML_PLACE.sub("", str(error)))
 
 
 def _toml_problems(text: str) -> list[Problem]:
     """Return what is no TOML of a file each of whose rows is."""
-    _, why = _parse_block(text)
-    return [(why[0] + 1, why[1])] if why else []
+    _, parse_error = _parse_block(text)
+    return [(parse_error[0] + 1, parse_error[1])] if parse_error else []
 
 
-def _key(line: str) -> str:
+def _row_key(line: str) -> str:
     match = _ROW_START.match(line)
     return match[1].strip("\"'") if match else ""
 
 
-def load(path: Path) -> Catalogue:
+def load_catalogue(path: Path) -> Catalogue:
     """Read the English texts of a file. What is wrong in it is a problem."""
     catalogue = Catalogue()
     text, catalogue.problems = decode_file(path)
-    catalogue_rows, _, problems = rows(text)
+    catalogue_rows, _, problems = parse_rows(text)
     catalogue.problems += problems
-    keys, firsts = set[str](), dict[tuple[str, str], Entry]()
+    keys, entry_by_text = set[str](), dict[tuple[str, str], Entry]()
     for row in catalogue_rows:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
-        for item in row.value if isinstance(row.value, list) else [row.value]:
-            form = item if isinstance(item, dict) else {"": item}
+        for value in row.value if isinstance(row.value, list) else [row.value]:
+            forms = value if isinstance(value, dict) else {"": value}
             entries.append(
-                entry := Entry(row.key, *_text_and_plural(form), notes=notes, line=row.line)
+                entry := Entry(row.key, *_text_and_plural(forms), notes=notes, line=row.line)
             )
-            entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
-            if not entry.is_same and "own" not in form:
-                first = firsts.setdefault((entry.english, entry.plural), entry)
-                if first is not entry:
-                    entry.is_same, entry.like = True, first.key
-                    first.notes = list(dict.fromkeys([*first.notes, *notes]))
+            entry.is_same = "same" in forms or _GAP.fullmatch(entry.english) is not None
+            if not entry.is_same and "own" not in forms:
+                earlier_entry = entry_by_text.setdefault((entry.english, entry.plural), entry)
+                if earlier_entry is not entry:
+                    entry.is_same, entry.same_text_key = True, earlier_entry.key
+                    earlier_entry.notes = list(dict.fromkeys([*earlier_entry.notes, *notes]))
         if row.key in keys:
             catalogue.problems.append((row.line, f"{row.key}: it is there twice"))
-        elif row.value is not None and (why := _problem(entries)):
-            catalogue.problems.append((row.line, f"{row.key}: {why}"))
+        elif row.value is not None and (problem := _find_problem(entries)):
+            catalogue.problems.append((row.line, f"{row.key}: {problem}"))
         keys.add(row.key)
         for entry in entries:
-            catalogue.entries.setdefault(entry.at, entry)
+            catalogue.entries.setdefault(entry.identity, entry)
     return catalogue
 
 
-def _text_and_plural(form: dict[str, object]) -> tuple[str, str]:
+def _text_and_plural(forms: dict[str, object]) -> tuple[str, str]:
     """Return a text and its plural, empty without one."""
-    match form:
+    match forms:
         case {"one": str(one), "other": str(other), **more} if not more:
             return one, other
         case {"": str(text), **more} | {"own": str(text), **more} | {"same": str(text), **more}:
@@ -254,7 +263,7 @@ def _text_and_plural(form: dict[str, object]) -> tuple[str, str]:
     return "", ""
 
 
-def _problem(entries: list[Entry]) -> str:
+def _find_problem(entries: list[Entry]) -> str:
     """Return what is wrong with the texts of a key, or nothing."""
     texts = [entry.english for entry in entries]
     if not all(texts) or not texts:
@@ -273,7 +282,7 @@ def _problem(entries: list[Entry]) -> str:
 def gap_names(text: str) -> set[str]:
     """Return the names of the gaps, with what follows a colon: how their value is written."""
     return {
-        name + (":" + form if form else "")
-        for _, name, form, _ in Formatter().parse(text)
+        name + (":" + format_spec if format_spec else "")
+        for _, name, format_spec, _ in Formatter().parse(text)
         if name is not None
     }

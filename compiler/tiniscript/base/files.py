@@ -75,7 +75,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
     leaves. A device or a pipe, which has no old content, is written to. `is_lasting`: also where
     the power goes, or the stick is pulled, the old content is there or the new; that takes time.
     """
-    _refuse_foreign_links(path)
+    _check_links(path)
     stat_result = _stat(path)
     if stat_result is not None and not stat.S_ISREG(stat_result.st_mode):
         with path.open("wb") as device:
@@ -86,23 +86,25 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
         if not os.access(target, os.W_OK):
             raise PermissionError(13, os.strerror(13))
         mode = stat.S_IMODE(stat_result.st_mode) & 0o777 if mode is None else mode
-    new = target.with_name(f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW_ENDING}")
+    new_path = target.with_name(
+        f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW_ENDING}"
+    )
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     # nobody else may read what replaces a file that nobody else may read
     try:
-        file = os.open(new, flags, 0o666 if mode is None else 0o600)
-        with open(file, "wb") as stream:  # noqa: PTH123 - a number, not a path
+        descriptor = os.open(new_path, flags, 0o666 if mode is None else 0o600)
+        with open(descriptor, "wb") as stream:  # noqa: PTH123 - a number, not a path
             stream.write(data)
             if is_lasting:
                 stream.flush()
-                os.fsync(file)
+                os.fsync(descriptor)
         if mode is not None:
-            new.chmod(mode)
-        _move_into_place(new, target)
+            new_path.chmod(mode)
+        _move_into_place(new_path, target)
     except BaseException:
         with suppress(OSError):
-            new.unlink()
+            new_path.unlink()
         raise
 
 
@@ -121,7 +123,7 @@ def keep(path: Path, data: bytes) -> bool:
     return True
 
 
-def _refuse_foreign_links(path: Path) -> None:
+def _check_links(path: Path) -> None:
     """Raise PermissionError where another user's link, in a folder of many, is on the way.
 
     The rule is that of Linux for folders like /tmp: a link of the folder's owner, root or the own
@@ -129,30 +131,30 @@ def _refuse_foreign_links(path: Path) -> None:
     """
     if sys.platform == "win32":
         return
-    current, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
-    followed = 0
-    while rest:
-        step = current / rest.pop(0)
+    reached_path, parts_left = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
+    link_count = 0
+    while parts_left:
+        next_path = reached_path / parts_left.pop(0)
         try:
-            link = step.lstat()
+            link_stat = next_path.lstat()
         except OSError:  # nothing is there, so nothing leads away
             return
-        if not stat.S_ISLNK(link.st_mode):
-            current = step
+        if not stat.S_ISLNK(link_stat.st_mode):
+            reached_path = next_path
             continue
-        folder = current.stat()
-        is_shared = folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-        if is_shared and link.st_uid not in (os.geteuid(), folder.st_uid, 0):
+        folder_stat = reached_path.stat()
+        is_shared = folder_stat.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+        if is_shared and link_stat.st_uid not in (os.geteuid(), folder_stat.st_uid, 0):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-        followed += 1
-        if followed > MOST_LINKS:
+        link_count += 1
+        if link_count > MOST_LINKS:
             return  # what opens it says so
-        target = step.readlink()
-        current = Path(target.anchor) if target.anchor else current
-        rest = [*target.parts[1 if target.anchor else 0 :], *rest]
+        target = next_path.readlink()
+        reached_path = Path(target.anchor) if target.anchor else reached_path
+        parts_left = [*target.parts[1 if target.anchor else 0 :], *parts_left]
 
 
-def _move_into_place(new: Path, target: Path) -> None:
+def _move_into_place(new_path: Path, target: Path) -> None:
     """Put a file in the place of another one.
 
     Windows replaces no file that is open, and a virus scanner or another command may be reading it
@@ -161,7 +163,7 @@ def _move_into_place(new: Path, target: Path) -> None:
     end_s = monotonic() + REPLACE_WAIT_S
     while True:
         try:
-            new.replace(target)
+            new_path.replace(target)
             return
         except PermissionError:
             if sys.platform != "win32" or monotonic() >= end_s:
@@ -176,31 +178,31 @@ def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     A process that ends unlocks what it has locked. One that stands still does not: then this ends
     with TimeoutError after some seconds.
     """
-    lock = path.with_name(path.name + LOCK_ENDING)
+    lock_path = path.with_name(path.name + LOCK_ENDING)
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-    number = os.open(lock, flags, mode)
+    descriptor = os.open(lock_path, flags, mode)
     try:
         end_s = monotonic() + LOCK_WAIT_S
-        while not try_lock(number):
+        while not try_lock(descriptor):
             if monotonic() >= end_s:
                 raise TimeoutError(110, os.strerror(110))
             sleep(0.02)
         yield
     finally:
-        os.close(number)
+        os.close(descriptor)
 
 
-def try_lock(number: int) -> bool:
+def try_lock(descriptor: int) -> bool:
     """Lock an open file for this process, unless another one has."""
     try:
         if sys.platform == "win32":
             import msvcrt
 
-            msvcrt.locking(number, msvcrt.LK_NBLCK, 1)
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         else:
             import fcntl
 
-            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
         return False
     return True
@@ -231,16 +233,16 @@ def is_pipe(name: str) -> bool:
         return False
 
 
-def contents(path: Path, limit_bytes: int) -> bytes:
+def read_limited(path: Path, limit_bytes: int) -> bytes:
     """Return the bytes of a file that anything may lie at: this ends soon, whatever it is.
 
     A pipe would be waited for, and a device or a huge file would fill the memory. Raises OSError
     where there is no regular file, or more than so many bytes.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    number = os.open(path, flags)
-    with os.fdopen(number, "rb") as file:
-        if not stat.S_ISREG(os.fstat(number).st_mode):
+    descriptor = os.open(path, flags)
+    with os.fdopen(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise OSError("no file")
         data = file.read(limit_bytes + 1)
     if len(data) > limit_bytes:

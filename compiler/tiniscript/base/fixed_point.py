@@ -76,12 +76,12 @@ def whole(a: int) -> int:
 
 def round_to(a: int, decimal_count: int) -> int:
     """ROUND(a, decimals): their count is rounded to a whole number first; 3 or more keep `a`."""
-    places = whole(decimal_count)
-    if places >= 3:
+    decimals = whole(decimal_count)
+    if decimals >= 3:
         return a
-    if places < -6:  # half of 10**7 is more than any number
+    if decimals < -6:  # half of 10**7 is more than any number
         return 0
-    unit: int = 10 ** (3 - places)
+    unit: int = 10 ** (3 - decimals)
     return in_range(rounded_quotient(a, unit) * unit)
 
 
@@ -96,20 +96,20 @@ def read_literal(text: str) -> tuple[int, bool]:
     The result is not limited to 32 bits: whether a minus belongs to it is the parser's to say.
     More than ten digits before the point are far out of range, whatever they are.
     """
-    digits, _, places = text.partition(".")
+    digits, _, decimals = text.partition(".")
     digits = digits.lstrip("0")
-    value = int(digits[:11] or "0") * ONE + int((places + "000")[:3])
-    rest = places[3:]
-    if rest and rest[0] >= "5":
+    value = int(digits[:11] or "0") * ONE + int((decimals + "000")[:3])
+    extra_digits = decimals[3:]
+    if extra_digits and extra_digits[0] >= "5":
         value += 1
-    return value, not rest.strip("0")
+    return value, not extra_digits.strip("0")
 
 
 def as_text(value: int) -> str:
     """Return the shortest decimal: `12.5`, `-0.001`, `7`."""
     sign = "-" if value < 0 else ""
-    units, rest = divmod(abs(value), ONE)
-    return f"{sign}{units}.{rest:03d}".rstrip("0") if rest else f"{sign}{units}"
+    units, fraction = divmod(abs(value), ONE)
+    return f"{sign}{units}.{fraction:03d}".rstrip("0") if fraction else f"{sign}{units}"
 
 
 def value_text(value: int, is_yes_no: bool) -> str:
@@ -133,5 +133,5 @@ def next_random(state: int) -> int:
 
 def random_between(low: int, high: int, state: int) -> int:
     """Return a whole number from `low` to `high`, for a `state` that has just been stepped."""
-    first, last = sorted((whole(low), whole(high)))
-    return in_range((first + state % (last - first + 1)) * ONE)
+    lowest, highest = sorted((whole(low), whole(high)))
+    return in_range((lowest + state % (highest - lowest + 1)) * ONE)

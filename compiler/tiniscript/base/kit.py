@@ -97,17 +97,17 @@ class Kit(NamedTuple):
         """Whether code that uses these devices reads a remote control; a use is as below."""
         return any(kind == "sensor" and k >= len(self.sensors) for kind, k in uses)
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
-        """Return how long a move takes that goes, or `turns`, so many thousandths.
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
+        """Return how long a move takes that goes, or `is_turn`, so many thousandths.
 
         `power` is 0 to 100. Raises Fault where it never comes there, or takes too long.
         """
-        if way <= 0:
+        if extent <= 0:
             return 0
-        per_second = (self.turn if turns else self.speed) * power  # in thousandths of a percent
+        per_second = (self.turn if is_turn else self.speed) * power  # in thousandths of a percent
         if not per_second:
             raise Fault("NO_POWER")
-        return in_range(rounded_quotient(way * 100_000, per_second))
+        return in_range(rounded_quotient(extent * 100_000, per_second))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -132,25 +132,28 @@ class Kit(NamedTuple):
         So one device that is another one is noticed however often the code uses it.
         """
         hashes = self.hashes if uses else ()
-        result = 0
+        devices_hash = 0
         for kind, number in uses:
-            result <<= 1
-            if result > 0xFFFF:
-                result ^= 0x10000 | DEVICES_POLYNOMIAL
-            result ^= hashes[number + (0 if kind == "sensor" else len(self.readings))]
-        return result
+            devices_hash <<= 1
+            if devices_hash > 0xFFFF:
+                devices_hash ^= 0x10000 | DEVICES_POLYNOMIAL
+            devices_hash ^= hashes[number + (0 if kind == "sensor" else len(self.readings))]
+        return devices_hash
 
     def lines(self) -> list[str]:
         """Return what the profile says of each device, as it is hashed."""
-        return [*_lines("sensor", self.sensors), *_lines("actuator", self.actuators)]
+        return [*_device_lines("sensor", self.sensors), *_device_lines("actuator", self.actuators)]
 
     def device_lines(self) -> list[str]:
         """Return what a program can see of each device, as it is hashed."""
         remote = REMOTE if self.has_remote else ()
-        return [*_lines("sensor", (*self.sensors, *remote)), *_lines("actuator", self.actuators)]
+        return [
+            *_device_lines("sensor", (*self.sensors, *remote)),
+            *_device_lines("actuator", self.actuators),
+        ]
 
 
-def _lines(kind: str, devices: Sequence[Device]) -> list[str]:
+def _device_lines(kind: str, devices: Sequence[Device]) -> list[str]:
     return [
         f"{kind} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
         for device in devices

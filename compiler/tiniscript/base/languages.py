@@ -35,13 +35,13 @@ T = TypeVar("T")
 
 
 class Language(NamedTuple):
-    """What a language says of itself. `form_of` has which of `forms` goes with a number, a digit
-    for each before 200; from 100 on they repeat themselves each hundred."""
+    """What a language says of itself. `form_digits` has which of `forms` goes with a number, a
+    digit for each before 200; from 100 on they repeat themselves each hundred."""
 
     name: str
     english_name: str
     forms: tuple[str, ...]
-    form_of: str
+    form_digits: str
 
 
 class WrongTexts(Exception):
@@ -68,26 +68,26 @@ def _translate_name(name: T, language: str) -> T:
 @cache
 def languages() -> tuple[str, ...]:
     """Return the codes of all languages, the one that is translated first."""
-    result = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
-    return tuple(sorted(result, key=lambda code: (code != SOURCE_LANGUAGE, code)))
+    codes = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
+    return tuple(sorted(codes, key=lambda code: (code != SOURCE_LANGUAGE, code)))
 
 
-def find_language(name: str) -> str:
+def find_language(locale_name: str) -> str:
     """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
-    code = name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
-    for item in (code, code.partition("_")[0]):
-        if item in languages():
-            return item
-    team = code.partition("_")[0]
-    by_team = (
+    code = locale_name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
+    for candidate in (code, code.partition("_")[0]):
+        if candidate in languages():
+            return candidate
+    language_name = code.partition("_")[0]
+    code_by_name = (
         {language_info(language).english_name.lower(): language for language in languages()}
-        if team
+        if language_name
         else {}
     )
-    return by_team.get(team, SOURCE_LANGUAGE)
+    return code_by_name.get(language_name, SOURCE_LANGUAGE)
 
 
-def table(language: str, name: str) -> str:
+def read_table(language: str, name: str) -> str:
     """Return a file of a language's folder, which may lack it."""
     path = FOLDER / language / name
     return path.read_text(encoding="utf-8-sig") if path.is_file() else ""
@@ -109,8 +109,8 @@ def _load_language(language: str) -> Language:
 def _catalogue_texts(language: str) -> tuple[Any, ...]:
     from tiniscript.base.translations import read_language
 
-    result = read_language(FOLDER / language / ABOUT_FILE)
-    return result.name, result.english_name, result.forms, result.form_of
+    info = read_language(FOLDER / language / ABOUT_FILE)
+    return info.name, info.english_name, info.forms, info.form_digits
 
 
 def find_text(name: str, key: str, language: str) -> str | None:
@@ -121,9 +121,9 @@ def find_text(name: str, key: str, language: str) -> str | None:
 
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
-    result = find_text(name, key, language)
-    if result is not None:
-        return result
+    found_text = find_text(name, key, language)
+    if found_text is not None:
+        return found_text
     raise KeyError(key)
 
 
@@ -148,38 +148,43 @@ def plural_text(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     forms = catalogue(name, language)[key]
     assert isinstance(forms, dict), key
-    text = language_info(language)
+    info = language_info(language)
     number = count if count < 100 else 100 + count % 100
-    return forms.get(text.forms[int(text.form_of[number])]) or forms["other"]
+    return forms.get(info.forms[int(info.form_digits[number])]) or forms["other"]
 
 
 @cache
 def catalogue(name: str, language: str) -> Texts:
     """Return the texts of a catalogue by key; of an unknown language they are English."""
     language = language if language in languages() else SOURCE_LANGUAGE
-    translation_path, path = files(name, language)[1], FOLDER / language / (name + CACHE_ENDING)
-    if not translation_path.is_file() and (is_clone() or not path.is_file()):
+    translation_path, cache_path = (
+        source_files(name, language)[1],
+        FOLDER / language / (name + CACHE_ENDING),
+    )
+    if not translation_path.is_file() and (is_clone() or not cache_path.is_file()):
         if language != SOURCE_LANGUAGE:  # nothing is translated, or a page has not fetched it
             return catalogue(name, SOURCE_LANGUAGE)
         if not is_clone():
             return {}
-    companion_files = (translation_path.with_name(item) for item in (SEEN_FILE, ABOUT_FILE))
-    result: Texts = _load_cached(
-        path, [*files(name, language), *companion_files], lambda: texts(name, language)
+    companion_files = (
+        translation_path.with_name(file_name) for file_name in (SEEN_FILE, ABOUT_FILE)
     )
-    return result
+    loaded_texts: Texts = _load_cached(
+        cache_path, [*source_files(name, language), *companion_files], lambda: texts(name, language)
+    )
+    return loaded_texts
 
 
 def texts(name: str, language: str) -> Texts:
     """Return the texts of a catalogue as its sources have them."""
     from tiniscript.base.translations import texts_of
 
-    return texts_of(entries(name, language))
+    return texts_of(merged_catalogue(name, language))
 
 
-def entries(name: str, language: str) -> Catalogue:
+def merged_catalogue(name: str, language: str) -> Catalogue:
     """Return the English texts of a catalogue with what a language has of them."""
-    from tiniscript.base.catalogue_source import load
+    from tiniscript.base.catalogue_source import load_catalogue
     from tiniscript.base.translations import (
         TranslationFile,
         catalogue_of_names,
@@ -189,13 +194,15 @@ def entries(name: str, language: str) -> Catalogue:
         read_translation_file,
     )
 
-    source, path = files(name, language)
+    source, path = source_files(name, language)
     translation_file = (
         read_translation_file(path) if language != SOURCE_LANGUAGE else TranslationFile()
     )
-    english = load(source) if name != NAMES_CATALOGUE else catalogue_of_names(translation_file)
-    for line, why in english.problems:
-        raise WrongTexts(f"{source}:{line}: {why}")
+    english = (
+        load_catalogue(source) if name != NAMES_CATALOGUE else catalogue_of_names(translation_file)
+    )
+    for line, problem in english.problems:
+        raise WrongTexts(f"{source}:{line}: {problem}")
     seen_hashes, _ = read_seen(path.with_name(SEEN_FILE))
     return merge_translations(
         english, name, translation_file, seen_hashes, read_language(path.with_name(ABOUT_FILE))
@@ -209,27 +216,28 @@ def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -
             return marshal.loads(path.read_bytes())
     from tiniscript.base.files import replace
 
-    result = make()
+    value = make()
     with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
-        replace(path, marshal.dumps(result, MARSHAL_VERSION))
-    return result
+        replace(path, marshal.dumps(value, MARSHAL_VERSION))
+    return value
 
 
 def forget_languages() -> None:
     """Read all languages again when they are next asked for: their folder is another one now."""
-    for lru_cache_wrapper in (languages, catalogue, _load_language):
-        lru_cache_wrapper.cache_clear()
+    for cached_function in (languages, catalogue, _load_language):
+        cached_function.cache_clear()
 
 
 def cache_files() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
     names = sorted({path.stem for path in FOLDER.glob("*/*.toml") if path.name != ABOUT_FILE})
-    made: dict[str, Any] = {}
+    value_by_name: dict[str, Any] = {}
     for language in languages():
-        made |= {f"{language}/{name}": texts(name, language) for name in names}
-        made[f"{language}/{ABOUT_FILE.removesuffix('.toml')}"] = _catalogue_texts(language)
+        value_by_name |= {f"{language}/{name}": texts(name, language) for name in names}
+        value_by_name[f"{language}/{ABOUT_FILE.removesuffix('.toml')}"] = _catalogue_texts(language)
     return {
-        name + CACHE_ENDING: marshal.dumps(value, MARSHAL_VERSION) for name, value in made.items()
+        name + CACHE_ENDING: marshal.dumps(value, MARSHAL_VERSION)
+        for name, value in value_by_name.items()
     }
 
 
@@ -238,7 +246,7 @@ def is_clone() -> bool:
     return (FOLDER / SOURCE_LANGUAGE / ABOUT_FILE).is_file()
 
 
-def files(name: str, language: str) -> tuple[Path, Path]:
+def source_files(name: str, language: str) -> tuple[Path, Path]:
     """Return the English source of a catalogue, and what a language has of it."""
     return FOLDER / SOURCE_LANGUAGE / f"{name}.toml", FOLDER / language / f"{name}.toml"
 

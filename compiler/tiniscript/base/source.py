@@ -35,18 +35,18 @@ class Edit(NamedTuple):
 
 def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     """Return the text with these changes. They must not overlap."""
-    pieces, place = [], 0
-    for span, new in sorted(edits):
-        pieces += [text[place : span.start], new]
-        place = span.end
-    return "".join((*pieces, text[place:]))
+    pieces, offset = [], 0
+    for span, new_text in sorted(edits):
+        pieces += [text[offset : span.start], new_text]
+        offset = span.end
+    return "".join((*pieces, text[offset:]))
 
 
-def overlap(one: Iterable[Edit], other: Iterable[Edit]) -> bool:
+def edits_overlap(edits: Iterable[Edit], other_edits: Iterable[Edit]) -> bool:
     """Whether two changes touch the same place."""
-    others = list(other)
+    other_list = list(other_edits)
     return any(
-        a.span.start <= b.span.end and b.span.start <= a.span.end for a in one for b in others
+        a.span.start <= b.span.end and b.span.start <= a.span.end for a in edits for b in other_list
     )
 
 
@@ -60,19 +60,19 @@ class Source:
 
     def position(self, offset: int) -> tuple[int, int]:
         """Return the line and the column, both from 1, of the character at `offset`."""
-        starts = self._starts()
+        starts = self._find_line_starts()
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1
 
     def line_text(self, line: int) -> str:
         """Return the text of a line, from 1, without its end."""
-        starts = self._starts()
+        starts = self._find_line_starts()
         end = starts[line] if line < len(starts) else len(self.text)
         return self.text[starts[line - 1] : end].rstrip("\r\n")
 
     def line_span(self, line: int) -> Span:
         """Return where a line is, from 1, with its end; of the last one with the end before it."""
-        starts = self._starts()
+        starts = self._find_line_starts()
         if line < len(starts):
             return Span(starts[line - 1], starts[line])
         return Span(len(self.text[: starts[line - 1]].rstrip("\r\n")), len(self.text))
@@ -80,7 +80,7 @@ class Source:
     def __getitem__(self, span: Span) -> str:
         return self.text[span.start : span.end]
 
-    def _starts(self) -> list[int]:
+    def _find_line_starts(self) -> list[int]:
         if self._line_starts is None:
             self._line_starts = [0, *(match.end() for match in LINE_END.finditer(self.text))]
         return self._line_starts
@@ -105,10 +105,10 @@ def decode(data: bytes) -> str:
         raise Unreadable("too_large", LARGEST_SOURCE_BYTES)
     try:
         text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as failure:
+    except UnicodeDecodeError as error:
         is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         nul = -1 if is_utf16 else data.find(b"\0", 0, 4096)
-        raise Unreadable("encoding" if nul < 0 else "binary", failure.start) from None
+        raise Unreadable("encoding" if nul < 0 else "binary", error.start) from None
     nul = text.find("\0")
     if nul >= 0:
         raise Unreadable("binary", len(text[:nul].encode()))
@@ -126,6 +126,6 @@ def printable(text: str, most_characters: int | None = None) -> str:
     shown_text = text if most_characters is None else text[:most_characters]
     if not shown_text.isprintable():
         shown_text = "".join(
-            letter if letter.isprintable() else REPLACEMENT_SIGN for letter in shown_text
+            character if character.isprintable() else REPLACEMENT_SIGN for character in shown_text
         )
     return shown_text + "…" if len(shown_text) < len(text) else shown_text

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from tiniscript.base.languages import languages, table
+from tiniscript.base.languages import languages, read_table
 
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
@@ -23,39 +23,42 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     if not 2 < len(word) <= 40:
         return None
     most_edits = 1 if len(word) <= 5 else 2
-    best, its_edits = None, most_edits + 1
+    best, best_edit_count = None, most_edits + 1
     letters = set(word)
-    for other in candidates:
+    for candidate in candidates:
         is_too_different = (
-            abs(len(other) - len(word)) > most_edits or len(letters.difference(other)) > most_edits
+            abs(len(candidate) - len(word)) > most_edits
+            or len(letters.difference(candidate)) > most_edits
         )
-        if len(other) > 1 and not is_too_different:
-            edits = _edits(word, other)
-            if edits == 1 and len(word) <= 3 and len(other) == len(word):
-                edits += sorted(word) != sorted(other)
-            if edits < its_edits:
-                best, its_edits = other, edits
+        if len(candidate) > 1 and not is_too_different:
+            edit_count = _edit_count(word, candidate)
+            if edit_count == 1 and len(word) <= 3 and len(candidate) == len(word):
+                edit_count += sorted(word) != sorted(candidate)
+            if edit_count < best_edit_count:
+                best, best_edit_count = candidate, edit_count
     return best
 
 
 def is_slip(word: str, intended: str) -> bool:
     """Whether a word is one slip away from another, which may be short: its place says the rest."""
-    return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edits(word, intended) == 1
+    return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edit_count(word, intended) == 1
 
 
-def _edits(one: str, other: str) -> int:
+def _edit_count(word: str, other: str) -> int:
     """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
-    before_last: list[int] = []
-    last = list(range(len(other) + 1))
-    for i, letter in enumerate(one, 1):
+    row_before_last: list[int] = []
+    last_row = list(range(len(other) + 1))
+    for i, letter in enumerate(word, 1):
         row = [i]
         for k, other_letter in enumerate(other, 1):
-            least_edits = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
-            if i > 1 and k > 1 and letter == other[k - 2] and other_letter == one[i - 2]:
-                least_edits = min(least_edits, before_last[k - 2] + 1)
-            row.append(least_edits)
-        before_last, last = last, row
-    return last[-1]
+            least_edit_count = min(
+                last_row[k] + 1, row[k - 1] + 1, last_row[k - 1] + (letter != other_letter)
+            )
+            if i > 1 and k > 1 and letter == other[k - 2] and other_letter == word[i - 2]:
+                least_edit_count = min(least_edit_count, row_before_last[k - 2] + 1)
+            row.append(least_edit_count)
+        row_before_last, last_row = last_row, row
+    return last_row[-1]
 
 
 _LEAST_SOUND_LETTERS = 4  # letters that a word needs where only its sound is the same
@@ -67,11 +70,11 @@ _MOST_LETTERS = 24
 @cache
 def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
     """What sounds the same in each language that says so: patterns, and the sign for them."""
-    tables = (table(language, "sounds.txt").split("\n") for language in languages())
-    parted = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
+    tables = (read_table(language, "sounds.txt").split("\n") for language in languages())
+    rows_by_language = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
     return tuple(
         tuple((re.compile(pattern.strip()), sign.strip()) for pattern, _, sign in rows)
-        for rows in parted
+        for rows in rows_by_language
         if rows
     )
 
@@ -80,27 +83,27 @@ class Speller:
     """The words that are looked for. A lookup takes the same time however many they are."""
 
     def __init__(self, words: Iterable[str]) -> None:
-        self._by_sound: dict[tuple[int, str], str] = {}
-        self._by_rest: dict[str, list[str]] = {}
+        self._word_by_sound: dict[tuple[int, str], str] = {}
+        self._words_by_deletion: dict[str, list[str]] = {}
         for word in words:
-            for sound in _sound_keys(word) if len(word) >= _LEAST_SOUND_LETTERS else ():
-                self._by_sound.setdefault(sound, word)
+            for sound_key in _sound_keys(word) if len(word) >= _LEAST_SOUND_LETTERS else ():
+                self._word_by_sound.setdefault(sound_key, word)
             if len(word) >= _LEAST_SWAP_LETTERS:
-                for rest in _deletions(word):
-                    self._by_rest.setdefault(rest, []).append(word)
+                for deletion in _deletions(word):
+                    self._words_by_deletion.setdefault(deletion, []).append(word)
 
     def find_sound_alike(self, word: str) -> str | None:
         """Return the word that sounds like `word`, or None."""
         if not _LEAST_SOUND_LETTERS <= len(word) <= _MOST_LETTERS:
             return None
-        return next(filter(None, map(self._by_sound.get, _sound_keys(word))), None)
+        return next(filter(None, map(self._word_by_sound.get, _sound_keys(word))), None)
 
     def find_near_miss(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
         if not _LEAST_SWAP_LETTERS <= len(word) <= _MOST_LETTERS or not word.isalpha():
             return None
-        for rest in _deletions(word):
-            for other in self._by_rest.get(rest, ()):
+        for deletion in _deletions(word):
+            for other in self._words_by_deletion.get(deletion, ()):
                 if _is_one_edit_away(word, other):
                     return other
         return None
@@ -122,18 +125,18 @@ def _deletions(word: str) -> Iterator[str]:
         yield word[:k] + word[k + 1 :]
 
 
-def _is_one_edit_away(one: str, other: str) -> bool:
+def _is_one_edit_away(word: str, other: str) -> bool:
     """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
     k = 0
-    while k < min(len(one), len(other)) and one[k] == other[k]:
+    while k < min(len(word), len(other)) and word[k] == other[k]:
         k += 1
-    one, other = one[k:], other[k:]
-    if len(one) == len(other) and one[:2] == other[1::-1] and one[2:] == other[2:]:
+    word, other = word[k:], other[k:]
+    if len(word) == len(other) and word[:2] == other[1::-1] and word[2:] == other[2:]:
         return True
-    if min(len(one), len(other)) + k < _LEAST_SLIP_LETTERS:  # `AVNZA`: a vowel that nobody texts
+    if min(len(word), len(other)) + k < _LEAST_SLIP_LETTERS:  # `AVNZA`: a vowel that nobody texts
         return (
             len(other) + k >= _LEAST_SLIP_LETTERS
             and other[:1] in tuple("AEIOU")
-            and one == other[1:]
+            and word == other[1:]
         )
-    return one[1:] in (other, other[1:]) or one == other[1:]
+    return word[1:] in (other, other[1:]) or word == other[1:]

@@ -16,24 +16,24 @@ class Event(NamedTuple):
     """What a robot did at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
 
     `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device
-    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `at` is
-    where a SHOW is in the code, if the robot tells it.
+    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `offset`
+    is where a SHOW is in the code, if the robot tells it.
     """
 
     time_ms: int
-    what: str
+    kind: str
     values: tuple[int, ...]
     text: str
-    at: int = -1
+    offset: int = -1
 
     def __str__(self) -> str:
         return f"{self.time_ms} {self.text}"
 
 
 class Ending(NamedTuple):
-    """How a run ended: `what` is DONE, FAULT or LIMIT; `offset` is where the code was."""
+    """How a run ended: `kind` is DONE, FAULT or LIMIT; `offset` is where the code was."""
 
-    what: str
+    kind: str
     fault: str
     offset: int
     steps: int
@@ -44,11 +44,13 @@ class Senses:
 
     def __init__(self, kit: Kit, readings_by_sensor: Mapping[int, Sequence[int]]) -> None:
         """`readings_by_sensor` maps the number of a sensor to its readings, in thousandths."""
-        self.lists = [list(readings_by_sensor.get(i, ())) or [0] for i in range(len(kit.readings))]
+        self.readings = [
+            list(readings_by_sensor.get(i, ())) or [0] for i in range(len(kit.readings))
+        ]
         self.read_counts = [0] * len(kit.readings)
 
     def __call__(self, sensor: int) -> int:
-        values = self.lists[sensor]
+        values = self.readings[sensor]
         value = values[min(self.read_counts[sensor], len(values) - 1)]
         self.read_counts[sensor] += 1
         return value
@@ -63,11 +65,11 @@ class TracedRobot:
         self.now_ms = 0
         self.events: list[Event] = []
 
-    def say(self, name: str, values: tuple[int, ...], text: str) -> None:
+    def record(self, name: str, values: tuple[int, ...], text: str) -> None:
         self.events.append(Event(self.now_ms, name, values, text))
 
     def motors(self, left: int, right: int) -> None:
-        self.say("MOTORS", (left, right), f"MOTORS {left} {right}")
+        self.record("MOTORS", (left, right), f"MOTORS {left} {right}")
 
     def off(self) -> None:
         """Record nothing: the final stop is not part of a trace."""
@@ -75,21 +77,21 @@ class TracedRobot:
     def read(self, sensor: int) -> int | None:
         value = self.senses(sensor)
         device = self.kit.readings[sensor]
-        self.say("READ", (sensor, value), f"READ {device.name} {device.text(value)}")
+        self.record("READ", (sensor, value), f"READ {device.name} {device.text(value)}")
         return value
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
-        return self.kit.go_ms(way, power, turns)
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
+        return self.kit.go_ms(extent, power, is_turn)
 
     def beep(self, hertz: int, duration_ms: int) -> None:
-        self.say("BEEP", (hertz, duration_ms), f"BEEP {hertz} {duration_ms}")
+        self.record("BEEP", (hertz, duration_ms), f"BEEP {hertz} {duration_ms}")
 
     def show(self, value: int, is_yes_no: bool) -> bool:
-        self.say("SHOW", (value,), f"SHOW {value_text(value, is_yes_no)}")
+        self.record("SHOW", (value,), f"SHOW {value_text(value, is_yes_no)}")
         return True
 
     def set(self, actuator: int, value: int) -> None:
         device = self.kit.actuators[actuator]
         if not device.is_yes_no:
             value = clamp(whole(value) * 1000, device.low, device.high)
-        self.say("SET", (actuator, value), f"SET {device.name} {device.text(value)}")
+        self.record("SET", (actuator, value), f"SET {device.name} {device.text(value)}")

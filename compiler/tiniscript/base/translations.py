@@ -26,7 +26,7 @@ from tiniscript.base.catalogue_source import (
     Row,
     decode_file,
     gap_names,
-    rows,
+    parse_rows,
 )
 
 NUMBERS_TRIED = 200  # after the first hundred a rule of plurals repeats itself each hundred
@@ -37,15 +37,16 @@ _ENGLISH_FORMS = ("one", "other")
 
 @dataclass
 class Language:
-    """What `languages.Language` says, the `rule` of its plurals, which is one of gettext, and
-    `read_by`: whether somebody has read it whose language it is. One that is complete lacks none.
+    """What `languages.Language` says, the `plural_rule` of its plurals, which is one of gettext,
+    and `read_by`: whether somebody has read it whose language it is. One that is complete lacks
+    none.
     """
 
     name: str
     english_name: str
     forms: tuple[str, ...] = _ENGLISH_FORMS
-    rule: str = _ENGLISH_RULE
-    form_of: str = ""
+    plural_rule: str = _ENGLISH_RULE
+    form_digits: str = ""
     read_by: str = ""
     is_complete: bool = False
     problems: list[Problem] = field(default_factory=list)
@@ -55,7 +56,7 @@ def read_language(path: Path) -> Language:
     """Read what a language says of itself; what it does not say is as in English."""
     language = Language(path.parent.name, path.parent.name)
     text, language.problems = decode_file(path)
-    language_rows, _, problems = rows(text)
+    language_rows, _, problems = parse_rows(text)
     language.problems += problems
     type_of_key: dict[str, Any] = {
         "name": str,
@@ -75,7 +76,7 @@ def read_language(path: Path) -> Language:
             values[row.key] = row.value
         elif row.value is not None:
             language.problems.append(
-                (row.line, f"{row.key}: it is no {_KINDS[type_of_key[row.key]]}")
+                (row.line, f"{row.key}: it is no {_TYPE_NAMES[type_of_key[row.key]]}")
             )
     language.name = values.get("name", language.name)
     language.english_name = values.get("english_name", language.english_name)
@@ -83,56 +84,56 @@ def read_language(path: Path) -> Language:
         values.get("read_by", ""),
         values.get("is_complete", False),
     )
-    names, rule = (
+    forms, rule = (
         tuple(values.get("forms", _ENGLISH_FORMS)),
         values.get("which_form", _ENGLISH_RULE),
     )
-    form_of, why = _form_of(rule, names)
-    if why:
+    form_digits, problem = _form_digits(rule, forms)
+    if problem:
         line = next((row.line for row in language_rows if row.key in ("which_form", "forms")), 1)
-        language.problems.append((line, why))
-        names, rule, (form_of, _) = (
+        language.problems.append((line, problem))
+        forms, rule, (form_digits, _) = (
             _ENGLISH_FORMS,
             _ENGLISH_RULE,
-            _form_of(_ENGLISH_RULE, _ENGLISH_FORMS),
+            _form_digits(_ENGLISH_RULE, _ENGLISH_FORMS),
         )
-    language.forms, language.rule, language.form_of = names, rule, form_of
+    language.forms, language.plural_rule, language.form_digits = forms, rule, form_digits
     return language
 
 
-_KINDS = {str: "text", bool: "true or false", list: "list"}
+_TYPE_NAMES = {str: "text", bool: "true or false", list: "list"}
 
 
-def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
+def _form_digits(rule: str, forms: tuple[object, ...]) -> tuple[str, str]:
     """Return the digit of a form for each number, or why there is none."""
     from gettext import c2py
 
-    if not names or any(name not in PLURALS or names.count(name) > 1 for name in names):
+    if not forms or any(name not in PLURALS or forms.count(name) > 1 for name in forms):
         return "", f"forms: it is no list of some of {', '.join(PLURALS)}"
     try:
-        rule_of = c2py(rule)
-        digits = [int(rule_of(number)) for number in range(NUMBERS_TRIED)]
+        form_index = c2py(rule)
+        digits = [int(form_index(number)) for number in range(NUMBERS_TRIED)]
     except (ValueError, ArithmeticError, RecursionError) as error:
         return "", f"which_form: {error}"
-    if {*digits} <= {*range(len(names))}:
+    if {*digits} <= {*range(len(forms))}:
         return "".join(map(str, digits)), ""
-    return "", f"which_form: it gives {max(digits)}, and forms has {len(names)}"
+    return "", f"which_form: it gives {max(digits)}, and forms has {len(forms)}"
 
 
 def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
     """Return the hashes of a language by file and key, and what is wrong with the file of them."""
     hashes_by_key: dict[str, list[str]] = {}
     text, problems = decode_file(path) if path.is_file() else ("", [])
-    for number, line in enumerate(text.split("\n"), 1):
-        row = _SEEN_ROW.fullmatch(line)
+    for line_number, line in enumerate(text.split("\n"), 1):
+        match = _SEEN_ROW.fullmatch(line)
         if not line.strip() or line[0] == "#":
             continue
-        if row is None:
-            problems.append((number, f"this is no file, key and hash: {line[:60]}"))
-        elif row[1] in hashes_by_key:
-            problems.append((number, f"{row[1]} is there twice"))
+        if match is None:
+            problems.append((line_number, f"this is no file, key and hash: {line[:60]}"))
+        elif match[1] in hashes_by_key:
+            problems.append((line_number, f"{match[1]} is there twice"))
         else:
-            hashes_by_key[row[1]] = row[2].split()
+            hashes_by_key[match[1]] = match[2].split()
     return hashes_by_key, problems
 
 
@@ -142,33 +143,33 @@ class TranslationFile:
 
     rows: list[Row] = field(default_factory=list)
     texts: dict[str, list[Forms]] = field(default_factory=dict)
-    lines: dict[str, int] = field(default_factory=dict)
+    line_of_key: dict[str, int] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     text_below: str = ""
 
 
 def read_translation_file(path: Path) -> TranslationFile:
     """Read the texts of a language; of a file that is not there none."""
-    result = TranslationFile()
+    translation_file = TranslationFile()
     if not path.is_file():
-        return result
-    text, result.problems = decode_file(path)
-    result.rows, result.text_below, problems = rows(text)
-    result.problems += problems
-    for row in result.rows:
-        if row.key in result.texts:
-            result.problems.append((row.line, f"{row.key}: it is there twice"))
+        return translation_file
+    text, translation_file.problems = decode_file(path)
+    translation_file.rows, translation_file.text_below, problems = parse_rows(text)
+    translation_file.problems += problems
+    for row in translation_file.rows:
+        if row.key in translation_file.texts:
+            translation_file.problems.append((row.line, f"{row.key}: it is there twice"))
             continue
         values = row.value if isinstance(row.value, list) else [row.value]
         texts = [_forms(value) for value in values]
         if row.value is None or "\ufffd" in row.text:
             texts = []
         elif None in texts or not texts:
-            result.problems.append((row.line, f"{row.key}: it has no text"))
+            translation_file.problems.append((row.line, f"{row.key}: it has no text"))
             texts = []
-        result.texts[row.key] = [text for text in texts if text is not None]
-        result.lines[row.key] = row.line
-    return result
+        translation_file.texts[row.key] = [text for text in texts if text is not None]
+        translation_file.line_of_key[row.key] = row.line
+    return translation_file
 
 
 def _forms(value: object) -> Forms | None:
@@ -187,89 +188,98 @@ def catalogue_of_names(translation_file: TranslationFile) -> Catalogue:
 
 def merge_translations(
     english: Catalogue,
-    name: str,
+    catalogue_name: str,
     translation_file: TranslationFile,
     seen_hashes: dict[str, list[str]],
     language: Language,
 ) -> Catalogue:
     """Return English texts with those of a language, and what is wrong with these."""
     catalogue = Catalogue(
-        {at: without_translation(entry) for at, entry in english.entries.items()},
+        {identity: without_translation(entry) for identity, entry in english.entries.items()},
         translation_file.problems[:],
     )
     groups = catalogue.groups()
     for key, texts in translation_file.texts.items():
-        line, group = translation_file.lines[key], groups.get(key, [])
+        line, group = translation_file.line_of_key[key], groups.get(key, [])
         unknown_hashes = [entry.hash if entry.english == key else UNKNOWN_HASH for entry in group]
-        hashes = seen_hashes.get(f"{name} {key}", unknown_hashes)
+        hashes = seen_hashes.get(f"{catalogue_name} {key}", unknown_hashes)
         hashes = [*hashes, *[UNKNOWN_HASH] * len(texts)][: len(texts)]
         if not group:
             catalogue.problems.append((line, f"{key}: there is no such English text"))
-        elif why := assign_translations(group, texts, hashes):
-            catalogue.problems.append((line, f"{key}: {why}"))
+        elif problem := assign_translations(group, texts, hashes):
+            catalogue.problems.append((line, f"{key}: {problem}"))
         for entry in group:
             entry.line = line
-            for why in misfits(entry, language):
-                catalogue.problems.append((line, f"{key}: {why}"))
+            for problem in find_misfits(entry, language):
+                catalogue.problems.append((line, f"{key}: {problem}"))
                 entry.translation, entry.seen_hash = {}, ""
     for entry in catalogue.entries.values():
-        if entry.like and not entry.translation:
-            first = catalogue.entries[entry.like, entry.english]
-            entry.translation = first.translation if first.is_translated else {}
+        if entry.same_text_key and not entry.translation:
+            earlier_entry = catalogue.entries[entry.same_text_key, entry.english]
+            entry.translation = earlier_entry.translation if earlier_entry.is_translated else {}
     return catalogue
 
 
 def without_translation(entry: Entry) -> Entry:
-    at = (entry.key, entry.english, entry.plural)
-    return Entry(*at, notes=entry.notes, is_same=entry.is_same, like=entry.like, line=entry.line)
+    fields = (entry.key, entry.english, entry.plural)
+    return Entry(
+        *fields,
+        notes=entry.notes,
+        is_same=entry.is_same,
+        same_text_key=entry.same_text_key,
+        line=entry.line,
+    )
 
 
-def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
+def assign_translations(entries: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
     """Give each English text of a key its translation; return why one has no text, or nothing."""
-    english_hashes = {place: entry.hash for place, entry in enumerate(group)}
-    places_left = {place for place, forms in enumerate(texts) if forms}
+    english_hashes = {index: entry.hash for index, entry in enumerate(entries)}
+    indexes_left = {index for index, forms in enumerate(texts) if forms}
     has_moved = False
-    for place in sorted(places_left):
-        if places := [at for at, value in english_hashes.items() if value == hashes[place]]:
-            at = place if place in places else places[0]
-            has_moved |= at != place
-            group[at].translation, group[at].seen_hash = texts[place], hashes[place]
-            del english_hashes[at]
-            places_left.remove(place)
-    for place in sorted(places_left):
-        if hashes[place] == UNKNOWN_HASH and has_moved:
+    for index in sorted(indexes_left):
+        if matches := [
+            target for target, value in english_hashes.items() if value == hashes[index]
+        ]:
+            target = index if index in matches else matches[0]
+            has_moved |= target != index
+            entries[target].translation, entries[target].seen_hash = texts[index], hashes[index]
+            del english_hashes[target]
+            indexes_left.remove(index)
+    for index in sorted(indexes_left):
+        if hashes[index] == UNKNOWN_HASH and has_moved:
             return "its English texts have other places now: first run  python -m tools.languages"
-        if place not in english_hashes:
-            return f"it has {len(texts)} texts, and English {len(group)}"
-        group[place].translation, group[place].seen_hash = texts[place], hashes[place]
+        if index not in english_hashes:
+            return f"it has {len(texts)} texts, and English {len(entries)}"
+        entries[index].translation, entries[index].seen_hash = texts[index], hashes[index]
     return ""
 
 
-def misfits(entry: Entry, language: Language) -> list[str]:
+def find_misfits(entry: Entry, language: Language) -> list[str]:
     """Return what is wrong with the translation of a text that has not changed."""
     if not entry.is_translated:
         return []
-    used_forms = {language.forms[int(digit)] for digit in language.form_of}
+    used_forms = {language.forms[int(digit)] for digit in language.form_digits}
     wanted_forms, known_forms = (
         (used_forms, {*language.forms, "other"}) if entry.plural else ({""}, {""})
     )
     if not wanted_forms <= entry.translation.keys() <= known_forms:
         form_list, wanted_list = (
-            ", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted_forms)
+            ", ".join(sorted(forms)) or "one text" for forms in (entry.translation, wanted_forms)
         )
         return [f"it has {form_list}, and needs {wanted_list}"]
-    places = gap_names(entry.english) | gap_names(entry.plural)
+    english_gaps = gap_names(entry.english) | gap_names(entry.plural)
     problems = []
     for form in entry.translation.values():
         try:
-            gaps_translated = gap_names(form)
+            translated_gaps = gap_names(form)
         except ValueError:
             return ["a brace { or } has no other half"]
         problems += [
-            f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - gaps_translated)
+            f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - translated_gaps)
         ]
         problems += [
-            f"{{{gap}}} is no gap of the English text" for gap in sorted(gaps_translated - places)
+            f"{{{gap}}} is no gap of the English text"
+            for gap in sorted(translated_gaps - english_gaps)
         ]
     return list(dict.fromkeys(problems))
 

@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
-from tiniscript.base.languages import SOURCE_LANGUAGE, languages, table
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, read_table
 
 
 class Argument(NamedTuple):
@@ -82,13 +82,13 @@ SECONDS = Argument("seconds", "s", 0)
 TIME = Argument("time", "s", 0, sample="2")
 POWER = Argument("power", "%", 0, 100_000, "80")
 # What a move may have in the place of its time, by the unit after it.
-WAYS = {"CM": Argument("distance", "cm", 0, sample="20 CM"), "DEG": Argument("angle", "°", 0, sample="90 DEG")}
+EXTENTS = {"CM": Argument("distance", "cm", 0, sample="20 CM"), "DEG": Argument("angle", "°", 0, sample="90 DEG")}
 UNIT_OF = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}
 LEFT = Argument("left", "%", -100_000, 100_000, "50")
 RIGHT = Argument("right", "%", -100_000, 100_000, "80")
 HERTZ = Argument("hertz", "Hz", 31_000, 20_000_000, "440")
 VALUE = Argument("value", "", sample="DISTANCE")
-QUESTION = Argument("c", "", sample="DISTANCE < 10")
+CONDITION = Argument("c", "", sample="DISTANCE < 10")
 A, B = Argument("a", "", sample="5"), Argument("b", "", sample="DISTANCE")
 LOW, HIGH = Argument("low", "", sample="1"), Argument("high", "", sample="6")
 
@@ -106,8 +106,8 @@ WORDS = {word.text: word for word in (
     _row("S", "stop"), _row("STOP", "stop"), _row("START", "start"),
     _row("BEEP", "beep", (SECONDS, HERTZ)),
     _row("SHOW", "show", (VALUE,)),
-    _row("UNTIL", "until", (QUESTION,)), _row("FOREVER", "forever"),
-    _row("IF", "block", (QUESTION,)), _row("ELSEIF", "arm", (QUESTION,)), _row("ELSE", "arm"),
+    _row("UNTIL", "until", (CONDITION,)), _row("FOREVER", "forever"),
+    _row("IF", "block", (CONDITION,)), _row("ELSEIF", "arm", (CONDITION,)), _row("ELSE", "arm"),
     _row("ENDIF", "end"),
     _row("LOOP", "block", (Argument("n", "", sample="3"),)), _row("END_LOOP", "end"),
     _row("WHILE", "block", (Argument("c", "", sample="DISTANCE > 10"),)), _row("END_WHILE", "end"),
@@ -165,14 +165,14 @@ class LexiconEntry(NamedTuple):
 @cache
 def lexicon() -> dict[str, list[LexiconEntry]]:
     """What each word means: all that the languages say of it, English last."""
-    result: dict[str, list[LexiconEntry]] = {}
+    entries_by_word: dict[str, list[LexiconEntry]] = {}
     for language in (*languages()[1:], SOURCE_LANGUAGE):
-        for row in table(language, "lexicon.txt").split("\n"):
+        for row in read_table(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():
-                    result.setdefault(word, []).append(LexiconEntry(*meaning.split()))
-    return result
+                    entries_by_word.setdefault(word, []).append(LexiconEntry(*meaning.split()))
+    return entries_by_word
 
 
 @lru_cache(4000)
@@ -199,8 +199,8 @@ def lexicon_concept(word: str) -> str | None:
 
 def names_argument(word: str, argument: Argument) -> bool:
     """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
-    text = lexicon_meaning(word, "value") or lexicon_meaning(word, "letter")
-    return text[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
+    meaning = lexicon_meaning(word, "value") or lexicon_meaning(word, "letter")
+    return meaning[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
 
 
 def foreign_word_hints(word: str) -> dict[str, str]:

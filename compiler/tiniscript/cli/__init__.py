@@ -24,13 +24,13 @@ from tiniscript.cli.texts.verbs import VERBS
 EXIT_OF_CLOSED_PIPE = 141  # 128 and the number of SIGPIPE
 # Most commands end before there is garbage, and imported modules are none. A collection after each
 # 700 new objects, and one of all objects at the end, takes a sixth of the time of `tsc compile`.
-NEW_OBJECTS = 50_000
+GC_THRESHOLD = 50_000
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run `tsc` with these arguments (those of the process if None); return the exit code."""
     if arguments is None:  # the process ends with this command
-        gc.set_threshold(NEW_OBJECTS)
+        gc.set_threshold(GC_THRESHOLD)
     try:
         return _main(sys.argv[1:] if arguments is None else arguments)
     except BrokenPipeError:
@@ -38,8 +38,8 @@ def main(arguments: list[str] | None = None) -> int:
         return EXIT_OF_CLOSED_PIPE
     except KeyboardInterrupt:  # before the language is known
         return 2
-    except WrongTexts as failure:
-        print(f"tsc: {failure}", file=sys.stderr)
+    except WrongTexts as error:
+        print(f"tsc: {error}", file=sys.stderr)
         return 2
     finally:
         if arguments is None:
@@ -50,19 +50,19 @@ def _main(arguments: list[str]) -> int:
     _repair_streams()
     language = language_of(arguments)
     try:
-        exit_code = _verb(arguments, language)
+        exit_code = _run_verb(arguments, language)
         sys.stdout.flush()
         return exit_code
     except KeyboardInterrupt:
-        streams.drop_unread()
+        streams.drop_unread_output()
         print("\n" + text("stopped", language), file=sys.stderr)
         return 2
     except (BrokenPipeError, WrongTexts):
         raise
-    except OSError as failure:  # files have sentences of their own; this is the output
-        if _is_left_pipe(failure):
+    except OSError as error:  # files have sentences of their own; this is the output
+        if _is_closed_pipe(error):
             raise BrokenPipeError from None
-        why = str(failure.strerror or failure)
+        why = str(error.strerror or error)
         say_aside("full", language, why=why)
         _drop_output()
         return 2
@@ -70,14 +70,14 @@ def _main(arguments: list[str]) -> int:
         return _explain_bug(bug, language)
 
 
-def _is_left_pipe(failure: OSError) -> bool:
+def _is_closed_pipe(error: OSError) -> bool:
     """Return whether the reader of the output has left: on Windows that is an EINVAL of a pipe."""
-    if sys.platform != "win32" or failure.errno != errno.EINVAL:
+    if sys.platform != "win32" or error.errno != errno.EINVAL:
         return False
-    if failure.filename is not None or getattr(failure, "winerror", None) is not None:
+    if error.filename is not None or getattr(error, "winerror", None) is not None:
         return False  # a file, or a question to the system: the C library names neither
     try:
-        return any(stat.S_ISFIFO(os.fstat(number).st_mode) for number in (1, 2))
+        return any(stat.S_ISFIFO(os.fstat(descriptor).st_mode) for descriptor in (1, 2))
     except OSError:  # closed
         return False
 
@@ -93,16 +93,16 @@ def _repair_streams() -> None:
             streams.register()
             stream.reconfigure(errors="backslashreplace" if is_unicode else streams.ERROR_HANDLER)
         if stream.isatty():
-            setattr(sys, name, streams.Wrapping(stream))
+            setattr(sys, name, streams.WrappingStream(stream))
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="backslashreplace")  # invalid text becomes a mistake
 
 
 def _drop_output() -> None:
     """Discard the output buffers, because they cannot be written."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.dup2(nowhere, 2)
+    null_descriptor = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null_descriptor, 1)
+    os.dup2(null_descriptor, 2)
 
 
 def _tell_missing_parts(language: str) -> None:
@@ -119,7 +119,7 @@ def _tell_missing_parts(language: str) -> None:
             say(key, language)
 
 
-def _verb(arguments: list[str], language: str) -> int:
+def _run_verb(arguments: list[str], language: str) -> int:
     from tiniscript.cli.options import Options, bad_choice
 
     if not arguments or arguments[0] in ("-h", "--help"):
@@ -133,12 +133,14 @@ def _verb(arguments: list[str], language: str) -> int:
     try:
         name = arguments[0]
         if name == "--lang" or name.startswith("--lang="):  # before the verb, too
-            skip = 1 if "=" in name else 2
-            result = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
-            if result not in LANGUAGE.choices:
-                raise bad_choice("--lang", LANGUAGE.choices, result, language)
-            rest = arguments[skip:]
-            return _verb([*rest, *arguments[:skip]] if rest else [], language)
+            flag_word_count = 1 if "=" in name else 2
+            language_name = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
+            if language_name not in LANGUAGE.choices:
+                raise bad_choice("--lang", LANGUAGE.choices, language_name, language)
+            words_after = arguments[flag_word_count:]
+            return _run_verb(
+                [*words_after, *arguments[:flag_word_count]] if words_after else [], language
+            )
         if name not in VERBS:
             from tiniscript.cli.verbless import is_help, refuse
 
@@ -148,9 +150,9 @@ def _verb(arguments: list[str], language: str) -> int:
         if options is None:
             return 0
         return int(import_module(f"tiniscript.cli.commands.{command}").run(options, language))
-    except CommandError as failure:
-        print(failure.sentence(language), file=sys.stderr)
-        return failure.exit_code
+    except CommandError as error:
+        print(error.sentence(language), file=sys.stderr)
+        return error.exit_code
 
 
 def _explain_bug(bug: Exception, language: str) -> int:

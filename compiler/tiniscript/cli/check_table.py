@@ -18,7 +18,7 @@ from tiniscript.cli.repairing import print_difference, repair
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import Message, as_json, message
-from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compilation
 from tiniscript.library.named_robot import robot_of
 from tiniscript.robots.profile import Robot
 
@@ -34,12 +34,12 @@ class Row(NamedTuple):
     problem: str
 
     @property
-    def mistakes(self) -> int:
+    def mistake_count(self) -> int:
         return sum(message.severity == "mistake" for message in self.messages)
 
     @property
-    def warnings(self) -> int:
-        return len(self.messages) - self.mistakes
+    def warning_count(self) -> int:
+        return len(self.messages) - self.mistake_count
 
 
 def check(options: Namespace, robot: Robot, language: str) -> int:
@@ -57,16 +57,16 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
         outputs.write(Path(options.csv), _as_csv(rows, language), "unwritable_more --csv")
     if any(row.problem for row in rows):
         return 2
-    return 1 if any(row.mistakes for row in rows) else 0
+    return 1 if any(row.mistake_count for row in rows) else 0
 
 
 def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> Row:
     if file.problem is not None:
-        return Row(file.name, [], 0, file.problem.plain(language))
+        return Row(file.name, [], 0, file.problem.plain_sentence(language))
     repair_count = 0
     program_input = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
     if program_input.has_robot:
-        inputs.tell_other(program_input, robot, language)
+        inputs.warn_of_other_robot(program_input, robot, language)
     else:
         robot = robot_of(program_input.data, robot)
     if options.fix or options.diff:
@@ -85,65 +85,67 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
 
 def _repair(
     program_input: inputs.Input, options: Namespace, robot: Robot, language: str
-) -> tuple[Compiled, int, str]:
+) -> tuple[Compilation, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    result = repair(program_input, robot)
-    if result.repair_count and not options.json:
-        print_difference(program_input.data, result.data, program_input.name)
+    repaired = repair(program_input, robot)
+    if repaired.repair_count and not options.json:
+        print_difference(program_input.data, repaired.data, program_input.name)
     if options.diff:
         return (
             compiling.compile_input(program_input, robot, is_strict=False),
-            result.repair_count,
+            repaired.repair_count,
             "",
         )
-    if result.repair_count:
+    if repaired.repair_count:
         try:
-            outputs.write(Path(program_input.name), result.data, "unwritable_source")
-        except CommandError as problem:
-            return result.compilation, 0, problem.plain(language)
-    return result.compilation, result.repair_count, ""
+            outputs.write(Path(program_input.name), repaired.data, "unwritable_source")
+        except CommandError as error:
+            return repaired.compilation, 0, error.plain_sentence(language)
+    return repaired.compilation, repaired.repair_count, ""
 
 
 def _line(row: Row, language: str) -> str:
     name = inputs.printable_name(row.name)
     if row.problem:
         return text("checked_unread", language).format(file=name, why=row.problem)
-    if not row.mistakes:
+    if not row.mistake_count:
         return text("checked_right", language).format(file=name)
-    first = row.messages[0]
+    first_message = row.messages[0]
     return text("checked_wrong", language).format(
-        file=name, line=first.line, said=first.message, code=first.code
+        file=name, line=first_message.line, said=first_message.message, code=first_message.code
     )
 
 
 def _table(rows: Sequence[Row], language: str) -> list[str]:
     has_repairs = any(row.repair_count for row in rows)
-    columns = ["program_column", "mistakes_column", "warnings_column", "first_column"]
-    heads = [text(key, language) for key in columns]
+    column_keys = ["program_column", "mistakes_column", "warnings_column", "first_column"]
+    heads = [text(key, language) for key in column_keys]
     cells = []
     for row in rows:
         name = inputs.printable_name(row.name)
         name = name if len(name) <= NAME_COLUMNS else "…" + name[1 - NAME_COLUMNS :]
-        first = next((each for each in row.messages if each.severity == "mistake"), None)
-        place = "" if first is None else f"{first.line}: {first.code}"
-        cells.append([name, str(row.mistakes), str(row.warnings), place])
+        first_mistake = next(
+            (row_cells for row_cells in row.messages if row_cells.severity == "mistake"), None
+        )
+        position = "" if first_mistake is None else f"{first_mistake.line}: {first_mistake.code}"
+        cells.append([name, str(row.mistake_count), str(row.warning_count), position])
         if row.problem:
             cells[-1] = [name, "-", "-", text("unread", language)]
         if has_repairs:
             cells[-1].insert(3, str(row.repair_count))
     if has_repairs:
         heads.insert(3, text("repaired_column", language))
-    widths = [max(len(each[k]) for each in (heads, *cells)) for k in range(len(heads))]
-    lines = [_formatted_row(each, widths) for each in (heads, *cells)]
-    right = sum(not row.mistakes and not row.problem for row in rows)
-    return [*lines, text("all_row", language).format(n=len(rows), right=right)]
+    widths = [max(len(row_cells[k]) for row_cells in (heads, *cells)) for k in range(len(heads))]
+    lines = [_format_row(row_cells, widths) for row_cells in (heads, *cells)]
+    right_count = sum(not row.mistake_count and not row.problem for row in rows)
+    return [*lines, text("all_row", language).format(n=len(rows), right=right_count)]
 
 
-def _formatted_row(cells: Sequence[str], widths: Sequence[int]) -> str:
+def _format_row(cells: Sequence[str], widths: Sequence[int]) -> str:
     """Return a row: the first and the last column begin on the left, numbers end on the right."""
-    last = len(cells) - 1
+    last_column = len(cells) - 1
     row = [
-        f"{cell:{width}}" if k in (0, last) else f"{cell:>{width}}"
+        f"{cell:{width}}" if k in (0, last_column) else f"{cell:>{width}}"
         for k, (cell, width) in enumerate(zip(cells, widths, strict=True))
     ]
     return "   ".join(row).rstrip()
@@ -152,8 +154,8 @@ def _formatted_row(cells: Sequence[str], widths: Sequence[int]) -> str:
 def _as_data(row: Row) -> dict[str, object]:
     return {
         "file": inputs.printable_name(row.name),
-        "mistakes": row.mistakes,
-        "warnings": row.warnings,
+        "mistakes": row.mistake_count,
+        "warnings": row.warning_count,
         "repaired": row.repair_count,
         "problem": row.problem,
         "messages": as_json(row.messages),
@@ -162,10 +164,15 @@ def _as_data(row: Row) -> dict[str, object]:
 
 def _as_csv(rows: Sequence[Row], language: str) -> bytes:
     def cells(row: Row) -> tuple[object, ...]:
-        counts = (inputs.printable_name(row.name), row.mistakes, row.warnings, row.repair_count)
-        if not row.mistakes:
+        counts = (
+            inputs.printable_name(row.name),
+            row.mistake_count,
+            row.warning_count,
+            row.repair_count,
+        )
+        if not row.mistake_count:
             return (*counts, "", "", row.problem)
-        first = row.messages[0]
-        return (*counts, first.line, first.code, first.message)
+        first_message = row.messages[0]
+        return (*counts, first_message.line, first_message.code, first_message.message)
 
     return as_csv("check", language, map(cells, rows))

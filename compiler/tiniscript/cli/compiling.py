@@ -6,7 +6,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.cli import inputs
 from tiniscript.diagnostics.codes import in_order
-from tiniscript.library.compiling import Compiled, compile_source, text_of
+from tiniscript.library.compiling import Compilation, compile_source, text_of
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import LEVELS
 from tiniscript.syntax.parser import parse
@@ -14,7 +14,7 @@ from tiniscript.syntax.parser import parse
 
 def compile_input(
     program_input: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
-) -> Compiled:
+) -> Compilation:
     """Return the result of compiling an input, whose `--robot` has chosen the robot or not."""
     return compile_source(
         program_input.data,
@@ -26,20 +26,20 @@ def compile_input(
     )
 
 
-def for_level(compilation: Compiled, robot: Robot, name: str | None) -> Compiled:
+def for_level(compilation: Compilation, robot: Robot, name: str | None) -> Compilation:
     """Return a compilation with what a robot of this level lacks to read the program as text."""
     if name is None or compilation.program is None or not compilation.is_right:
         return compilation
-    from tiniscript.library.text_fitting import misfits
+    from tiniscript.library.text_fitting import find_misfits
 
-    lacking = misfits(compilation.source, compilation.program, robot.kit, LEVELS[name])
-    return compilation._replace(diagnostics=in_order([*compilation.diagnostics, *lacking]))
+    misfits = find_misfits(compilation.source, compilation.program, robot.kit, LEVELS[name])
+    return compilation._replace(diagnostics=in_order([*compilation.diagnostics, *misfits]))
 
 
-def parse_input(program_input: inputs.Input, kit: Kit) -> Compiled:
+def parse_input(program_input: inputs.Input, kit: Kit) -> Compilation:
     """Return only the syntax mistakes of a program's text."""
     text = text_of(program_input.data, program_input.name)
     if not isinstance(text, str):
         return text
     source = Source(text, program_input.name)
-    return Compiled(source, in_order(parse(source).diagnostics))
+    return Compilation(source, in_order(parse(source).diagnostics))

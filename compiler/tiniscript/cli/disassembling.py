@@ -16,13 +16,13 @@ def print_disassembly(
 ) -> None:
     image = ready_program.image
     key = "for_robot" if image.devices else "any_robot"
-    whose = text(key, language).format(robot=robot.name)
-    say("head", language, file=name, start=image.start, robot=whose, code=len(image.code),
+    robot_text = text(key, language).format(robot=robot.name)
+    say("head", language, file=name, start=image.start, robot=robot_text, code=len(image.code),
         image=ready_program.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
-    result = remarks(ready_program.places, language)
+    remark_by_offset = remarks(ready_program.program_map, language)
     kit = robot.kit if image.devices else None
-    variables = ready_program.places.variables if ready_program.places is not None else ()
-    print(disassemble(image.code, result, kit, variables), end="")
+    variables = ready_program.program_map.variables if ready_program.program_map is not None else ()
+    print(disassemble(image.code, remark_by_offset, kit, variables), end="")
 
 
 def print_json(ready_program: images.ReadyProgram, robot: Robot) -> None:
@@ -37,10 +37,14 @@ def print_json(ready_program: images.ReadyProgram, robot: Robot) -> None:
             "operands": list(row.operands),
             "text": row.text,
         }
-        place = ready_program.places.at(row.offset) if ready_program.places is not None else None
-        if place is not None:
-            fields["line"] = place.line
-            fields["column"] = place.column
+        location = (
+            ready_program.program_map.location_at(row.offset)
+            if ready_program.program_map is not None
+            else None
+        )
+        if location is not None:
+            fields["line"] = location.line
+            fields["column"] = location.column
         instructions.append(fields)
     print(json.dumps({
         "code_bytes": len(image.code),

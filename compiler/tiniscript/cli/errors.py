@@ -19,17 +19,21 @@ class CommandError(Exception):
         self.values = {name: _value_text(value) for name, value in values.items()}
 
     def sentence(self, language: str) -> str:
-        result = text(self.key, language).format(**self.values)
+        sentence_text = text(self.key, language).format(**self.values)
         if self.values.get("near"):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
-            try_it = f" {languages.text('messages', 'label/try', language)}  "
-            failure, advice, example = result.rpartition(try_it)  # what was typed may have it, too
+            try_label = f" {languages.text('messages', 'label/try', language)}  "
+            failure, advice, example = sentence_text.rpartition(
+                try_label
+            )  # what was typed may have it, too
             return Sentence(
-                f"{failure} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
+                f"{failure} {suggestion}{advice}{example}"
+                if advice
+                else f"{sentence_text} {suggestion}"
             )
-        return result
+        return sentence_text
 
-    def plain(self, language: str) -> str:
+    def plain_sentence(self, language: str) -> str:
         """Return the sentence without the name of the command, for a table or a list."""
         return self.sentence(language).removeprefix("tsc: ")
 

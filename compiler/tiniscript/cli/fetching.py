@@ -26,7 +26,7 @@ from tiniscript.flash import children
 from tiniscript.library import install_advice
 
 LOG_FILE = "fetch.log"  # what the last program that failed has said, in the folder of the cache
-MEASURED_EVERY_S = 1.0
+MEASURE_INTERVAL_S = 1.0
 INSTALLING_MESSAGE = "Installing collected packages"  # what pip says when it has fetched everything
 _NO_ROOM = re.compile(r"ENOSPC|No space left", re.IGNORECASE)
 _OFFLINE = re.compile(
@@ -53,30 +53,32 @@ class FolderProgress:
 
     def __init__(self, folder: Path, mb: int) -> None:
         self.folder, self.mb = folder, mb
-        self._percent, self._due_s = 0, 0.0
+        self._percent, self._next_measure_s = 0, 0.0
 
     def percent(self) -> int:
-        if monotonic() >= self._due_s:
-            grown = size_of(self.folder) // (10_000 * self.mb)
-            self._percent = min(99, max(self._percent, grown))  # what is put away is fetched, too
-            self._due_s = monotonic() + MEASURED_EVERY_S
+        if monotonic() >= self._next_measure_s:
+            measured_percent = size_of(self.folder) // (10_000 * self.mb)
+            self._percent = min(
+                99, max(self._percent, measured_percent)
+            )  # what is put away is fetched, too
+            self._next_measure_s = monotonic() + MEASURE_INTERVAL_S
         return self._percent
 
 
 def size_of(folder: Path) -> int:
     """Return the bytes of a folder's files; those that go away meanwhile do not count."""
-    result = 0
-    for where, _, names in os.walk(folder):
+    size_bytes = 0
+    for path, _, names in os.walk(folder):
         for name in names:
             try:
-                result += os.lstat(os.path.join(where, name)).st_size  # noqa: PTH118, is called often
+                size_bytes += os.lstat(os.path.join(path, name)).st_size  # noqa: PTH118, is called often
             except OSError:
                 continue
-    return result
+    return size_bytes
 
 
 def ask_to_fetch(
-    missing: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
+    missing_text: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
 ) -> None:
     """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
     parts_text = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
@@ -86,7 +88,7 @@ def ask_to_fetch(
         "minutes": str(minutes),
     }
     sentence = (
-        f"{missing} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
+        f"{missing_text} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
     )
     if not options.yes and not can_ask():
         raise CommandError(2, "fetch_unasked", said=sentence)
@@ -106,10 +108,10 @@ def install(extra: str, part: Part, language: str) -> None:
         run(
             command,
             Path(scratch),
-            lambda said: Step(f"{part.key}_now", progress.percent()),
+            lambda output: Step(f"{part.key}_now", progress.percent()),
             language,
             variables,
-            lambda said: INSTALLING_MESSAGE not in said,  # half of a package looks whole
+            lambda output: INSTALLING_MESSAGE not in output,  # half of a package looks whole
         )
     invalidate_caches()  # of this process, where the package was not there
 
@@ -120,7 +122,7 @@ def run(
     read_step: Callable[[str], Step],
     language: str,
     environment: Mapping[str, str] | None = None,
-    may_end: Callable[[str], bool] = lambda said: True,
+    may_end: Callable[[str], bool] = lambda output: True,
 ) -> None:
     """Run a program that fetches or builds, and show how far it is. Raises CommandError."""
     progress = Progress(language, 100)
@@ -138,12 +140,12 @@ def run(
         progress.draw(step.percent)
 
     try:
-        code, log = children.run(command, folder, show_progress, environment, may_end)
-    except children.CannotStart as why:
-        code, log = 1, str(why)
+        exit_code, log = children.run(command, folder, show_progress, environment, may_end)
+    except children.CannotStart as error:
+        exit_code, log = 1, str(error)
     finally:
         progress.end()
-    if code:
+    if exit_code:
         raise _failure(text(step_key, language) if step_key else command[0], log)
 
 
@@ -151,7 +153,7 @@ def _failure(step_text: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
     log_path = files.cache_folder() / LOG_FILE
     files.keep(log_path, log.encode("utf-8", "replace"))  # else the sentence has to do
-    kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
-    key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
+    key_patterns = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
+    key = next((key for key, pattern in key_patterns if pattern.search(log)), "fetch_failed")
     why = printable_name(children.reason(log))
     return CommandError(2, key, doing=step_text, why=why, log=printable_name(str(log_path)))

@@ -23,7 +23,7 @@ from tiniscript.flash.building import (
     Sources,
     StepProgress,
 )
-from tiniscript.flash.ready import Ready
+from tiniscript.flash.ready import ReadyFile
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -34,39 +34,41 @@ BUILD_MINUTES, ESP32_BUILD_MINUTES = 3, 10
 AVR_BOARDS = tuple(AVRS)  # that avrdude writes to
 
 
-def on_boards(name: str | None, language: str, boards: Sequence[str] = AVR_BOARDS) -> list[Robot]:
+def robots_on_boards(
+    name: str | None, language: str, boards: Sequence[str] = AVR_BOARDS
+) -> list[Robot]:
     """Return a robot once for each of the boards that its profile fits.
 
     It answers text in `language`, if its profile names none.
     """
-    result = []
+    fitting_robots = []
     for board in boards:
         try:
             robot = robots.load(robots.DEFAULT if name is None else name, board)
-            result.append(robot.with_language(language))
+            fitting_robots.append(robot.with_language(language))
         except ProfileRefused:
             continue  # the board has no such pins
-    return result
+    return fitting_robots
 
 
 def firmware(
     robot: Robot, options: Namespace, language: str, has_breakpoints: bool = False
-) -> Ready:
+) -> ReadyFile:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
     if has_breakpoints:
         robot = robot._replace(
             board=robot.board._replace(language=SOURCE_LANGUAGE)
         )  # it answers no text
     sources = building.sources()
-    result = _ready(robot, sources, has_breakpoints)
-    if result is not None:
-        return result
+    ready_file = _find_ready(robot, sources, has_breakpoints)
+    if ready_file is not None:
+        return ready_file
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     with _show_build(robot, options, language) as on_progress:
         data = building.build(sources, robot, on_progress, has_breakpoints)
         title = ready.title_of(robot, has_breakpoints)
-        return ready.keep(title, robot.board.chip, sources.digest(robot, has_breakpoints), data)
+        return ready.store(title, robot.board.chip, sources.digest(robot, has_breakpoints), data)
 
 
 def require_breakpoints(robot: Robot) -> None:
@@ -77,7 +79,9 @@ def require_breakpoints(robot: Robot) -> None:
         raise CommandError(2, key, robot=robot.name, board=robot.board.chip)
 
 
-def _ready(robot: Robot, sources: Sources | None, has_breakpoints: bool = False) -> Ready | None:
+def _find_ready(
+    robot: Robot, sources: Sources | None, has_breakpoints: bool = False
+) -> ReadyFile | None:
     """Return the file for a robot.
 
     Without sources the shipped file cannot be out of date; one that answers in another language is
@@ -88,11 +92,11 @@ def _ready(robot: Robot, sources: Sources | None, has_breakpoints: bool = False)
         return ready.find(ready.title_of(robot, has_breakpoints), robot.board.chip, digest)
     if robot.name not in robots.names():
         return None
-    files = {(file.title, file.board): file for file in ready.files()}
+    file_by_key = {(file.title, file.board): file for file in ready.files()}
     own_title = ready.title_of(robot, has_breakpoints)
     for title in (own_title,) if has_breakpoints else (own_title, robot.name):
-        if (title, robot.board.chip) in files:
-            return files[title, robot.board.chip]
+        if (title, robot.board.chip) in file_by_key:
+            return file_by_key[title, robot.board.chip]
     return None
 
 
@@ -101,8 +105,8 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
     sources = building.sources()
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    with _show_build(robot, options, language, port=printable_name(port or "")) as look:
-        building.upload(sources, robot, port, look)
+    with _show_build(robot, options, language, port=printable_name(port or "")) as on_progress:
+        building.upload(sources, robot, port, on_progress)
 
 
 @contextmanager
@@ -115,20 +119,20 @@ def _show_build(
     _fetch(robot, values, options, language)
     say_aside("flash_builds", language, **values)
     progress = Progress(language, 100)
-    fetched = ""
+    fetched_file = ""
 
     def show_progress(build_progress: StepProgress) -> None:
-        nonlocal fetched
+        nonlocal fetched_file
         if build_progress.phase in (WITHOUT_TASKS, WITHOUT_REMOTE):
             progress.end()
             say_aside(f"flash_{build_progress.phase}", language, **values)
             return
         progress.label = text(f"flash_{build_progress.phase}", language)
-        if build_progress.file_name and build_progress.file_name != fetched:
+        if build_progress.file_name and build_progress.file_name != fetched_file:
             progress.end()
             file_name = printable_name(build_progress.file_name)
             say_aside("flash_fetches", language, what=file_name)
-            fetched = build_progress.file_name
+            fetched_file = build_progress.file_name
         progress.draw(build_progress.percent)
 
     try:
@@ -136,7 +140,7 @@ def _show_build(
     except building.CannotBuild as why:
         raise _failure(why, values) from None
     except OSError as why:
-        folder = printable_name(str(ready.cache()))
+        folder = printable_name(str(ready.firmware_cache()))
         raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
     finally:
         progress.end()
@@ -156,36 +160,36 @@ def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: s
     if not parts:
         return
     minutes = ESP32_BUILD_MINUTES if robot.board.chip in ESP32S else BUILD_MINUTES
-    missing = text("flash_missing", language).format(**values)
-    fetching.ask_to_fetch(missing, parts, minutes, options, language)
+    missing_text = text("flash_missing", language).format(**values)
+    fetching.ask_to_fetch(missing_text, parts, minutes, options, language)
     if not has_platformio:
         fetching.install(install_advice.FIRMWARE, platformio, language)
 
 
-def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
+def _failure(error: CannotBuild, values: dict[str, str]) -> CommandError:
     """Return the sentence for a failed build, and save the build's output."""
-    log = ready.cache() / LOG_FILE
-    if why.log:
-        files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
+    log_path = ready.firmware_cache() / LOG_FILE
+    if error.log:
+        files.keep(log_path, error.log.encode("utf-8", "replace"))  # else the sentence has to do
     install_command = install_advice.command(install_advice.FIRMWARE)
     texts = {
-        "why": printable_name(why.last_output),
-        "log": printable_name(str(log)),
+        "why": printable_name(error.last_output),
+        "log": printable_name(str(log_path)),
         "how": install_command,
     }
-    return CommandError(2, f"flash_{why.why}", **texts, **values)
+    return CommandError(2, f"flash_{error.reason}", **texts, **values)
 
 
 def print_list(language: str) -> None:
     """Print each shipped robot on each board that it fits, and whether its firmware is ready."""
     sources = building.sources()
     for name in robots.names():
-        for robot in on_boards(name, language):
-            print(row(robot, _ready(robot, sources), language))
+        for robot in robots_on_boards(name, language):
+            print(firmware_row(robot, _find_ready(robot, sources), language))
 
 
-def row(robot: Robot, firmware: Ready | None, language: str) -> str:
+def firmware_row(robot: Robot, firmware: ReadyFile | None, language: str) -> str:
     values = {"robot": robot.name, "board": robot.board.chip}
     if firmware is None:
         return text("flash_row_none", language).format(**values)
-    return text("flash_row", language).format(bytes=f"{firmware.bytes:,}", **values)
+    return text("flash_row", language).format(bytes=f"{firmware.flash_bytes:,}", **values)

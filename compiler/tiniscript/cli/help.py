@@ -31,31 +31,31 @@ SET_COMMAND = "set"
 Row = tuple[str, str]  # the command, and its description
 
 
-def show(page: Callable[[str, int], str], language: str) -> None:
-    pager.show(page(language, _width()), language)
+def show(make_page: Callable[[str, int], str], language: str) -> None:
+    pager.show(make_page(language, _width()), language)
 
 
 def list_commands(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
     """Return what commands do, as a list."""
     rows = [_row(command, language) for command in commands]
-    return "\n".join(_columns(rows, _left_width(rows, width * 4 // 10), width)) + "\n"
+    return "\n".join(_two_columns(rows, _left_width(rows, width * 4 // 10), width)) + "\n"
 
 
 def help_of(command: str, language: str, width: int = WIDTH) -> str:
     """Return the help of a command; that of a verb names its steps, which have their own."""
-    table = shown_of(command)
+    options = shown_of(command)
     steps = steps_of(command)
     parts = [
         _paragraphs("\n".join(usage(command, language)), width),
         _paragraphs(verb_sentence(command, "says", language), width),
-        "\n".join(_options(table, language, width)),
-        "\n".join(_steps(steps, language, width)) if steps else "",
+        "\n".join(_option_lines(options, language, width)),
+        "\n".join(_step_lines(steps, language, width)) if steps else "",
         _paragraphs(verb_sentence(command, "ends", language), width),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _steps(steps: list[str], language: str, width: int) -> Iterator[str]:
+def _step_lines(steps: list[str], language: str, width: int) -> Iterator[str]:
     yield _paragraphs(verb_text("steps", language), width)
     yield list_commands(steps, language, width).rstrip("\n")
 
@@ -65,7 +65,7 @@ def overview(language: str, width: int = WIDTH) -> str:
     parts = [
         _paragraphs(verb_text("title", language), width),
         list_commands(FIRST_COMMANDS, language, width).rstrip("\n"),
-        "\n".join(_options(shown_of("tsc"), language, width)),
+        "\n".join(_option_lines(shown_of("tsc"), language, width)),
         _paragraphs(verb_text("more", language), width),
     ]
     return "\n\n".join(parts) + "\n"
@@ -74,17 +74,17 @@ def overview(language: str, width: int = WIDTH) -> str:
 def full_help(language: str, width: int = WIDTH) -> str:
     """Return what `tsc help all` says: every verb, in groups."""
     parts = [_paragraphs(verb_text("title", language), width)]
-    commands = groups(language)
-    left_width = _left_width([row for _, rows in commands for row in rows], width * 4 // 10)
-    for heading, rows in commands:
+    grouped_rows = command_groups(language)
+    left_width = _left_width([row for _, rows in grouped_rows for row in rows], width * 4 // 10)
+    for heading, rows in grouped_rows:
         parts.append(_paragraphs(heading, width))
-        parts.append("\n".join(_columns(rows, left_width, width)))
-    parts.append("\n".join(_options(shown_of("tsc"), language, width)))
+        parts.append("\n".join(_two_columns(rows, left_width, width)))
+    parts.append("\n".join(_option_lines(shown_of("tsc"), language, width)))
     parts.append("\n".join(_paragraphs(verb_text(note, language), width) for note in NOTES))
     return "\n\n".join(parts) + "\n"
 
 
-def groups(language: str) -> list[tuple[str, list[Row]]]:
+def command_groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
     rows_by_heading: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
@@ -103,10 +103,10 @@ def _row(command: str, language: str) -> Row:
 
 def usage(command: str, language: str) -> list[str]:
     """Return how a command is used: a line for each way."""
-    if ways := verb_sentence(command, "usage", language):
+    if usages := verb_sentence(command, "usage", language):
         head = STEPS[command].head if command in STEPS else command
-        return [f"tsc {head} {way}" for way in ways.split("\n")]
-    words = [f"tsc {begins(command, language)}"]
+        return [f"tsc {head} {usage_text}" for usage_text in usages.split("\n")]
+    words = [f"tsc {command_start(command, language)}"]
     for option in shown_of(command):
         if option.is_argument:
             label = option.shown_value(language) + (" ..." if option.repeats else "")
@@ -115,47 +115,47 @@ def usage(command: str, language: str) -> list[str]:
     return [" ".join([*words, verb_text("usage", language)])]
 
 
-def begins(command: str, language: str) -> str:
+def command_start(command: str, language: str) -> str:
     """Return how a command begins: `doctor --ports`; `firmware --board NAME|FILE`."""
     words = command_words(command)
-    last = words.split()[-1]
-    options = [option for option in shown_of(command) if option.flags == last]
-    return " ".join([words, *(_value(option, language) for option in options)]).rstrip()
+    last_word = words.split()[-1]
+    options = [option for option in shown_of(command) if option.flags == last_word]
+    return " ".join([words, *(_value_label(option, language) for option in options)]).rstrip()
 
 
 def signature(option: Option, language: str) -> str:
     """Return an option as help shows it: `-o FILE`."""
-    value = _value(option, language)
+    value = _value_label(option, language)
     if option.is_argument:
         return value
     return f"{', '.join(option.flags.split())} {value}".rstrip()
 
 
-def _value(option: Option, language: str) -> str:
+def _value_label(option: Option, language: str) -> str:
     value = option.shown_value(language)
     return f"[{value}]" if option.may_be_alone else value
 
 
-def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str]:
+def _option_lines(options: Iterable[Option], language: str, width: int) -> Iterator[str]:
     """Yield the rows of options; those for a virtual robot only have a heading of their own."""
-    rows: dict[bool, list[Row]] = {False: [], True: []}
-    last: list[Row] = []
-    has_virtual_section = any(option.name == "virtual" for option in table)
-    for option in table:
+    rows_by_virtual: dict[bool, list[Row]] = {False: [], True: []}
+    common_rows: list[Row] = []
+    has_virtual_section = any(option.name == "virtual" for option in options)
+    for option in options:
         row = signature(option, language), option.help(language)
         if option.verbs in ("*", "tsc"):
-            last.append(row)
+            common_rows.append(row)
         else:
-            rows[option.virtual and has_virtual_section].append(row)
-    all_rows = [*rows[False], *rows[True], *last]
+            rows_by_virtual[option.is_virtual and has_virtual_section].append(row)
+    all_rows = [*rows_by_virtual[False], *rows_by_virtual[True], *common_rows]
     left_width = _left_width(all_rows, width * 3 // 10)
-    yield from _columns(rows[False], left_width, width)
-    if rows[True]:
+    yield from _two_columns(rows_by_virtual[False], left_width, width)
+    if rows_by_virtual[True]:
         yield ""
         yield verb_text("virtual", language)
-        yield from _columns(rows[True], left_width, width)
+        yield from _two_columns(rows_by_virtual[True], left_width, width)
         yield ""
-    yield from _columns(last, left_width, width)
+    yield from _two_columns(common_rows, left_width, width)
 
 
 def _left_width(rows: Iterable[Row], most_width: int) -> int:
@@ -163,7 +163,7 @@ def _left_width(rows: Iterable[Row], most_width: int) -> int:
     return max((len(row[0]) for row in rows if len(row[0]) <= most_width), default=most_width)
 
 
-def _columns(rows: Iterable[Row], left_width: int, width: int) -> Iterator[str]:
+def _two_columns(rows: Iterable[Row], left_width: int, width: int) -> Iterator[str]:
     """Yield two columns; what is too long for the first one has a line of its own."""
     indent = " " * (left_width + 4)
     for command, summary in rows:
@@ -177,7 +177,7 @@ def _columns(rows: Iterable[Row], left_width: int, width: int) -> Iterator[str]:
 
 
 def _paragraphs(text: str, width: int) -> str:
-    return "\n".join(line for item in text.split("\n") for line in _wrap(item, width))
+    return "\n".join(line for paragraph in text.split("\n") for line in _wrap(paragraph, width))
 
 
 def _wrap(text: str, width: int) -> list[str]:

@@ -35,8 +35,8 @@ class Input(NamedTuple):
     def is_image(self) -> bool:
         """Whether these bytes are, or are called, a compiled program."""
         is_binary = self.data[:2] == b"TS" and self.data[2:3] < b" " and len(self.data) > 2
-        called_so = self.path is not None and self.path.suffix.lower() == ".bin"
-        return called_so or (is_binary and self.data[2:3] not in (b"\t", b"\n", b"\r"))
+        has_image_name = self.path is not None and self.path.suffix.lower() == ".bin"
+        return has_image_name or (is_binary and self.data[2:3] not in (b"\t", b"\n", b"\r"))
 
 
 def program(options: Namespace) -> Input:
@@ -60,12 +60,12 @@ def _program(options: Namespace) -> Input:
     name = real_name(options.program)
     if name != options.program:
         say_aside("file_really", options.language, file=options.program, real=name)
-    return file(name, options.program)
+    return read_file(name, options.program)
 
 
-def file(name: str, typed: str | None = None) -> Input:
-    """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
-    path, shown_name = Path(name), printable_name(name if typed is None else typed)
+def read_file(name: str, typed_name: str | None = None) -> Input:
+    """Return what is in a file. Raises CommandError, which names it as it was `typed_name`."""
+    path, shown_name = Path(name), printable_name(name if typed_name is None else typed_name)
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import is_device
 
@@ -83,11 +83,11 @@ def file(name: str, typed: str | None = None) -> Input:
     except PermissionError:
         key = "file_directory" if path.is_dir() and os.access(path, os.R_OK) else "file_forbidden"
         raise CommandError(2, key, file=shown_name) from None
-    except (OSError, ValueError) as why:  # ValueError: a name that no file can have
-        raise CommandError(2, "file_unreadable", file=shown_name, why=why) from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise CommandError(2, "file_unreadable", file=shown_name, why=error) from None
 
 
-def port(name: str) -> str:
+def check_port(name: str) -> str:
     """Return the name of a port that a person has typed. Raises CommandError where it is none."""
     if not name.strip() or not name.isprintable():
         raise CommandError(2, "no_such_port", found=printable_name(name) or "''")
@@ -103,9 +103,9 @@ def robot(options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, or the default one."""
     try:
         return robots.load(robots.DEFAULT if options.robot is None else options.robot)
-    except ProfileRefused as why:
+    except ProfileRefused as error:
         raise refusal(
-            why, language, "profile_refused", file=printable_name(options.robot)
+            error, language, "profile_refused", file=printable_name(options.robot)
         ) from None
 
 
@@ -113,11 +113,11 @@ def wired_robot(options: Namespace, language: str) -> Robot:
     """Return the robot of the options. Raises CommandError where no firmware fits its board."""
     from tiniscript.robots.firmware import BOARDS  # with all drivers
 
-    result = robot(options, language)
-    if result.board.chip not in BOARDS:
+    profile = robot(options, language)
+    if profile.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
-        raise CommandError(2, "no_firmware", chip=result.board.chip, known=known)
-    return result
+        raise CommandError(2, "no_firmware", chip=profile.board.chip, known=known)
+    return profile
 
 
 def robot_for(program_input: Input, options: Namespace, language: str) -> Robot:
@@ -128,13 +128,13 @@ def robot_for(program_input: Input, options: Namespace, language: str) -> Robot:
     robot_name = named_robot.shipped_name_in(program_input.data)
     if options.robot is None:
         options.robot = robot_name
-    result = robot(options, language)
+    chosen_robot = robot(options, language)
     if program_input.has_robot:
-        tell_other(program_input, result, language)
-    return result
+        warn_of_other_robot(program_input, chosen_robot, language)
+    return chosen_robot
 
 
-def tell_other(program_input: Input, chosen_robot: Robot, language: str) -> None:
+def warn_of_other_robot(program_input: Input, chosen_robot: Robot, language: str) -> None:
     """Say on standard error that `--robot` wins, where the program names another robot."""
     robot_name = named_robot.robot_name(program_input.data)
     if robot_name is not None and robot_name.lower() != chosen_robot.name.lower():
@@ -147,7 +147,7 @@ def tell_other(program_input: Input, chosen_robot: Robot, language: str) -> None
 
 
 def refusal(
-    why: ProfileRefused, language: str, key: str,
+    error: ProfileRefused, language: str, key: str,
     full_reasons: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
 ) -> CommandError:  # fmt: skip
     """Return why a profile, a world or a lesson is refused: the sentence `key`, with all reasons.
@@ -156,8 +156,8 @@ def refusal(
     """
     from tiniscript.robots.refusals import describe
 
-    lines = describe(why, language)
-    if len(lines) == 1 and why.reasons[0][0].startswith(full_reasons):
+    lines = describe(error, language)
+    if len(lines) == 1 and error.reasons[0][0].startswith(full_reasons):
         return CommandError(2, "plain", said=lines[0])
     return CommandError(
         2, key, reasons=Sentence("\n".join("  " + line for line in lines)), **values

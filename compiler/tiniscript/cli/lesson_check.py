@@ -36,7 +36,7 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
-from tiniscript.library.compiling import Compiled, fit_to_robot, image_maker
+from tiniscript.library.compiling import Compilation, fit_to_robot, image_maker
 from tiniscript.library.named_robot import robot_of, shipped_name_in
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
@@ -90,11 +90,11 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
             outputs.print_diagnostics(compilation, language)
         marks = [marker.mark(program_input, compilation)]
     if options.csv is not None:
-        outputs.write(Path(options.csv), _rows(marks, language), "unwritable_more --csv")
+        outputs.write(Path(options.csv), _as_csv(marks, language), "unwritable_more --csv")
     if options.plot is not None and marks[0].run is not None:
         draw_picture(options, marks[0].run.robot, language)
     if options.json:
-        print(json.dumps([_data(mark) for mark in marks], indent=2, ensure_ascii=False))
+        print(json.dumps([_mark_data(mark) for mark in marks], indent=2, ensure_ascii=False))
     elif _is_folder(options):
         _print_table(marks, options, language)
     else:
@@ -120,13 +120,15 @@ class _Marker:
             if file.problem is not None:
                 raise file.problem
             compilation = self.compile(program_input)
-        except CommandError as failure:
-            text = failure.plain(self.language)
-            text = text.replace(inputs.printable_name(file.name), inputs.printable_name(name))
-            return Mark(name, UNREADABLE, 0, (("", text),))
+        except CommandError as error:
+            problem_text = error.plain_sentence(self.language)
+            problem_text = problem_text.replace(
+                inputs.printable_name(file.name), inputs.printable_name(name)
+            )
+            return Mark(name, UNREADABLE, 0, (("", problem_text),))
         return self.mark(program_input, compilation)
 
-    def compile(self, program_input: inputs.Input) -> Compiled:
+    def compile(self, program_input: inputs.Input) -> Compilation:
         if program_input.is_image:
             raise CommandError(
                 2, "needs_text", file=inputs.printable_name(program_input.name), verb="lesson check"
@@ -137,7 +139,7 @@ class _Marker:
         )
         return fit_to_robot(compilation, robot)
 
-    def mark(self, program_input: inputs.Input, compilation: Compiled) -> Mark:
+    def mark(self, program_input: inputs.Input, compilation: Compilation) -> Mark:
         if not compilation.is_right:
             return Mark(program_input.name, MISTAKES, 0, tuple(self._mistakes(compilation)))
         robot = robot_of(program_input.data, self.robot)
@@ -147,11 +149,11 @@ class _Marker:
         marking = Marking(compilation.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
             outcome = marking.run_to_end()
-        except WorldRefused as refused:
+        except WorldRefused as error:
             values = {"file": inputs.printable_name(self.lesson.name), "seed": str(marking.seed)}
-            raise inputs.refusal(refused, self.language, "lesson_world", (), **values) from None
-        except NoWebAssembly as why:
-            raise missing_package_error("virtual_needs_wasmtime", why) from None
+            raise inputs.refusal(error, self.language, "lesson_world", (), **values) from None
+        except NoWebAssembly as error:
+            raise missing_package_error("virtual_needs_wasmtime", error) from None
         return Mark(
             program_input.name,
             outcome.verdict,
@@ -163,18 +165,22 @@ class _Marker:
     def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
-    def _mistakes(self, compilation: Compiled) -> Iterable[tuple[str, str]]:
+    def _mistakes(self, compilation: Compilation) -> Iterable[tuple[str, str]]:
         for diagnostic in compilation.diagnostics:
             if diagnostic.is_mistake:
-                sentence = message(diagnostic, compilation.source, self.language)
-                values = {"line": sentence.line, "task": "", "shown": sentence.message}
-                line = text("fault_line", self.language).format(**values)
+                mistake_message = message(diagnostic, compilation.source, self.language)
+                values = {
+                    "line": mistake_message.line,
+                    "task": "",
+                    "shown": mistake_message.message,
+                }
+                mistake_line = text("fault_line", self.language).format(**values)
                 fix = (
-                    text("lesson_try", self.language).format(fix=sentence.fix)
-                    if sentence.fix
+                    text("lesson_try", self.language).format(fix=mistake_message.fix)
+                    if mistake_message.fix
                     else ""
                 )
-                yield "", f"{line}   {fix}".strip()
+                yield "", f"{mistake_line}   {fix}".strip()
 
 
 def _is_folder(options: Namespace) -> bool:
@@ -192,9 +198,9 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
     folder = options.program
     try:
         os.scandir(folder).close()
-    except OSError as why:
+    except OSError as error:
         raise CommandError(
-            2, "lesson_folder", file=inputs.printable_name(folder), why=why
+            2, "lesson_folder", file=inputs.printable_name(folder), why=error
         ) from None
     names = list(islice(in_folder(folder, TEXT_ENDINGS), MOST_PROGRAMS + 1))
     if len(names) > MOST_PROGRAMS:
@@ -224,8 +230,8 @@ def _is_note(file: ProgramFile) -> bool:
     if file.name.lower().endswith(PROGRAM_ENDINGS) or file.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(file.name).name)
-    plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
-    if NOTES_NAME.match(plain) is None:
+    plain_name = "".join(letter for letter in letters if not unicodedata.combining(letter))
+    if NOTES_NAME.match(plain_name) is None:
         return False
 
     try:
@@ -267,22 +273,22 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     widths = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
     columns = get_terminal_size().columns if sys.stdout.isatty() else 0
     for name, verdict, shown_sentence in rows:
-        cells = f"{set_cell_size(name, widths[0])}  {set_cell_size(verdict, widths[1])}  "
-        room = columns - cell_len(cells) - 1
+        prefix = f"{set_cell_size(name, widths[0])}  {set_cell_size(verdict, widths[1])}  "
+        room = columns - cell_len(prefix) - 1
         if not columns or cell_len(shown_sentence) <= room:
-            print(f"{cells}{shown_sentence}".rstrip())
+            print(f"{prefix}{shown_sentence}".rstrip())
             continue
         if room < LEAST_COLUMNS:  # the sentence has lines of its own
-            print(cells.rstrip())
-            cells, room = "    ", columns - 5
-        for part in textwrap.wrap(shown_sentence, max(room, LEAST_COLUMNS)):
-            print(f"{cells}{part}")
-            cells = " " * cell_len(cells)
+            print(prefix.rstrip())
+            prefix, room = "    ", columns - 5
+        for line in textwrap.wrap(shown_sentence, max(room, LEAST_COLUMNS)):
+            print(f"{prefix}{line}")
+            prefix = " " * cell_len(prefix)
     passed_count = sum(mark.verdict == PASSED for mark in marks)
-    count = text("lesson_count", language)
+    count_text = text("lesson_count", language)
     number = inputs.printable_name(options.number)
-    programs = sum(mark.verdict != NO_PROGRAM for mark in marks)
-    print(count.format(passed=passed_count, all=programs, number=number))
+    program_count = sum(mark.verdict != NO_PROGRAM for mark in marks)
+    print(count_text.format(passed=passed_count, all=program_count, number=number))
 
 
 def _first_error(mark: Mark) -> str:
@@ -290,13 +296,13 @@ def _first_error(mark: Mark) -> str:
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 
 
-def _data(mark: Mark) -> dict[str, object]:
+def _mark_data(mark: Mark) -> dict[str, object]:
     findings = [{"kind": kind, "sentence": sentence} for kind, sentence in mark.sentences]
     seed = mark.seed or None
     return {"file": mark.name, "verdict": mark.verdict, "seed": seed, "findings": findings}
 
 
-def _rows(marks: Sequence[Mark], language: str) -> bytes:
+def _as_csv(marks: Sequence[Mark], language: str) -> bytes:
     def cells(mark: Mark) -> tuple[object, ...]:
         verdict = text(f"csv_verdict_{mark.verdict}", language)
         return mark.name, verdict, mark.seed or "", mark.sentences[0][1] if mark.sentences else ""

@@ -10,9 +10,9 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
-from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compilation
 
-MOST_PRINTED = 20  # diagnostics that are printed; a person mends the first ones first
+MOST_PRINTED_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
 
 
 def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> None:
@@ -25,10 +25,10 @@ def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> N
 
     try:
         files.replace(path, data, mode, is_lasting=True)
-    except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
-        if isinstance(why, BrokenPipeError):
+    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: a link to itself
+        if isinstance(error, BrokenPipeError):
             raise
-        raise unwritable_error(error_key, printable_name(str(path)), why) from None
+        raise unwritable_error(error_key, printable_name(str(path)), error) from None
 
 
 def write_output(name: str | None, data: bytes) -> bool:
@@ -45,34 +45,34 @@ def write_output(name: str | None, data: bytes) -> bool:
     return False
 
 
-def print_diagnostics(compilation: Compiled, language: str) -> None:
+def print_diagnostics(compilation: Compilation, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
     if not compilation.diagnostics:
         return
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)
-    for diagnostic in compilation.diagnostics[:MOST_PRINTED]:
-        text = message(diagnostic, compilation.source, language)
-        rows = as_text(text, compilation.source, language, color).split("\n")
-        frame = rows[: 2 * bool(compilation.source.text)]
-        print(*frame, *map(Sentence, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
+    for diagnostic in compilation.diagnostics[:MOST_PRINTED_DIAGNOSTICS]:
+        shown_message = message(diagnostic, compilation.source, language)
+        lines = as_text(shown_message, compilation.source, language, color).split("\n")
+        frame = lines[: 2 * bool(compilation.source.text)]
+        print(*frame, *map(Sentence, lines[len(frame) :]), "", sep="\n", file=sys.stderr)
     count = len(compilation.diagnostics)
-    if count > MOST_PRINTED:
+    if count > MOST_PRINTED_DIAGNOSTICS:
         key = "and_more" if count <= MOST_DIAGNOSTICS else "and_many_more"
-        say_aside(key, language, n=min(count, MOST_DIAGNOSTICS) - MOST_PRINTED)
-    if 1 < count <= MOST_PRINTED:
+        say_aside(key, language, n=min(count, MOST_DIAGNOSTICS) - MOST_PRINTED_DIAGNOSTICS)
+    if 1 < count <= MOST_PRINTED_DIAGNOSTICS:
         print(_count(compilation, language), file=sys.stderr)
 
 
-def _count(compilation: Compiled, language: str) -> str:
+def _count(compilation: Compilation, language: str) -> str:
     mistake_count = sum(diagnostic.is_mistake for diagnostic in compilation.diagnostics)
-    counts_texts = []
+    count_texts = []
     for n, word in (
         (mistake_count, "mistake"),
         (len(compilation.diagnostics) - mistake_count, "warning"),
     ):
         if n:
             key = f"count_{word}" if n == 1 else f"count_{word}s"
-            counts_texts.append(text(key, language).format(n=n))
-    return ", ".join(counts_texts) + "."
+            count_texts.append(text(key, language).format(n=n))
+    return ", ".join(count_texts) + "."

@@ -16,8 +16,8 @@ from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 
 NODE, NPM = Part("fetch_node", building.NODE_MB), Part("fetch_npm", building.NPM_MB)
-STEPS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
-STEP_PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
+STEP_KEYS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
+STEP_START_PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
 
 
 def prepare(options: Namespace, language: str) -> None:
@@ -40,16 +40,19 @@ def build(options: Namespace, language: str) -> None:
         raise CommandError(
             2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=install_command
         )
-    missing = text("studio_missing", language)
-    fetching.ask_to_fetch(missing, parts, building.MINUTES, options, language)
+    missing_text = text("studio_missing", language)
+    fetching.ask_to_fetch(missing_text, parts, building.MINUTES, options, language)
     if not has_node:
         fetching.install(install_advice.STUDIO, NODE, language)
-    growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
+    progress = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
     def read_step(output: str) -> Step:
-        step = max(building.step(output), 0 if NPM in parts else 1)
-        is_fetching = STEPS[step] == "fetch_npm_now"
-        return Step(STEPS[step], growing.percent() if is_fetching else STEP_PERCENT[step])
+        step_number = max(building.step(output), 0 if NPM in parts else 1)
+        is_fetching = STEP_KEYS[step_number] == "fetch_npm_now"
+        return Step(
+            STEP_KEYS[step_number],
+            progress.percent() if is_fetching else STEP_START_PERCENT[step_number],
+        )
 
     fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, read_step, language)
 
@@ -69,9 +72,9 @@ def main() -> int:
     language = language_of([])
     try:
         build(Namespace(yes=False), language)
-    except CommandError as failure:
-        print(failure.sentence(language), file=sys.stderr)
-        return failure.exit_code
+    except CommandError as error:
+        print(error.sentence(language), file=sys.stderr)
+        return error.exit_code
     except KeyboardInterrupt:
         return 2
     return 0

@@ -56,11 +56,17 @@ def check(options: Namespace, language: str) -> None:
         return
     identities = [_identity(output) for output in outputs]
     for number, (output, identity) in enumerate(zip(outputs, identities, strict=True)):
-        for other, output_identity in zip(outputs[:number], identities, strict=False):
+        for other_output, output_identity in zip(outputs[:number], identities, strict=False):
             if identity is not None and identity == output_identity:
-                raise CommandError(2, "same_outputs", option=other.label, file=other.path,
-                              second=output.label, other=output.path)  # fmt: skip
-    for input_path in _read(options, language):
+                raise CommandError(
+                    2,
+                    "same_outputs",
+                    option=other_output.label,
+                    file=other_output.path,
+                    second=output.label,
+                    other=output.path,
+                )
+    for input_path in _input_paths(options, language):
         identity = _identity(input_path, may_be_device=input_path.dest in ("port", "ports"))
         for output, output_identity in zip(outputs, identities, strict=True):
             if output.dest == input_path.dest:
@@ -72,11 +78,11 @@ def check(options: Namespace, language: str) -> None:
                                    what=input_path.label, other=input_path.path)  # fmt: skip
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITE_OPTIONS:
-            _refuse_unwritable(output.path, WRITE_OPTIONS[output.dest][1], language)
+            _check_writable(output.path, WRITE_OPTIONS[output.dest][1], language)
         if (
             output.dest not in READ_OPTIONS and output.dest != "export"
         ):  # else it is changed in place,
-            _refuse_foreign(output)  # or whatever is there stays
+            _check_not_foreign(output)  # or whatever is there stays
 
 
 def default_output(program: str) -> str:
@@ -106,9 +112,9 @@ def _output_paths(options: Namespace) -> Iterator[NamedPath]:
         path = values.get(dest)
         if isinstance(path, str) and not (dest == "output" and path == "-"):
             yield NamedPath(dest, path, label)
-    for item in sorted(set(values.get("programs") or ())):
-        if values["fix"] and not values["diff"] and item != "-":
-            yield NamedPath("programs", real_name(item), "tsc check --fix")
+    for program_name in sorted(set(values.get("programs") or ())):
+        if values["fix"] and not values["diff"] and program_name != "-":
+            yield NamedPath("programs", real_name(program_name), "tsc check --fix")
     program = values.get("program")
     if program is not None and program != "-":
         program = real_name(program)
@@ -118,20 +124,20 @@ def _output_paths(options: Namespace) -> Iterator[NamedPath]:
             yield NamedPath("program", program, "tsc fmt")
 
 
-def _read(options: Namespace, language: str) -> Iterator[NamedPath]:
+def _input_paths(options: Namespace, language: str) -> Iterator[NamedPath]:
     values = vars(options)
     for dest, key in READ_OPTIONS.items():
-        result = values.get(dest)
-        for path in result if isinstance(result, list) else [result]:
+        value = values.get(dest)
+        for path in value if isinstance(value, list) else [value]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
                 name = real_name(path) if dest in ("program", "programs") else path
                 yield NamedPath(dest, name, text(key, language))
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import known_ports
 
-        last = known_ports.remembered_ports().last
-        if last is not None:
-            yield NamedPath("port", last, text("path_port", language))
+        last_port = known_ports.remembered_ports().last
+        if last_port is not None:
+            yield NamedPath("port", last_port, text("path_port", language))
     with suppress(OSError, ValueError):  # it is closed
         if stat.S_ISREG(os.fstat(0).st_mode):
             yield NamedPath("stdin", "/dev/stdin", text("path_stdin", language))
@@ -177,16 +183,16 @@ def _path_key(name: str) -> str:
     return normalize("NFC", normalize("NFC", name).casefold())
 
 
-def _refuse_foreign(output: NamedPath) -> None:
+def _check_not_foreign(output: NamedPath) -> None:
     """Refuse to write over a file that tsc has not made. Raises CommandError."""
     with suppress(OSError, ValueError):  # it is not there, or writing it reports the reason
         if is_foreign(Path(output.path)):
             raise CommandError(2, "over_foreign", option=output.label, file=output.path)
 
 
-def _refuse_unwritable(path: str, error_key: str, language: str) -> None:
+def _check_writable(path: str, error_key: str, language: str) -> None:
     """Report early that a file cannot be written. Raises CommandError."""
-    number = 0
+    error_number = 0
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import has_no_file
 
@@ -196,28 +202,28 @@ def _refuse_unwritable(path: str, error_key: str, language: str) -> None:
         try:
             stat_result = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
             if stat.S_ISDIR(stat_result.st_mode):
-                number = errno.EISDIR
+                error_number = errno.EISDIR
             elif not os.access(path, os.W_OK):
-                number = errno.EACCES
+                error_number = errno.EACCES
             is_replaced = stat.S_ISREG(stat_result.st_mode) and not error_key.endswith("--csv")
         except FileNotFoundError:
             is_replaced = True
         folder = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
-        if is_replaced and not number:
+        if is_replaced and not error_number:
             os.stat(folder)  # noqa: PTH116
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
-                number = errno.EACCES
-    except (OSError, ValueError) as why:
-        raise unwritable_error(error_key, path, why) from None
-    if number or not path:
-        raise unwritable_error(error_key, path or "''", os.strerror(number or errno.ENOENT))
+                error_number = errno.EACCES
+    except (OSError, ValueError) as error:
+        raise unwritable_error(error_key, path, error) from None
+    if error_number or not path:
+        raise unwritable_error(error_key, path or "''", os.strerror(error_number or errno.ENOENT))
 
 
 HEAD_BYTES = 4096  # of a file, which tell what it is
 HEADER = b"// Generated by "
-ROWS = b"ms,event,value,name\n"
-CLASS_ROWS = b"robot,id,ms,event,value,name\n"
-_OLDER_ROWS = (b"ms,event,value\n", b"robot,id,ms,event,value\n")
+ROWS_HEADER = b"ms,event,value,name\n"
+CLASS_ROWS_HEADER = b"robot,id,ms,event,value,name\n"
+_OLDER_ROWS_HEADERS = (b"ms,event,value\n", b"robot,id,ms,event,value\n")
 RECORDING = b'{"tiniscript_run":'
 OLDER_RECORDING = b'{"tiniscript_recording":'
 GENERATOR = "TiniScript"  # in a page, and in a picture
@@ -229,9 +235,9 @@ _MAP_START = re.compile(rb'\{"version": \d+, "name": "')
 
 def is_recording(data: bytes) -> bool:
     """Whether a file is meant to be a recorded run, whoever has saved it since."""
-    is_wide = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
-    begin = data[:200].decode("utf-16" if is_wide else "utf-8-sig", "replace").lstrip()
-    return begin.startswith((RECORDING.decode(), OLDER_RECORDING.decode()))
+    is_utf16 = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
+    beginning = data[:200].decode("utf-16" if is_utf16 else "utf-8-sig", "replace").lstrip()
+    return beginning.startswith((RECORDING.decode(), OLDER_RECORDING.decode()))
 
 
 def is_foreign(path: Path) -> bool:
@@ -245,11 +251,20 @@ def is_foreign(path: Path) -> bool:
 
 def _is_ours(head: bytes) -> bool:
     is_image = head.startswith(MAGIC) and len(head) > len(MAGIC) and head[len(MAGIC)] < 0x20
-    begins = (
-        head.startswith((HEADER, ROWS, CLASS_ROWS, *_OLDER_ROWS, RECORDING, OLDER_RECORDING))
+    has_known_start = (
+        head.startswith(
+            (
+                HEADER,
+                ROWS_HEADER,
+                CLASS_ROWS_HEADER,
+                *_OLDER_ROWS_HEADERS,
+                RECORDING,
+                OLDER_RECORDING,
+            )
+        )
         or _PAGE_MARK in head
     )
-    return is_image or begins or _is_report(head) or _is_table(head) or any(
+    return is_image or has_known_start or _is_report(head) or _is_table(head) or any(
         pattern.match(head) is not None for pattern in (_PICTURE_MARK, _MAP_START)
     ) or _CHECKED_LINE.fullmatch(head) is not None  # fmt: skip
 
@@ -259,7 +274,7 @@ def _is_table(head: bytes) -> bool:
         return False
     from tiniscript.cli import spreadsheet
 
-    return head.startswith(spreadsheet.beginnings())
+    return head.startswith(spreadsheet.file_starts())
 
 
 def _is_report(head: bytes) -> bool:

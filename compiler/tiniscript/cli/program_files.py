@@ -34,14 +34,14 @@ def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
     paths_seen: set[str] = set()
     for name in names:
-        result = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
-        if not result:
+        paths = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
+        if not paths:
             raise CommandError(2, "no_programs", file=inputs.printable_name(name))
-        for item in result:
-            real = os.path.realpath(item)
-            if real not in paths_seen:
-                paths_seen.add(real)
-                yield read(item)
+        for path in paths:
+            real_path = os.path.realpath(path)
+            if real_path not in paths_seen:
+                paths_seen.add(real_path)
+                yield read(path)
 
 
 def _is_folder(name: str) -> bool:
@@ -68,9 +68,7 @@ def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[
                     yield entry.path
         subfolders = (entry for entry in sorted_entries if entry.is_dir(follow_symlinks=False))
         pending_folders += [
-            dir_entry.path
-            for dir_entry in reversed(list(subfolders))
-            if not dir_entry.name.startswith(".")
+            entry.path for entry in reversed(list(subfolders)) if not entry.name.startswith(".")
         ]
 
 
@@ -85,6 +83,6 @@ def read(name: str) -> ProgramFile:
     except (OSError, ValueError):
         pass  # reading it says why
     try:
-        return ProgramFile(name, inputs.file(name).data)
-    except CommandError as problem:
-        return ProgramFile(name, b"", problem)
+        return ProgramFile(name, inputs.read_file(name).data)
+    except CommandError as error:
+        return ProgramFile(name, b"", error)

@@ -15,48 +15,50 @@ from tiniscript.cli import compiling
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.streams import has_colors
 from tiniscript.diagnostics.fixing import repair_program
-from tiniscript.library.compiling import Compiled, text_of
+from tiniscript.library.compiling import Compilation, text_of
 from tiniscript.robots.profile import Robot
 
 _BOM = b"\xef\xbb\xbf"
 _COLORS = {"+": "\033[32m", "-": "\033[31m", "@": "\033[36m"}
-_PLAIN = "\033[0m"
+_RESET = "\033[0m"
 
 
-class Repaired(NamedTuple):
+class RepairedProgram(NamedTuple):
     """A program with its sure repairs: the bytes of its file, how many, and what is left."""
 
     data: bytes
     repair_count: int
-    compilation: Compiled
+    compilation: Compilation
 
 
-def repair(program_input: Input, robot: Robot) -> Repaired:
+def repair(program_input: Input, robot: Robot) -> RepairedProgram:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
     text = text_of(program_input.data, program_input.name)
     if not isinstance(text, str):
-        return Repaired(program_input.data, 0, text)
+        return RepairedProgram(program_input.data, 0, text)
 
-    def compile_data(data: bytes) -> Compiled:
+    def compile_data(data: bytes) -> Compilation:
         return compiling.compile_input(program_input._replace(data=data), robot, is_strict=False)
 
-    result = repair_program(text, lambda changed: compile_data(changed.encode()).diagnostics)
-    new = result.text.encode()
+    repaired = repair_program(text, lambda new_text: compile_data(new_text.encode()).diagnostics)
+    new_data = repaired.text.encode()
     if program_input.data.startswith(_BOM):
-        new = _BOM + new
-    return Repaired(new, result.repair_count, compile_data(new))
+        new_data = _BOM + new_data
+    return RepairedProgram(new_data, repaired.repair_count, compile_data(new_data))
 
 
-def print_difference(old: bytes, new: bytes, name: str) -> None:
+def print_difference(old_data: bytes, new_data: bytes, name: str) -> None:
     """Print what differs in two texts, as `diff -u` does; on a terminal in colors."""
-    color = has_colors(sys.stdout)
-    for line in _difference(old.decode(), new.decode(), printable(name)):
-        mark = _COLORS.get(line[:1], "") if color and line[:3] not in ("+++", "---") else ""
-        print(mark + line + (_PLAIN if mark else ""))
+    has_color = has_colors(sys.stdout)
+    for line in _difference(old_data.decode(), new_data.decode(), printable(name)):
+        color_code = (
+            _COLORS.get(line[:1], "") if has_color and line[:3] not in ("+++", "---") else ""
+        )
+        print(color_code + line + (_RESET if color_code else ""))
 
 
-def _difference(old: str, new: str, name: str) -> Iterator[str]:
-    rows = unified_diff(_rows(old), _rows(new), name, name, lineterm="", n=2)
+def _difference(old_text: str, new_text: str, name: str) -> Iterator[str]:
+    rows = unified_diff(_rows(old_text), _rows(new_text), name, name, lineterm="", n=2)
     for k, row in enumerate(rows):
         yield row if k < 2 else printable(row[:1] + row[1:].replace("\t", "    "))
 

@@ -20,28 +20,28 @@ MOST_CELL_CHARACTERS = 2000  # characters of a cell
 TABLES = ("check", "lesson")
 # What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
 # whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
-_SIGN = "(?=[=+\\-@＝＋－＠])"
-_FORMULA_START = re.compile(rf"(^)(\s*){_SIGN}")
-_AFTER_END = re.compile(rf"(^|[;|\"])(\s*){_SIGN}")
-_AFTER_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
+_FORMULA_SIGN = "(?=[=+\\-@＝＋－＠])"
+_FORMULA_START = re.compile(rf"(^)(\s*){_FORMULA_SIGN}")
+_AFTER_END = re.compile(rf"(^|[;|\"])(\s*){_FORMULA_SIGN}")
+_AFTER_ANY = re.compile(rf"(^|[,;|\"])(\s*){_FORMULA_SIGN}")
 
 
-def as_csv(table: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
+def as_csv(table_name: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
     """Return a table of TABLES as a file. The first cell of a row is the name of a file."""
-    sentence = StringIO()
-    writer = csv.writer(sentence, delimiter=text("rows_separator", language), lineterminator="\n")
-    writer.writerow(text(f"rows_{table}", language).split())
+    output = StringIO()
+    writer = csv.writer(output, delimiter=text("rows_separator", language), lineterminator="\n")
+    writer.writerow(text(f"rows_{table_name}", language).split())
     writer.writerows([_name(row[0]), *map(_cell, row[1:])] for row in rows)
-    return sentence.getvalue().encode("utf-8-sig", "backslashreplace")
+    return output.getvalue().encode("utf-8-sig", "backslashreplace")
 
 
-def beginnings() -> tuple[bytes, ...]:
+def file_starts() -> tuple[bytes, ...]:
     """Return how a file of `as_csv` begins, for each table and language: its head, with its end.
 
     A spreadsheet that has kept such a file may have given it other line ends.
     """
     empty_tables = [as_csv(table, language, ()) for table in TABLES for language in languages()]
-    return (*empty_tables, *(item.replace(b"\n", b"\r\n") for item in empty_tables))
+    return (*empty_tables, *(table_file.replace(b"\n", b"\r\n") for table_file in empty_tables))
 
 
 def escape_formula(text: str) -> str:

@@ -21,16 +21,16 @@ from typing import Any, TextIO
 
 from tiniscript.cli.texts import Sentence
 
-READER_LIMIT_S = 1.0  # timeout for a reader when a command is interrupted
+READER_TIMEOUT_S = 1.0  # timeout for a reader when a command is interrupted
 ERROR_HANDLER = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
 DRAWING_SUBSTITUTES = str.maketrans(_SAME_WIDTH[0] + "…", _SAME_WIDTH[1] + ".")
-_WORDS = {
+_SUBSTITUTE_WORDS = {
     "Ω": "ohm", "−": "-", "–": "-", "—": "-", "…": "...", "‘": "'", "’": "'", "“": '"',
     "”": '"', "×": "x", "\N{REPLACEMENT CHARACTER}": "?",
 }  # fmt: skip
-PLAIN_SUBSTITUTES = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
+PLAIN_SUBSTITUTES = {**dict(zip(*_SAME_WIDTH, strict=True)), **_SUBSTITUTE_WORDS}
 
 
 def register() -> None:
@@ -41,9 +41,9 @@ def register() -> None:
 def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     if isinstance(error, UnicodeEncodeError):
         end = error.start + 1
-        result = PLAIN_SUBSTITUTES.get(error.object[error.start : end])
-        if result is not None:
-            return result, end
+        substitute = PLAIN_SUBSTITUTES.get(error.object[error.start : end])
+        if substitute is not None:
+            return substitute, end
         error.end = end
     return codecs.backslashreplace_errors(error)
 
@@ -73,8 +73,8 @@ def reads_sequences(stream: TextIO) -> bool:
         return False
     if mode.value & VIRTUAL_TERMINAL_PROCESSING:
         return True
-    expected = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
-    return bool(console.SetConsoleMode(handle, wintypes.DWORD(expected)))
+    new_mode = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
+    return bool(console.SetConsoleMode(handle, wintypes.DWORD(new_mode)))
 
 
 def has_colors(stream: TextIO) -> bool:
@@ -82,7 +82,7 @@ def has_colors(stream: TextIO) -> bool:
     return not os.environ.get("NO_COLOR") and reads_sequences(stream)
 
 
-def drop_unread() -> None:
+def drop_unread_output() -> None:
     """Have the outputs of which nobody reads what was written go nowhere: a command that is
     interrupted writes no more there, and waits for nobody.
 
@@ -92,33 +92,33 @@ def drop_unread() -> None:
         return
     for stream in (sys.stdout, sys.stderr):
         try:
-            number = stream.fileno()
-            is_pipe = stat.S_ISFIFO(os.fstat(number).st_mode)
+            descriptor = stream.fileno()
+            is_pipe = stat.S_ISFIFO(os.fstat(descriptor).st_mode)
         except (OSError, ValueError, AttributeError):  # no file of the system, or closed
             continue
-        if is_pipe and not _write_all(stream, number):
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, number)
-            os.close(nowhere)
+        if is_pipe and not _write_all(stream, descriptor):
+            null_descriptor = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null_descriptor, descriptor)
+            os.close(null_descriptor)
 
 
-def refuse_unread() -> None:
+def raise_if_reader_gone() -> None:
     """Raise BrokenPipeError where the reader of the output has gone: who writes nothing does not
     notice. Windows does not tell."""
     if sys.platform == "win32":
         return
     try:
-        number = sys.stdout.fileno()
-        mode = os.fstat(number).st_mode
+        descriptor = sys.stdout.fileno()
+        mode = os.fstat(descriptor).st_mode
     except (OSError, ValueError, AttributeError):  # no file of the system, or closed
         return
     if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
         return
     import select  # asked only where nothing may be written for long
 
-    end = select.poll()
-    end.register(number, 0)
-    if end.poll(0):
+    poller = select.poll()
+    poller.register(descriptor, 0)
+    if poller.poll(0):
         raise BrokenPipeError
 
 
@@ -128,7 +128,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
         return False
     import select  # of an interrupted command
 
-    end_s = monotonic() + READER_LIMIT_S
+    end_s = monotonic() + READER_TIMEOUT_S
     os.set_blocking(pipe, False)
     try:
         while True:
@@ -147,7 +147,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
         os.set_blocking(pipe, True)
 
 
-class Wrapping:
+class WrappingStream:
     """A terminal that breaks each `Sentence` at its width. Frames and tables are none."""
 
     def __init__(self, stream: TextIO) -> None:
@@ -173,14 +173,14 @@ def wrap(sentence: str, columns: int) -> str:
     """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 
-    def keep_spaces(command: re.Match[str]) -> str:
-        is_kept = len(command[0]) < columns or os.sep in command[0].partition(" ")[0]
-        return command[0].replace(" ", "\0") if is_kept else command[0]
+    def keep_spaces(match: re.Match[str]) -> str:
+        fits = len(match[0]) < columns or os.sep in match[0].partition(" ")[0]
+        return match[0].replace(" ", "\0") if fits else match[0]
 
     rows = []
     for row in _COMMAND.sub(keep_spaces, sentence).split("\n"):
         indent = row[: len(row) - len(row.lstrip(" "))]
-        filled = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
+        wrapped_row = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
                       break_long_words=False, break_on_hyphens=False)  # fmt: skip
-        rows.append(filled if len(row) > columns else row)
+        rows.append(wrapped_row if len(row) > columns else row)
     return "\n".join(rows).replace("\0", " ")

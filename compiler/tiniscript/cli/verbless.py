@@ -45,24 +45,24 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
 def _present_command(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
-    for item in (head, command_words(command)):
-        verb, *all_words = [*item.split(), *words]
-        present, rest = command_of(verb, all_words)
-        if present == command and Options(command, language).accepts(rest):
+    for command_text in (head, command_words(command)):
+        verb, *all_words = [*command_text.split(), *words]
+        parsed_command, words_left = command_of(verb, all_words)
+        if parsed_command == command and Options(command, language).accepts(words_left):
             return shlex.join([verb, *all_words])
-    from tiniscript.cli.help import begins
+    from tiniscript.cli.help import command_start
 
-    return begins(command, language)
+    return command_start(command, language)
 
 
 def guess_verb(name: str) -> str:
     """Return the command that somebody means with a word that is no verb, or nothing."""
-    called = (
-        item
-        for item in (*COMMANDS, "--version")
-        if _without_accents(name) in _names_in_languages(item).split()
+    matching_commands = (
+        command
+        for command in (*COMMANDS, "--version")
+        if _without_accents(name) in _names_in_languages(command).split()
     )
-    suggestion = next(called, None) or nearest(name, (*VERBS, *FORMER_COMMANDS)) or ""
+    suggestion = next(matching_commands, None) or nearest(name, (*VERBS, *FORMER_COMMANDS)) or ""
     return command_words(FORMER_COMMANDS.get(suggestion, suggestion))
 
 
@@ -98,8 +98,8 @@ def _is_file(name: str) -> bool:
 
 def _quote(name: str, always: bool = False) -> str:
     """Return a name as it can be copied into a command."""
-    result = printable_name(name)
-    return f'"{result}"' if always or " " in result else result
+    shown_name = printable_name(name)
+    return f'"{shown_name}"' if always or " " in shown_name else shown_name
 
 
 MOST_VERBS = 5  # verbs in an answer
@@ -113,16 +113,20 @@ def verbs_for(question: str) -> list[str]:
     A word counts more where fewer commands have it, and more in a command's name and summary than
     in what else is said of it.
     """
-    texts = {command: _weights(command) for command in COMMANDS}
+    weights_by_command = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
     for stem in _stems(question):
-        commands_with_stem = [command for command in COMMANDS if stem in texts[command]]
+        commands_with_stem = [
+            command for command in COMMANDS if stem in weights_by_command[command]
+        ]
         for command in commands_with_stem:
-            scores[command] += texts[command][stem] * log(
+            scores[command] += weights_by_command[command][stem] * log(
                 1 + len(COMMANDS) / len(commands_with_stem)
             )
-    best = max(scores.values())
-    commands = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
+    best_score = max(scores.values())
+    commands = [
+        command for command in COMMANDS if scores[command] and scores[command] >= best_score / 2
+    ]
     return sorted(commands, key=lambda verb: -scores[verb])[:MOST_VERBS]
 
 
@@ -135,9 +139,9 @@ def _weights(verb: str) -> dict[str, int]:
             stem for language in languages() for stem in _stems(verb_sentence(verb, part, language))
         }
 
-    helps = (option.help(language) for option in options for language in languages())
+    help_texts = (option.help(language) for option in options for language in languages())
     flags = (option.flags for option in options)
-    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | stems_of("ends"), 1)
+    weights = dict.fromkeys(_stems(" ".join((*flags, *help_texts))) | stems_of("ends"), 1)
     weights |= dict.fromkeys(stems_of("says"), 2)
     weights |= dict.fromkeys(stems_of("summary"), 4)
     weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
@@ -146,8 +150,12 @@ def _weights(verb: str) -> dict[str, int]:
 
 def _stems(text: str) -> set[str]:
     words = re.findall("[a-z]+", _without_accents(text))
-    sentence = (word for word in words if len(word) >= LEAST_LETTERS and word not in _idle_words())
-    return {word.removesuffix("s")[:STEM_LETTERS] for word in sentence}  # port and ports are one
+    telling_words = (
+        word for word in words if len(word) >= LEAST_LETTERS and word not in _idle_words()
+    )
+    return {
+        word.removesuffix("s")[:STEM_LETTERS] for word in telling_words
+    }  # port and ports are one
 
 
 @cache

@@ -35,8 +35,8 @@ def matching_files(pattern: str) -> list[str]:
     """
     if not set(pattern) & set("*?"):
         return []
-    escaped = pattern.replace("[", "[[]")  # brackets are part of a name there
-    return sorted(glob.glob(escaped))  # noqa: PTH207 - names stay as they were typed
+    escaped_pattern = pattern.replace("[", "[[]")  # brackets are part of a name there
+    return sorted(glob.glob(escaped_pattern))  # noqa: PTH207 - names stay as they were typed
 
 
 def _stem(name: str) -> str:

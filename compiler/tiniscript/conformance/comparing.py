@@ -32,44 +32,46 @@ class Verdict(NamedTuple):
     detail: str = ""
 
 
-def compare(name: str, wanted_rows: Sequence[str], rows_got: Sequence[str]) -> Verdict:
+def compare(name: str, wanted_rows: Sequence[str], given_rows: Sequence[str]) -> Verdict:
     """Return the first line that differs."""
-    for number in range(max(len(wanted_rows), len(rows_got))):
-        pair = [rows[number] if number < len(rows) else None for rows in (wanted_rows, rows_got)]
+    for index in range(max(len(wanted_rows), len(given_rows))):
+        pair = [rows[index] if index < len(rows) else None for rows in (wanted_rows, given_rows)]
         if pair[0] != pair[1]:
-            return Verdict(name, DIFFERS, number + 1, pair[0], pair[1])
+            return Verdict(name, DIFFERS, index + 1, pair[0], pair[1])
     return Verdict(name, AGREES)
 
 
-Ask = Callable[[str, int], Sequence[str]]
+AskMachine = Callable[[str, int], Sequence[str]]
 
 
-def verdicts(cases: Iterable[MachineCase], answer_of: Ask) -> Iterator[Verdict]:
+def verdicts(cases: Iterable[MachineCase], answer_of: AskMachine) -> Iterator[Verdict]:
     """Yield the verdict of each case, up to where nobody waits for more.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
     `needs` has a bit for each thing.
     """
-    endless = silent = answers = 0
-    lacks: dict[int, bool] = {}
+    endless_count = silent_count = answer_count = 0
+    is_lacking_by_needs: dict[int, bool] = {}
     for case in cases:
-        if any(is_missing and needs & case.needs for needs, is_missing in lacks.items()):
+        if any(
+            is_lacking and needs & case.needs for needs, is_lacking in is_lacking_by_needs.items()
+        ):
             yield Verdict(case.name, LACKS)
             continue
         try:
             answer = answer_of(case.request(), sum(len(row) + 2 for row in case.answer))
-        except Problem as problem:
-            verdict = compare(case.name, case.answer, problem.rows)
-            yield verdict._replace(what=problem.kind, detail=problem.detail)
-            endless += problem.kind in ("hang", "flood")
-            silent += not answers
-            if endless == MOST_ENDLESS or silent == MOST_SILENT:
+        except Problem as error:
+            verdict = compare(case.name, case.answer, error.rows)
+            yield verdict._replace(what=error.kind, detail=error.detail)
+            endless_count += error.kind in ("hang", "flood")
+            silent_count += not answer_count
+            if endless_count == MOST_ENDLESS or silent_count == MOST_SILENT:
                 return
         else:
-            answers += 1
-            if case.needs and case.needs not in lacks:
+            answer_count += 1
+            if case.needs and case.needs not in is_lacking_by_needs:
                 refuses = list(answer) in LACKING_ANSWERS and list(answer) != list(case.answer)
-                lacks[case.needs] = refuses
+                is_lacking_by_needs[case.needs] = refuses
                 if refuses:
                     yield Verdict(case.name, LACKS)
                     continue

@@ -102,38 +102,38 @@ LINK_VERSION = 1
 
 class LinkProgram(NamedTuple):
     """Code that uses no device and turns no motor. `shows` are values and whether they are TRUE or
-    FALSE; `fault` is 0 where it ends by itself, and `at` where it faults."""
+    FALSE; `fault` is 0 where it ends by itself, and `fault_offset` where it faults."""
 
     name: str
     code: bytes
     shows: tuple[tuple[int, int], ...]
     fault: int
-    at: int
-    takes_s: float
+    fault_offset: int
+    duration_s: float
 
     def answer(self) -> tuple[str, ...]:
         rows = [f"SHOW {value} {is_yes_no}" for value, is_yes_no in self.shows]
-        return (*rows, f"FAULT {self.fault} {self.at}" if self.fault else "DONE")
+        return (*rows, f"FAULT {self.fault} {self.fault_offset}" if self.fault else "DONE")
 
 
-class LinkRefused(NamedTuple):
+class RefusedCode(NamedTuple):
     """Code that breaks a rule, whatever devices the robot has."""
 
     name: str
     code: bytes
     rule: str
-    at: int
+    offset: int
 
 
 class LinkTestSuite(NamedTuple):
     programs: tuple[LinkProgram, ...]
-    refusals: tuple[LinkRefused, ...]
+    refusals: tuple[RefusedCode, ...]
 
 
 def link_test_suite() -> LinkTestSuite:
     """Return what a robot on a port must do. Raises NotMade."""
-    result = _read_json("link.json")
-    assert (result["form"], result["version"]) == (LINK_FORM, LINK_VERSION)
+    suite_file = _read_json("link.json")
+    assert (suite_file["form"], suite_file["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkTestSuite(
         tuple(
             LinkProgram(
@@ -144,10 +144,10 @@ def link_test_suite() -> LinkTestSuite:
                 row["at"],
                 row["takes_ms"] / 1000,
             )
-            for row in result["programs"]
+            for row in suite_file["programs"]
         ),
         tuple(
-            LinkRefused(row["name"], bytes.fromhex(row["code"]), row["rule"], row["at"])
-            for row in result["refused"]
+            RefusedCode(row["name"], bytes.fromhex(row["code"]), row["rule"], row["at"])
+            for row in suite_file["refused"]
         ),
     )

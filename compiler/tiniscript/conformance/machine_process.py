@@ -27,7 +27,7 @@ ENDING_WORDS = (
 CHUNK_BYTES = 1 << 16
 SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
 TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
-EXIT_LIMIT_S = 0.5  # for a process whose output has ended, to end with its code
+EXIT_TIMEOUT_S = 0.5  # for a process whose output has ended, to end with its code
 
 
 class Problem(Exception):
@@ -45,7 +45,7 @@ class CannotStart(Exception):
     """The command does not start a process."""
 
 
-def is_last(row: str) -> bool:
+def ends_answer(row: str) -> bool:
     """Whether a line ends an answer."""
     words = row.split(" ", 2)
     return words[0] == "REFUSED" or (
@@ -60,7 +60,7 @@ class MachineProcess:
         self.command = command
         self.timeout_s = timeout_s
         self._process: subprocess.Popen[bytes] | None = None
-        self._answers = 0  # of this process
+        self._answer_count = 0  # of this process
 
     def ask(self, request: str, expected_bytes: int) -> tuple[str, ...]:
         """Return the lines of an answer. Raises Problem and CannotStart.
@@ -68,19 +68,19 @@ class MachineProcess:
         A process that has answered before may have ended since: then a new one is asked.
         """
         most_bytes = expected_bytes + SPARE_BYTES
-        if self._answers:
+        if self._answer_count:
             with contextlib.suppress(_ProcessEnded):
                 return self._query(request, most_bytes)
             self.close()
         try:
             return self._query(request, most_bytes)
-        except _ProcessEnded as ended:
-            exit_code = ended.code
+        except _ProcessEnded as error:
+            exit_code = error.exit_code
         self._fail("crash", str(exit_code), [])
 
     def close(self) -> str:
         """End the process and all that it has started; return the end of its standard error."""
-        process, self._process, self._answers = self._process, None, 0
+        process, self._process, self._answer_count = self._process, None, 0
         if process is None:
             return ""
         if sys.platform != "win32":
@@ -89,11 +89,11 @@ class MachineProcess:
         process.kill()
         process.wait()
         self._requests.put(b"")
-        leaves_by = time.monotonic() + EXIT_LIMIT_S
-        while self._reader.is_alive() and time.monotonic() < leaves_by:
+        end_s = time.monotonic() + EXIT_TIMEOUT_S
+        while self._reader.is_alive() and time.monotonic() < end_s:
             with contextlib.suppress(queue.Empty):  # it waits where the queue is full
                 self._chunks.get(timeout=0.01)
-        self._errors.join(EXIT_LIMIT_S)
+        self._error_reader.join(EXIT_TIMEOUT_S)
         lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
         return lines[-1] if lines else ""
 
@@ -111,16 +111,16 @@ class MachineProcess:
                 stderr=subprocess.PIPE,
                 start_new_session=True,
             )
-        except (OSError, ValueError) as why:
-            raise CannotStart(getattr(why, "strerror", None) or str(why)) from None
+        except (OSError, ValueError) as error:
+            raise CannotStart(getattr(error, "strerror", None) or str(error)) from None
         assert process.stdin and process.stdout and process.stderr
         self._chunks: queue.Queue[bytes] = queue.Queue(maxsize=64)
         self._tail = bytearray()
-        self._rest = b""
-        self._errors = _thread(self._keep_tail, process.stderr)
-        self._reader = _thread(self._read, process.stdout, self._chunks)
+        self._unread = b""
+        self._error_reader = _start_thread(self._keep_tail, process.stderr)
+        self._reader = _start_thread(self._read, process.stdout, self._chunks)
         self._requests: queue.Queue[bytes] = queue.Queue()
-        _thread(self._write, process.stdin, self._requests)
+        _start_thread(self._write, process.stdin, self._requests)
         return process
 
     @staticmethod
@@ -157,38 +157,38 @@ class MachineProcess:
         if self._process is None:
             self._process = self._start()
         self._requests.put(request.encode())
-        ends_at = time.monotonic() + self.timeout_s
+        end_s = time.monotonic() + self.timeout_s
         rows: list[str] = []
-        count = 0
+        byte_count = 0
         while True:
-            *lines, self._rest = self._rest.split(b"\n")
+            *lines, self._unread = self._unread.split(b"\n")
             for number, line in enumerate(lines, 1):
                 rows.append(line.decode("utf-8", "replace").removesuffix("\r"))
-                if is_last(rows[-1]):
-                    extra = b"\n".join([*lines[number:], self._rest])
+                if ends_answer(rows[-1]):
+                    extra = b"\n".join([*lines[number:], self._unread])
                     if extra:
                         self._fail("more", extra.decode("utf-8", "replace"), rows)
-                    self._answers += 1
+                    self._answer_count += 1
                     return tuple(rows)
             try:
-                data = self._chunks.get(timeout=max(ends_at - time.monotonic(), 0))
+                data = self._chunks.get(timeout=max(end_s - time.monotonic(), 0))
             except queue.Empty:
-                self._fail("hang", self._rest.decode("utf-8", "replace"), rows)
+                self._fail("hang", self._unread.decode("utf-8", "replace"), rows)
             if not data:
                 exit_code = self._exit_code()
-                if rows or self._rest:
-                    rows += [self._rest.decode("utf-8", "replace")] if self._rest else []
+                if rows or self._unread:
+                    rows += [self._unread.decode("utf-8", "replace")] if self._unread else []
                     self._fail("crash", str(exit_code), rows)
                 raise _ProcessEnded(exit_code)
-            count += len(data)
-            self._rest += data
-            if count > most_bytes:
+            byte_count += len(data)
+            self._unread += data
+            if byte_count > most_bytes:
                 self._fail("flood", "", rows)
 
     def _exit_code(self) -> int | None:
         assert self._process is not None
         try:
-            return self._process.wait(EXIT_LIMIT_S)
+            return self._process.wait(EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             return None
 
@@ -204,10 +204,10 @@ class _ProcessEnded(Exception):
 
     def __init__(self, exit_code: int | None) -> None:
         super().__init__(exit_code)
-        self.code = exit_code
+        self.exit_code = exit_code
 
 
-def _thread(work: object, *arguments: object) -> threading.Thread:
-    thread = threading.Thread(target=work, args=arguments, daemon=True)  # type: ignore[arg-type]
+def _start_thread(target: object, *arguments: object) -> threading.Thread:
+    thread = threading.Thread(target=target, args=arguments, daemon=True)  # type: ignore[arg-type]
     thread.start()
     return thread

@@ -34,11 +34,13 @@ SHOW_7 = bytes.fromhex("b739")
 WAIT_20 = bytes.fromhex("bb50")  # no motor turns
 STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
-EVENT_LIMIT_S = 3.0  # for an event after what has caused it
-BUSY_TRIES, BUSY_S = 50, 0.1
+EVENT_TIMEOUT_S = 3.0  # for an event after what has caused it
+BUSY_TRIES, BUSY_PAUSE_S = 50, 0.1
 HEADER_BYTES = 10  # bytes of an image before its checksum
-SILENCE_LIMIT_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
-ATTENDED_LIMIT_S = 3.0
+SILENCE_TIMEOUT_S = (
+    5.0  # at most, until an attached program ends without a frame: it does after 1 s
+)
+ATTENDED_S = 3.0
 
 
 class Check(NamedTuple):
@@ -50,23 +52,23 @@ class Check(NamedTuple):
 def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
     """Yield the verdict of each check. Raises OSError where the port is gone.
 
-    A robot that answers nothing any more fails a check as `silent`; after three in a row the rest
-    is left out.
+    A robot that answers nothing any more fails a check as `silent_count`; after three in a row the
+    rest is left out.
     """
-    silent = 0
+    silent_count = 0
     for check in checks:
         try:
-            make_ready(robot)
+            reset_robot(robot)
             yield compare(check.name, check.wanted_rows, check.find_rows(robot))
-            silent = 0
-        except Silent as why:
-            yield Verdict(check.name, "silent", detail=why.message)
-            silent += 1
-            if silent == 3:
+            silent_count = 0
+        except Silent as error:
+            yield Verdict(check.name, "silent", detail=error.message)
+            silent_count += 1
+            if silent_count == 3:
                 return
 
 
-def make_ready(robot: WireRobot) -> None:
+def reset_robot(robot: WireRobot) -> None:
     """Leave nothing of the check before: no run, no latch, no event."""
     state = robot.ask("PING").values.get("state")
     if state == STATES.index("RUNNING"):
@@ -82,20 +84,20 @@ def greet(robot: WireRobot) -> Answer:
     return robot.hello(HELLO_TRIES)
 
 
-def all_checks(kit: LinkTestSuite) -> list[Check]:
+def all_checks(suite: LinkTestSuite) -> list[Check]:
     return [
         *LINK_CHECKS,
         *(
             Check(f"programs: {program.name}", program.answer(), _program_check(program))
-            for program in kit.programs
+            for program in suite.programs
         ),
         *(
             Check(
-                f"refused: {link_refused.name}",
-                (f"{link_refused.rule} {link_refused.at}",),
-                _refusal_check(link_refused.code),
+                f"refused: {refused_code.name}",
+                (f"{refused_code.rule} {refused_code.offset}",),
+                _refusal_check(refused_code.code),
             )
-            for link_refused in kit.refusals
+            for refused_code in suite.refusals
         ),
         *IMAGE_CHECKS,
         *STOP_CHECKS,
@@ -123,7 +125,7 @@ def ask_while_busy(robot: WireRobot, name: str, values: Mapping[str, int | bytes
         answer = robot.ask(name, values)
         if answer.status != STATUSES["BUSY"]:
             break
-        robot.wait(BUSY_S)
+        robot.wait(BUSY_PAUSE_S)
     return answer
 
 
@@ -137,13 +139,13 @@ def announce(robot: WireRobot, image: bytes, mode: int) -> Answer:
 
 def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
     """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
-    rest = image[HEADER_BYTES + 4 :]
+    code_bytes = image[HEADER_BYTES + 4 :]
     answer = announce(robot, image, mode)
     most_bytes = PAYLOAD_BYTES - 2
-    for offset in range(0, len(rest), most_bytes):
+    for offset in range(0, len(code_bytes), most_bytes):
         if answer.status:
             return answer
-        piece = rest[offset : offset + most_bytes]
+        piece = code_bytes[offset : offset + most_bytes]
         answer = robot.ask("DATA", {"offset": offset, "bytes": piece})
     if answer.status:
         return answer
@@ -160,7 +162,7 @@ def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...
             answer = send_image(robot, pack("SI", 0, program.code), RUN)
         if answer.status:
             return (answer_text(answer),)
-        return _run_events(robot, program.takes_s + EVENT_LIMIT_S)
+        return _run_events(robot, program.duration_s + EVENT_TIMEOUT_S)
 
     return observe
 
@@ -199,38 +201,42 @@ def _check_hello(robot: WireRobot) -> tuple[str, ...]:
     answer = robot.hello()
     if answer.status:
         return (answer_text(answer),)
-    number = answer.number
-    large = number("largest") >= SMALL_FRAME and number("window") >= 1
-    isa = f"isa {number('isa_major')}.{number('isa_minor')}"
+    field_of = answer.number
+    has_large_frames = field_of("largest") >= SMALL_FRAME and field_of("window") >= 1
+    isa = f"isa {field_of('isa_major')}.{field_of('isa_minor')}"
     epoch = robot.epoch
     robot.hello()
     session_text = "the same session" if robot.epoch == epoch else "another session"
-    frames = "frames of 63 bytes" if large else "smaller frames"
-    return (f"link {number('major')}", isa, frames, f"the same nonce again: {session_text}")
+    frames = "frames of 63 bytes" if has_large_frames else "smaller frames"
+    return (f"link {field_of('major')}", isa, frames, f"the same nonce again: {session_text}")
 
 
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
-    before = robot.ask("STATUS").number("damaged")
+    damaged_before = robot.ask("STATUS").number("damaged")
     frame = bytearray(encode_frame(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
     frame[-2] ^= 0x55  # of the checksum
     robot.send(b"\0" + bytes(frame).replace(b"\0", b"\x55", len(frame) - 1)[:-1] + b"\0")
     replies = robot.receive(0.3)
-    count = (robot.ask("STATUS").number("damaged") - before) % 256
-    return ("no answer" if not replies else "an answer", f"damaged: {count} more")
+    damaged_count = (robot.ask("STATUS").number("damaged") - damaged_before) % 256
+    return ("no answer" if not replies else "an answer", f"damaged: {damaged_count} more")
 
 
 def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     payload = encode_payload(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
-    first = robot.ask_frame(number, payload)
-    robot.wait(EVENT_LIMIT_S, "DONE")
-    second = robot.repeat(number, payload, epoch=epoch)
+    first_answer = robot.ask_frame(number, payload)
+    robot.wait(EVENT_TIMEOUT_S, "DONE")
+    second_answer = robot.repeat(number, payload, epoch=epoch)
     robot.wait(0.4)
-    second_answer = "the same answer" if first.payload == second.payload else answer_text(second)
+    second_text = (
+        "the same answer"
+        if first_answer.payload == second_answer.payload
+        else answer_text(second_answer)
+    )
     return (
-        answer_text(first),
-        second_answer,
+        answer_text(first_answer),
+        second_text,
         f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW",
     )
 
@@ -251,19 +257,21 @@ _PLACE_ROWS = ("no place before", "1 of what runs", "no place unasked")
 def _check_place(robot: WireRobot) -> tuple[str, ...]:
     if not greet(robot).number("features") & PLACES:
         return _PLACE_ROWS  # it does not say that it tells places: nobody asks it
-    before = robot.ask("PING", {"asks": b"?"})
+    earlier_answer = robot.ask("PING", {"asks": b"?"})
     program = run_live(robot, WAIT_20).number("program")
-    place = _rest_field(robot.ask("PING", {"asks": b"?"}), "place")
-    message = f"{int.from_bytes(place[:2], 'little')} of "
-    message += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
+    place_field = _bytes_field(robot.ask("PING", {"asks": b"?"}), "place")
+    place_text = f"{int.from_bytes(place_field[:2], 'little')} of "
+    place_text += (
+        "what runs" if place_field[2:] == program.to_bytes(4, "little") else "something else"
+    )
     return (
-        "a place before" if _rest_field(before, "place") else "no place before",
-        message if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
-        "a place unasked" if _rest_field(robot.ask("PING"), "place") else "no place unasked",
+        "a place before" if _bytes_field(earlier_answer, "place") else "no place before",
+        place_text if len(place_field) == PLACE_BYTES else f"{len(place_field)} bytes of a place",
+        "a place unasked" if _bytes_field(robot.ask("PING"), "place") else "no place unasked",
     )
 
 
-def _rest_field(answer: Answer, name: str) -> bytes:
+def _bytes_field(answer: Answer, name: str) -> bytes:
     value = answer.values.get(name)
     return value if isinstance(value, bytes) else b""
 
@@ -293,9 +301,9 @@ LINK_CHECKS = (
 LONG_IMAGE = pack("SI", 0, bytes.fromhex("310001") * 40)
 
 
-def _change_byte(at: int, value: int) -> bytes:
+def _change_byte(offset: int, value: int) -> bytes:
     """Return the image with another byte and its old checksum."""
-    return LONG_IMAGE[:at] + bytes([value]) + LONG_IMAGE[at + 1 :]
+    return LONG_IMAGE[:offset] + bytes([value]) + LONG_IMAGE[offset + 1 :]
 
 
 def _image_check(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
@@ -319,8 +327,8 @@ def _check_fetch(robot: WireRobot) -> tuple[str, ...]:
 def _check_incomplete(robot: WireRobot) -> tuple[str, ...]:
     announce(robot, LONG_IMAGE, 0)
     robot.ask("DATA", {"offset": 0, "bytes": LONG_IMAGE[HEADER_BYTES + 4 : HEADER_BYTES + 24]})
-    gap = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
-    return (f"next {gap.number('next')}", answer_text(robot.ask("COMMIT", {"checksum": 0})))
+    gap_answer = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
+    return (f"next {gap_answer.number('next')}", answer_text(robot.ask("COMMIT", {"checksum": 0})))
 
 
 IMAGE_CHECKS = (
@@ -348,14 +356,14 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
         run_live(robot, WAIT_20)
         robot.events.clear()
         stop(robot)
-        event = robot.wait(EVENT_LIMIT_S, "STOPPED")
+        event = robot.wait(EVENT_TIMEOUT_S, "STOPPED")
         cause = "no STOPPED" if event is None else f"STOPPED {event.number('cause')}"
         state = _state(robot.ask("PING"))
-        latched = answer_text(run_live(robot, SHOW_7))
+        latched_text = answer_text(run_live(robot, SHOW_7))
         return (
             cause,
             state,
-            latched,
+            latched_text,
             answer_text(robot.ask("CLEAR")),
             answer_text(run_live(robot, SHOW_7)),
         )
@@ -365,14 +373,14 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
 
 def _check_silence(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(SILENCE_LIMIT_S, "FAULT", heartbeats=False)
+    robot.wait(SILENCE_TIMEOUT_S, "FAULT", sends_heartbeats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 
 
 def _check_attended(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(ATTENDED_LIMIT_S)
+    robot.wait(ATTENDED_S)
     return (_state(robot.ask("PING")),)
 
 

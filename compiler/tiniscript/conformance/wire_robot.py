@@ -65,16 +65,17 @@ def _number(values: Mapping[str, int | bytes], name: str) -> int:
 
 
 class WireRobot:
-    """`answer_ms` is how long one try waits. Methods raise Silent, and OSError without a port."""
+    """`answer_timeout_ms` is how long one try waits. Methods raise Silent, and OSError without a
+    port."""
 
-    def __init__(self, wire: Wire, nonce: int, answer_ms: int) -> None:
+    def __init__(self, wire: Wire, nonce: int, answer_timeout_ms: int) -> None:
         self.wire = wire
         self.nonce = nonce
-        self.answer_ms = answer_ms
+        self.answer_timeout_ms = answer_timeout_ms
         self.epoch = 0
         self.events: list[Event] = []
         self._seq = 0
-        self._rest = b""
+        self._unread = b""
         self._heartbeat_s = 0.0
 
     def hello(self, try_count: int = MOST_TRIES) -> Answer:
@@ -109,8 +110,8 @@ class WireRobot:
         frame = Frame(number, self._seq, self.epoch if epoch is None else epoch, payload)
         for _ in range(try_count):
             self.send(b"\0" + encode_frame(frame))
-            until_s = monotonic() + self.answer_ms / 1000
-            while monotonic() < until_s:
+            end_s = monotonic() + self.answer_timeout_ms / 1000
+            while monotonic() < end_s:
                 for reply in self._replies():
                     if (reply.number, reply.seq) == (number, self._seq) and reply.payload:
                         return _answer(number, reply.payload)
@@ -120,32 +121,34 @@ class WireRobot:
         self._heartbeat_s = monotonic()
         self.wire.send(data)
 
-    def wait(self, seconds: float, name: str = "", heartbeats: bool = True) -> Event | None:
-        """Return the first event of this name; `heartbeats`: it hears PINGs."""
-        until_s = monotonic() + seconds
+    def wait(self, seconds: float, name: str = "", sends_heartbeats: bool = True) -> Event | None:
+        """Return the first event of this name; `sends_heartbeats`: it hears PINGs."""
+        end_s = monotonic() + seconds
         while True:
             for event in self.events:
                 if event.name == name:
                     return event
-            if monotonic() >= until_s:
+            if monotonic() >= end_s:
                 return None
-            if heartbeats and monotonic() - self._heartbeat_s > HEARTBEAT_INTERVAL_S:
+            if sends_heartbeats and monotonic() - self._heartbeat_s > HEARTBEAT_INTERVAL_S:
                 self.ask("PING")
             else:
                 self._replies()
 
     def receive(self, seconds: float) -> list[Frame]:
         """Return the replies of so long a time."""
-        until_s = monotonic() + seconds
+        end_s = monotonic() + seconds
         frames: list[Frame] = []
-        while monotonic() < until_s:
+        while monotonic() < end_s:
             frames += self._replies()
         return frames
 
     def _replies(self) -> list[Frame]:
         """Take what has arrived: keep events and the epoch, and return the replies."""
-        *packets, self._rest = (self._rest + self.wire.receive(LOOK_INTERVAL_MS, 1)).split(b"\0")
-        self._rest = self._rest[-1024:]
+        *packets, self._unread = (self._unread + self.wire.receive(LOOK_INTERVAL_MS, 1)).split(
+            b"\0"
+        )
+        self._unread = self._unread[-1024:]
         frames = [frame for frame in map(decode_frame, filter(None, packets)) if frame]
         replies = []
         for frame in frames:
@@ -153,12 +156,12 @@ class WireRobot:
                 continue  # an echo of ours
             self.epoch = frame.epoch
             if frame.number >= FIRST_EVENT:
-                self._keep(frame)
+                self._add_event(frame)
             else:
                 replies.append(frame)
         return replies
 
-    def _keep(self, frame: Frame) -> None:
+    def _add_event(self, frame: Frame) -> None:
         message = BY_NUMBER.get(frame.number)
         if message is not None:
             try:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence, Set
 from typing import NamedTuple
 
-from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
+from tiniscript.base.source import Edit, Source, Span, apply_edits, edits_overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 
@@ -117,7 +117,7 @@ def _repair_steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ..
     ]
     separate_repairs: list[tuple[Edit, ...]] = []
     for edits in sure_repairs:
-        if not any(overlap(edits, other) for other in separate_repairs):
+        if not any(edits_overlap(edits, other) for other in separate_repairs):
             separate_repairs.append(edits)
     if len(separate_repairs) > 1:
         yield separate_repairs
@@ -171,7 +171,7 @@ def drop_wrong_offers(
         ]
         joined_edits: list[Edit] = []
         for edits in offers:
-            joined_edits += edits if not overlap(edits, joined_edits) else []
+            joined_edits += edits if not edits_overlap(edits, joined_edits) else []
         joined_text = _EditedText(text, joined_edits, check)
         joined_set = set(joined_edits)
         suspects = [
@@ -211,7 +211,7 @@ def _covered_by_offer(
     for diagnostic, edits in zip(diagnostics, offers, strict=True):
         if diagnostic is not diagnostics[k]:
             codes_and_words |= {text[slice(*diagnostic.span)].upper()} - {""}
-            if overlap(edits, offers[k]):
+            if edits_overlap(edits, offers[k]):
                 # their ends are in one place
                 codes_and_words |= {
                     diagnostic.code.number,

@@ -24,38 +24,40 @@ CHIPS: dict[tuple[str, str], tuple[str, str]] = {
     ("10c4", "ea60"): ("CP2102", "cp210x"),
     ("067b", "2303"): ("PL2303", "pl2303"),
 }
-ARDUINOS = ("2341", "2a03")  # vendors
+ARDUINO_VENDORS = ("2341", "2a03")  # vendors
 # Names that modules have from the factory, and from `tsc doctor --module`.
-_MODULES = re.compile(r"HC-0[56]|HC0[56]|linvor|HMSoft|BT05|BT-05|MLT|CC41|SPP-C|JDY|Tini-", re.I)
+_MODULE_NAME = re.compile(
+    r"HC-0[56]|HC0[56]|linvor|HMSoft|BT05|BT-05|MLT|CC41|SPP-C|JDY|Tini-", re.I
+)
 
 
 class Adapter(NamedTuple):
     """A USB adapter: its chip, the driver that it wants, and the one that has it (or none)."""
 
     chip: str
-    wants: str
+    wanted_driver: str
     driver: str
     has_port: bool
 
 
 class Computer(NamedTuple):
-    """`adapters` and `paired` are None where the system does not tell.
+    """`adapters` and `paired_names` are None where the system does not tell.
 
-    `paired` are names of Bluetooth devices: they may be those of persons' telephones, and are never
-    told. `programs` are those of interest that run.
+    `paired_names` are names of Bluetooth devices: they may be those of persons' telephones, and are
+    never told. `programs` are those of interest that run.
     """
 
     platform: str
     ports: tuple[ListedPort, ...]
     adapters: tuple[Adapter, ...] | None
     bluetooth: str
-    paired: tuple[str, ...] | None
+    paired_names: tuple[str, ...] | None
     programs: frozenset[str] = frozenset()
 
     @property
     def has_module(self) -> bool | None:
         """Whether something that looks like a robot's module is paired; None if nobody knows."""
-        return None if self.paired is None else any(map(is_module, self.paired))
+        return None if self.paired_names is None else any(map(is_module, self.paired_names))
 
 
 class Access(NamedTuple):
@@ -67,7 +69,7 @@ class Access(NamedTuple):
     may_use: bool
     group: str
     is_joined: bool
-    users: tuple[str, ...]
+    using_programs: tuple[str, ...]
 
 
 FREE_ACCESS = Access(True, "", False, ())
@@ -75,13 +77,13 @@ FREE_ACCESS = Access(True, "", False, ())
 
 def chip_of(vendor: str, product: str) -> tuple[str, str] | None:
     """Return the name of an adapter and its driver, or None for any other USB device."""
-    if vendor in ARDUINOS:
+    if vendor in ARDUINO_VENDORS:
         return "Arduino", "cdc_acm"
     return CHIPS.get((vendor, product))
 
 
 def is_module(name: str) -> bool:
-    return _MODULES.search(name) is not None
+    return _MODULE_NAME.search(name) is not None
 
 
 def looks_wireless(port: str, description: str = "") -> bool:

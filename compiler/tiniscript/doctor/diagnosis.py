@@ -23,8 +23,8 @@ from tiniscript.doctor.computer import (
     looks_wireless,
 )
 from tiniscript.doctor.examination import Expectations, RobotAnswers, examine
-from tiniscript.doctor.findings import Finding, probably, sure
-from tiniscript.doctor.line import Line
+from tiniscript.doctor.findings import Finding, probable_finding, sure_finding
+from tiniscript.doctor.line import PortFacts
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.link import errors
@@ -41,24 +41,24 @@ def inspect_computer(system: System) -> Computer:
     """Look at a computer. Opens no port."""
     if system.platform == "win32":
         return windows.inspect_windows(system)
-    look = macos.inspect_macos if system.platform == "darwin" else linux.inspect_linux
-    return look(system)
+    inspect = macos.inspect_macos if system.platform == "darwin" else linux.inspect_linux
+    return inspect(system)
 
 
-def access(system: System, port: str) -> Access:
+def port_access(system: System, port: str) -> Access:
     """Return who may use a port and who does. Opens no port."""
-    is_told = system.platform != "win32" and not is_address(port)
-    owner = system.owner(port) if is_told else None
+    may_have_owner = system.platform != "win32" and not is_address(port)
+    owner = system.owner(port) if may_have_owner else None
     if owner is None:
         return FREE_ACCESS
-    look = macos.access if system.platform == "darwin" else linux.access
-    return look(system, port, owner)
+    system_access = macos.access if system.platform == "darwin" else linux.access
+    return system_access(system, port, owner)
 
 
-REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
+REFUSED_MESSAGE, IN_USE_MESSAGE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
 
 
-class Doors(NamedTuple):
+class DoctorServices(NamedTuple):
     """What the doctor needs from outside. `may_open` asks the user about the port of a cable.
 
     `share` opens a port so that other commands share it: a stop gets through while it is watched.
@@ -74,18 +74,18 @@ class Doors(NamedTuple):
 
 
 class Question(NamedTuple):
-    """What the user asks about. `last` is the port that was used last, if it is there.
+    """What the user asks about. `last_port` is the port that was used last, if it is there.
 
-    `virtual` are the ports of the virtual robots that run on this computer.
+    `virtual_ports` are the ports of the virtual robots that run on this computer.
     """
 
     port: str | None
-    last: str | None
+    last_port: str | None
     baud: int
-    expected: Expectations
+    expectations: Expectations
     nonce: int
     watch_ms: int = 0
-    virtual: tuple[str, ...] = ()
+    virtual_ports: tuple[str, ...] = ()
 
 
 class Diagnosis(NamedTuple):
@@ -97,52 +97,58 @@ class Diagnosis(NamedTuple):
     is_opened: bool
 
 
-def diagnose(doors: Doors, question: Question) -> Diagnosis:
-    doors.on_step("computer")
-    computer = inspect_computer(doors.system)
-    port = question.port or question.last or _only_port(computer, question.virtual)
+def diagnose(services: DoctorServices, question: Question) -> Diagnosis:
+    services.on_step("computer")
+    computer = inspect_computer(services.system)
+    port = question.port or question.last_port or _only_port(computer, question.virtual_ports)
     if port is None:
-        return Diagnosis(None, _missing_port_findings(computer, question.virtual), computer, False)
-    question = question._replace(expected=question.expected._replace(port=port))
-    client = None
+        return Diagnosis(
+            None, _missing_port_findings(computer, question.virtual_ports), computer, False
+        )
+    question = question._replace(expectations=question.expectations._replace(port=port))
+    shared_connection = None
     try:
-        client = doors.join(port)
-        if client is not None:
-            return Diagnosis(port, _diagnose_shared(client, doors, question), computer, True)
-    except OtherVersion as other:
-        values = {"verb": other.registration.verb, "theirs": other.version}
-        return Diagnosis(port, (sure("other_tsc", **values),), computer, False)
+        shared_connection = services.join(port)
+        if shared_connection is not None:
+            return Diagnosis(
+                port, _diagnose_shared(shared_connection, services, question), computer, True
+            )
+    except OtherVersion as error:
+        values = {"verb": error.registration.verb, "theirs": error.version}
+        return Diagnosis(port, (sure_finding("other_tsc", **values),), computer, False)
     finally:
-        if client is not None:
-            client.close()
-    busy_port = _port_in_use(doors.system, computer, port)
-    if busy_port is not None:
-        return Diagnosis(port, (busy_port,), computer, False)
-    is_radio = doors.is_radio(port) or port.startswith(PSEUDO_TERMINALS)
-    if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
-        return Diagnosis(port, (sure("not_opened"),), computer, False)
-    return _diagnose_open_port(doors, question, computer, port, is_radio)
+        if shared_connection is not None:
+            shared_connection.close()
+    busy_finding = _port_in_use(services.system, computer, port)
+    if busy_finding is not None:
+        return Diagnosis(port, (busy_finding,), computer, False)
+    is_radio = services.is_radio(port) or port.startswith(PSEUDO_TERMINALS)
+    if not is_radio and _is_listed(services.system, computer, port) and not services.may_open(port):
+        return Diagnosis(port, (sure_finding("not_opened"),), computer, False)
+    return _diagnose_open_port(services, question, computer, port, is_radio)
 
 
 def _diagnose_open_port(
-    doors: Doors, question: Question, computer: Computer, port: str, is_radio: bool
+    services: DoctorServices, question: Question, computer: Computer, port: str, is_radio: bool
 ) -> Diagnosis:
     try:
-        wire = doors.open_wire(port, question.baud)
-    except PortError as failure:
+        wire = services.open_wire(port, question.baud)
+    except PortError as error:
         return Diagnosis(
-            port, (_open_failure(failure, computer, port, doors.system),), computer, False
+            port, (_open_failure(error, computer, port, services.system),), computer, False
         )
     is_radio = is_radio and not port.startswith(PSEUDO_TERMINALS)
-    line_asked = Line(question.baud, is_radio, question.nonce)
-    expected, answers = question.expected, list[RobotAnswers]()
+    port_facts = PortFacts(question.baud, is_radio, question.nonce)
+    expectations, answers = question.expectations, list[RobotAnswers]()
 
-    def hear(each: RobotAnswers) -> None:
-        answers.append(each)
-        expected.hear(each)
+    def on_answers(answer: RobotAnswers) -> None:
+        answers.append(answer)
+        expectations.on_answers(answer)
 
     try:
-        findings = line.diagnose_line(wire, line_asked, expected._replace(hear=hear), doors.on_step)
+        findings = line.diagnose_line(
+            wire, port_facts, expectations._replace(on_answers=on_answers), services.on_step
+        )
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
@@ -150,33 +156,36 @@ def _diagnose_open_port(
         wire.close()
     # a key is shown by the connection alone, and a robot with an owner tells more then
     has_key = any(
-        each.hello.features & OWNED and expected.has_key(each.hello.id) for each in answers
+        answer.hello.features & OWNED and expectations.has_key(answer.hello.id)
+        for answer in answers
     )
     if (question.watch_ms or has_key) and not any(finding.is_wrong for finding in findings):
-        with doors.share(port) as shared:
-            findings = list(_diagnose_shared(shared, doors, question))
+        with services.share(port) as connection:
+            findings = list(_diagnose_shared(connection, services, question))
     return Diagnosis(port, tuple(findings), computer, True)
 
 
-def _only_port(computer: Computer, virtual: tuple[str, ...]) -> str | None:
+def _only_port(computer: Computer, virtual_ports: tuple[str, ...]) -> str | None:
     """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
         port.port for port in computer.ports
         if "usb" in port.port.lower() or "acm" in port.port.lower()
         or looks_wireless(port.port, port.description) or computer.platform == "win32"
     ]  # fmt: skip
-    names = names or [*virtual]
+    names = names or [*virtual_ports]
     return names[0] if len(names) == 1 else None
 
 
-def _missing_port_findings(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
+def _missing_port_findings(
+    computer: Computer, virtual_ports: tuple[str, ...]
+) -> tuple[Finding, ...]:
     """Return why there is no port to look at; ports that may be no robot's are named beside."""
-    listed = ", ".join([*(port.port for port in computer.ports), *virtual])
+    listed_ports = ", ".join([*(port.port for port in computer.ports), *virtual_ports])
     if len(computer.ports) > 1:
-        return (sure("which_port", ports=listed),)
+        return (sure_finding("which_port", ports=listed_ports),)
     no_port_finding = _no_port_finding(computer)
-    if listed and no_port_finding.cause in ("no_port", "charging_cable"):
-        return (no_port_finding._replace(values={**no_port_finding.values, "ports": listed}),)
+    if listed_ports and no_port_finding.cause in ("no_port", "charging_cable"):
+        return (no_port_finding._replace(values={**no_port_finding.values, "ports": listed_ports}),)
     return (no_port_finding,)
 
 
@@ -185,93 +194,99 @@ def _no_port_finding(computer: Computer) -> Finding:
     for adapter in adapters_without_driver(computer.adapters or ()):
         if adapter.driver == "usbfs" or "brltty" in computer.programs:
             return Finding("brltty", "brltty" in computer.programs, {"chip": adapter.chip})
-        return sure("driver_missing", chip=adapter.chip, driver=adapter.wants or adapter.chip)
+        return sure_finding(
+            "driver_missing", chip=adapter.chip, driver=adapter.wanted_driver or adapter.chip
+        )
     if computer.adapters is not None and not computer.adapters:
-        return probably("charging_cable")
-    return sure("no_port")
+        return probable_finding("charging_cable")
+    return sure_finding("no_port")
 
 
 def _diagnose_shared(
-    client: LinkConnection, doors: Doors, question: Question
+    connection: LinkConnection, services: DoctorServices, question: Question
 ) -> tuple[Finding, ...]:
-    robot = SharedRobot(client)
-    doors.on_step("hello")
+    robot = SharedRobot(connection)
+    services.on_step("hello")
     try:
         reply = robot.hello()
         if reply is None:
-            foreign_board = stranger(client)
+            foreign_board = stranger(connection)
             if foreign_board is not None:
                 return (
                     Finding(
                         foreign_board.name, foreign_board.is_sure, {"said": foreign_board.said}
                     ),
                 )
-            return (probably("falls_silent"),)
-        return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
+            return (probable_finding("falls_silent"),)
+        return tuple(
+            examine(robot, reply, question.expectations, question.watch_ms, services.on_step)
+        )
     except ConnectionLost:
-        return (sure("port_gone"),)
+        return (sure_finding("port_gone"),)
 
 
 def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
-    who = access(system, canonical_port(port))
-    if not who.may_use and who.is_joined:
-        return sure("login_again", group=who.group)
-    if not who.may_use:
-        return sure("no_permission", group=who.group)
+    access = port_access(system, canonical_port(port))
+    if not access.may_use and access.is_joined:
+        return sure_finding("login_again", group=access.group)
+    if not access.may_use:
+        return sure_finding("no_permission", group=access.group)
     if port.startswith(PSEUDO_TERMINALS):
         return None  # whoever has made it has it open, too
-    if "ModemManager" in who.users:
-        return sure("modem_manager")
-    return sure("busy", by=", ".join(who.users)) if who.users else None
+    if "ModemManager" in access.using_programs:
+        return sure_finding("modem_manager")
+    return (
+        sure_finding("busy", by=", ".join(access.using_programs)) if access.using_programs else None
+    )
 
 
 def _is_listed(system: System, computer: Computer, port: str) -> bool:
     return is_address(port) or system.owner(port) is not None or any(
-        item.port.lower() == port.lower() for item in computer.ports
+        listed_port.port.lower() == port.lower() for listed_port in computer.ports
     )  # fmt: skip
 
 
-def open_failure(system: System, port: str, failure: PortError) -> Finding:
+def open_failure(system: System, port: str, error: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
     computer = inspect_computer(system)
-    return _port_in_use(system, computer, port) or _open_failure(failure, computer, port, system)
+    return _port_in_use(system, computer, port) or _open_failure(error, computer, port, system)
 
 
-def _open_failure(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
+def _open_failure(error: PortError, computer: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
-    if failure.reason == errors.MISSING:
+    if error.reason == errors.MISSING:
         return _missing_port(computer, port, system)
-    if failure.reason == errors.FORBIDDEN:
-        return sure("no_permission", group="")
-    if failure.reason == errors.BUSY:
-        if looks_wireless(port) and failure.why == IN_USE:
-            return probably("other_host")
+    if error.reason == errors.FORBIDDEN:
+        return sure_finding("no_permission", group="")
+    if error.reason == errors.BUSY:
+        if looks_wireless(port) and error.why == IN_USE_MESSAGE:
+            return probable_finding("other_host")
         if "ModemManager" in computer.programs:
-            return probably("modem_manager")
-        return sure("busy", by="")
-    if failure.reason in (errors.UNREACHABLE, errors.SLOW):
-        if failure.why == REFUSED and not is_address(port):
-            return probably("other_host")
+            return probable_finding("modem_manager")
+        return sure_finding("busy", by="")
+    if error.reason in (errors.UNREACHABLE, errors.SLOW):
+        if error.why == REFUSED_MESSAGE and not is_address(port):
+            return probable_finding("other_host")
         if not is_address(port) and computer.has_module is False and computer.bluetooth != OFF:
-            return probably("not_paired")
-        return probably("slow_port" if failure.reason == errors.SLOW else "out_of_reach")
-    if failure.reason == errors.NO_PORT:
-        return sure("no_serial_port")
-    return sure("port_broken", why=failure.why)
+            return probable_finding("not_paired")
+        return probable_finding("slow_port" if error.reason == errors.SLOW else "out_of_reach")
+    if error.reason == errors.NO_PORT:
+        return sure_finding("no_serial_port")
+    return sure_finding("port_broken", why=error.why)
 
 
 def _missing_port(computer: Computer, port: str, system: System) -> Finding:
     """Return why the port that was named does not exist."""
     if looks_wireless(port):
         if computer.bluetooth == NONE:
-            return sure("no_bluetooth")
+            return sure_finding("no_bluetooth")
         if computer.bluetooth == OFF:
-            return sure("bluetooth_off")
+            return sure_finding("bluetooth_off")
         if computer.has_module is False:
-            return sure("not_paired")
+            return sure_finding("not_paired")
         if computer.platform == "linux" and "rfcomm" in port:
             return Finding("no_rfcomm", bool(computer.has_module), {"number": port[-1:]})
     if adapters_without_driver(computer.adapters or ()) or not computer.ports:
         return _no_port_finding(computer)
-    return sure("port_missing", ports=", ".join(port.port for port in computer.ports))
+    return sure_finding("port_missing", ports=", ".join(port.port for port in computer.ports))

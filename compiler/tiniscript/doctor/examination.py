@@ -10,8 +10,8 @@ from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.doctor.findings import Finding, probably, sure
-from tiniscript.doctor.robot import Robot, values_of
+from tiniscript.doctor.findings import Finding, probable_finding, sure_finding
+from tiniscript.doctor.robot import Robot, hello_values
 from tiniscript.link.messages import (
     FEATURES,
     LINK_FAULTS,
@@ -53,23 +53,24 @@ class RobotAnswers(NamedTuple):
 
 
 class Expectations(NamedTuple):
-    """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing.
+    """The kit that the robot should have, None for any; `name_of_kit` says whose a kit is, or
+    nothing.
 
-    `has_key` says whether this computer has a key of the robot with this id. `doubts` returns the
-    cause why what answers on `port` may be another robot than that of a key, or nothing. `note`
-    gets what a robot has told of itself, whatever is wrong with it, and `hear` the answers.
-    `pings`: how often it is asked whether it hears.
+    `has_key` says whether this computer has a key of the robot with this id. `doubt_of` returns the
+    cause why what answers on `port` may be another robot than that of a key, or nothing. `on_facts`
+    gets what a robot has told of itself, whatever is wrong with it, and `on_answers` the answers.
+    `ping_count`: how often it is asked whether it hears.
     """
 
     kit: int | None
     name: str
-    names: Callable[[int], str | None]
+    name_of_kit: Callable[[int], str | None]
     has_key: Callable[[int], bool] = lambda robot: False
-    doubts: Callable[[str, HelloReply], str] = lambda port, hello: ""
+    doubt_of: Callable[[str, HelloReply], str] = lambda port, hello: ""
     port: str = ""
-    note: Callable[[Mapping[str, str]], None] = lambda told: None
-    hear: Callable[[RobotAnswers], None] = lambda heard: None
-    pings: int = PING_COUNT
+    on_facts: Callable[[Mapping[str, str]], None] = lambda told: None
+    on_answers: Callable[[RobotAnswers], None] = lambda heard: None
+    ping_count: int = PING_COUNT
 
 
 class Restart(NamedTuple):
@@ -80,67 +81,67 @@ class Restart(NamedTuple):
 
 
 def examine(
-    robot: Robot, first: Reply[SentReply], expected: Expectations, watch_ms: int = 0,
+    robot: Robot, hello_reply: Reply[SentReply], expectations: Expectations, watch_ms: int = 0,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is wrong with a robot whose answer to HELLO is `first`.
+    """Return what is wrong with a robot whose answer to HELLO is `hello_reply`.
 
     Where nothing is, the only finding that is no note is `fine`. `on_step` gets `pings` and
     `watch`.
     """
-    hello = values_of(first)
-    if first.status == OTHER_ROBOT:  # the tsc that has the port does not believe it
-        return [sure("other_robot", id=f"{first.detail:08x}")]
-    if first.status == UNPROVEN:
-        return [sure("unproven", id="ID")]
+    hello = hello_values(hello_reply)
+    if hello_reply.status == OTHER_ROBOT:  # the tsc that has the port does not believe it
+        return [sure_finding("other_robot", id=f"{hello_reply.detail:08x}")]
+    if hello_reply.status == UNPROVEN:
+        return [sure_finding("unproven", id="ID")]
     if hello is None:
-        return [_other_link(first)]
-    if doubt := expected.doubts(expected.port, hello):
-        return [sure(doubt, id=f"{hello.id:08x}")]
+        return [_other_link(hello_reply)]
+    if doubt := expectations.doubt_of(expectations.port, hello):
+        return [sure_finding(doubt, id=f"{hello.id:08x}")]
     findings = [
         *_version_findings(hello),
-        *_kit_findings(hello, expected),
-        *_owner_findings(robot, hello, expected),
+        *_kit_findings(hello, expectations),
+        *_owner_findings(robot, hello, expectations),
     ]
     if hello.features & WIFI_RESTS:
-        findings.append(sure("wifi_rests"))
-    expected.note(_report_fields(hello, expected))
-    before = robot.status()
+        findings.append(sure_finding("wifi_rests"))
+    expectations.on_facts(_report_fields(hello, expectations))
+    status_before = robot.status()
     restarts: list[Restart] = []
-    if before is not None:
-        findings += _status_findings(before)
-        loss_findings, trips_ms = _link_findings(robot, before, expected, on_step)
+    if status_before is not None:
+        findings += _status_findings(status_before)
+        loss_findings, trips_ms = _link_findings(robot, status_before, expectations, on_step)
         findings += loss_findings
-        expected.hear(RobotAnswers(hello, before, _trim(robot, hello), trips_ms))
+        expectations.on_answers(RobotAnswers(hello, status_before, _trim(robot, hello), trips_ms))
         on_step("watch")
         restarts = _watch_restarts(robot, hello, watch_ms)
-    after = robot.status() if before is not None else None
+    status_after = robot.status() if status_before is not None else None
     if restarts:
         findings += _restart_findings(restarts)
-    elif after is None:
-        findings.append(probably("falls_silent"))
+    elif status_after is None:
+        findings.append(probable_finding("falls_silent"))
     elif row_name(RESETS, hello.reset) == _BROWN_OUT:
-        findings.append(sure("brown_out"))
-    elif row_name(RESETS, hello.reset) == _WATCHDOG or after.fault == _STALL:
-        findings.append(sure("hung"))
+        findings.append(sure_finding("brown_out"))
+    elif row_name(RESETS, hello.reset) == _WATCHDOG or status_after.fault == _STALL:
+        findings.append(sure_finding("hung"))
     if not any(finding.is_wrong for finding in findings):
         name = hello.name.decode("utf-8", "replace")
-        whose = expected.names(hello.kit) or f"{hello.kit:04x}"
+        kit_name = expectations.name_of_kit(hello.kit) or f"{hello.kit:04x}"
         values = {
-            "name": name or whose,
-            "kit": whose,
+            "name": name or kit_name,
+            "kit": kit_name,
             "id": f"{hello.id:08x}",
-            "n": str(expected.pings),
+            "n": str(expectations.ping_count),
         }
-        findings.append(sure("fine", **values))
+        findings.append(sure_finding("fine", **values))
     return findings
 
 
-def _report_fields(hello: HelloReply, expected: Expectations) -> dict[str, str]:
+def _report_fields(hello: HelloReply, expectations: Expectations) -> dict[str, str]:
     """Return what a report tells of a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
-        "kit": expected.names(hello.kit) or f"{hello.kit:04x}",
+        "kit": expectations.name_of_kit(hello.kit) or f"{hello.kit:04x}",
         "link": f"{hello.major}.{hello.minor}",
         "machine": f"{hello.isa_major}.{hello.isa_minor}",
         "room": str(hello.room),
@@ -151,9 +152,11 @@ def _report_fields(hello: HelloReply, expected: Expectations) -> dict[str, str]:
 
 def _other_link(reply: Reply[SentReply]) -> Finding:
     if reply.status != STATUSES["OTHER_LINK"]:
-        return probably("firmware_older", theirs=f"status {reply.status}", ours=f"{MAJOR}.{MINOR}")
+        return probable_finding(
+            "firmware_older", theirs=f"status {reply.status}", ours=f"{MAJOR}.{MINOR}"
+        )
     cause = "firmware_older" if reply.detail < MAJOR else "firmware_newer"
-    return sure(cause, theirs=str(reply.detail), ours=str(MAJOR))
+    return sure_finding(cause, theirs=str(reply.detail), ours=str(MAJOR))
 
 
 def _version_findings(hello: HelloReply) -> list[Finding]:
@@ -166,59 +169,70 @@ def _version_findings(hello: HelloReply) -> list[Finding]:
         "theirs": f"{hello.major}.{hello.minor} / {robot_isa[0]}.{robot_isa[1]}",
         "ours": f"{MAJOR}.{MINOR} / {own_isa[0]}.{own_isa[1]}",
     }
-    return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
+    return [sure_finding("firmware_newer" if is_newer else "firmware_older", **values)]
 
 
-def _kit_findings(hello: HelloReply, expected: Expectations) -> list[Finding]:
-    result = expected.names(hello.kit)
+def _kit_findings(hello: HelloReply, expectations: Expectations) -> list[Finding]:
+    known_name = expectations.name_of_kit(hello.kit)
     kit = f"{hello.kit:04x}"
-    if expected.kit is not None and hello.kit != expected.kit:
-        return [sure("wrong_kit", kit=kit, robot=result or kit, expected=expected.name)]
-    if expected.kit is None and result is None:
-        return [sure("unknown_kit", kit=kit)]
+    if expectations.kit is not None and hello.kit != expectations.kit:
+        return [
+            sure_finding("wrong_kit", kit=kit, robot=known_name or kit, expected=expectations.name)
+        ]
+    if expectations.kit is None and known_name is None:
+        return [sure_finding("unknown_kit", kit=kit)]
     return []
 
 
-def _owner_findings(robot: Robot, hello: HelloReply, expected: Expectations) -> list[Finding]:
+def _owner_findings(robot: Robot, hello: HelloReply, expectations: Expectations) -> list[Finding]:
     """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
-    is_open = not robot.has_shown_keys and expected.has_key(hello.id)
-    is_others = hello.features & (OWNED | YOURS) == OWNED and not is_open
-    return [sure("of_another_owner")] if is_others else []
+    may_be_own = not robot.has_shown_keys and expectations.has_key(hello.id)
+    is_others = hello.features & (OWNED | YOURS) == OWNED and not may_be_own
+    return [sure_finding("of_another_owner")] if is_others else []
 
 
 def _status_findings(status: StatusReply) -> list[Finding]:
     """Return what the robot says of its supply, its latch and its program."""
     findings = []
     if status.saved == SAVED_LOW_SUPPLY:
-        findings.append(sure("low_supply"))
+        findings.append(sure_finding("low_supply"))
     if status.saved == SAVED_SAVING:
-        findings.append(sure("not_saved_yet"))
+        findings.append(sure_finding("not_saved_yet"))
     if status.saved == SAVED_OTHER_VERSION:
-        findings.append(sure("other_program"))
+        findings.append(sure_finding("other_program"))
     if status.state > STATE_RUNNING:
-        findings.append(sure("stopped"))
+        findings.append(sure_finding("stopped"))
     return findings
 
 
 def _link_findings(
-    robot: Robot, before: StatusReply, expected: Expectations, on_step: Callable[[str], None]
+    robot: Robot,
+    status_before: StatusReply,
+    expectations: Expectations,
+    on_step: Callable[[str], None],
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     on_step("pings")
-    trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PING_PAUSE_MS))
-    missed = expected.pings - len(trips_ms)
-    after = robot.status()
+    trips_ms = trips_of(robot, expectations.ping_count, lambda: robot.pause(PING_PAUSE_MS))
+    missed_count = expectations.ping_count - len(trips_ms)
+    status_after = robot.status()
     damaged_count = 0
-    if after is not None:
-        pairs = zip(_error_counts(before), _error_counts(after), strict=True)
+    if status_after is not None:
+        pairs = zip(_error_counts(status_before), _error_counts(status_after), strict=True)
         damaged_count = sum((count_now - count_before) & 0xFF for count_before, count_now in pairs)
-    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
-    expected.note({"good": str(len(trips_ms)), **values})
+    values = {
+        "missed": str(missed_count),
+        "n": str(expectations.ping_count),
+        "damaged": str(damaged_count),
+    }
+    expectations.on_facts({"good": str(len(trips_ms)), **values})
     loss_findings = []
-    if max(missed, damaged_count) * PING_COUNT >= MOST_LOST * expected.pings:
-        loss_findings = [sure("lossy", **values)] if after is not None else []
-    elif after is not None and line_error_count(before) >= 10 * MOST_LOST:
-        loss_findings = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
+    if max(missed_count, damaged_count) * PING_COUNT >= MOST_LOST * expectations.ping_count:
+        loss_findings = [sure_finding("lossy", **values)] if status_after is not None else []
+    elif status_after is not None and line_error_count(status_before) >= 10 * MOST_LOST:
+        loss_findings = [
+            probable_finding("lossy", **{**values, "damaged": str(line_error_count(status_before))})
+        ]
     return loss_findings, trips_ms
 
 
@@ -228,9 +242,9 @@ def trips_of(
     """Send so many PING; return how many milliseconds each answer took that came at once."""
     trips_ms: list[float] = []
     for _ in range(count):
-        missed, began_s = robot.missed, perf_counter()
+        missed_before, began_s = robot.missed_count, perf_counter()
         robot.ask("PING")
-        if robot.missed == missed:
+        if robot.missed_count == missed_before:
             trips_ms.append((perf_counter() - began_s) * 1000)
         pause()
     return tuple(trips_ms)
@@ -255,7 +269,7 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING
     for _ in range(max(LOOK_COUNT, watch_ms // LOOK_INTERVAL_MS)):
         robot.pause(LOOK_INTERVAL_MS)
-        hello_now = values_of(robot.hello())
+        hello_now = hello_values(robot.hello())
         if hello_now is None:
             continue
         if hello_now.nonce != nonce:
@@ -279,5 +293,5 @@ def _restart_findings(restarts: list[Restart]) -> list[Finding]:
             )
         ]
     if restarts[-1].cause == _WATCHDOG:
-        return [sure("hung")]
-    return [sure("restarts", count=count, reset=restarts[-1].cause)]
+        return [sure_finding("hung")]
+    return [sure_finding("restarts", count=count, reset=restarts[-1].cause)]

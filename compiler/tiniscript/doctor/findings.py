@@ -17,18 +17,18 @@ OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and 
 class FindingKind(NamedTuple):
     """What a finding means. `part`: what of a robot it is about, where one is looked at whole.
 
-    `then` names the sentence with the next step, if that is not of this cause alone.
+    `next_key` names the sentence with the next step, if that is not of this cause alone.
     """
 
     verdict: str
     part: str = ""
-    then: str = ""
+    next_key: str = ""
 
 
 def _finding_kinds(
-    verdict: str, part: str, causes: str, then: str = ""
+    verdict: str, part: str, causes: str, next_key: str = ""
 ) -> Iterable[tuple[str, FindingKind]]:
-    return ((word, FindingKind(verdict, part, then)) for word in causes.split())
+    return ((cause, FindingKind(verdict, part, next_key)) for cause in causes.split())
 
 
 CAUSES = dict((
@@ -58,30 +58,30 @@ CAUSES = dict((
     *_finding_kinds(OK, "", "fine"),
     # each part, where it is looked at whole
     *_finding_kinds(OK, "answers", "is_there"),
-    *_finding_kinds(WRONG, "answers", "plain", then="doctor"),
+    *_finding_kinds(WRONG, "answers", "plain", next_key="doctor"),
      # or of another part: what the robot told
     *_finding_kinds(OK, "kit", "kit_is"),
     *_finding_kinds(OK, "firmware", "firmware_is"),
     *_finding_kinds(OK, "line", "line_is"),
     *_finding_kinds(OK, "supply", "supply_is"),
     *_finding_kinds(OK, "store", "saved empty"),
-    *_finding_kinds(OPEN, "store", "unsaved", then="upload"),
+    *_finding_kinds(OPEN, "store", "unsaved", next_key="upload"),
     *_finding_kinds(OK, "trim", "trim_is"),
     *_finding_kinds(OK, "discs", "discs_rest"),
-    *_finding_kinds(WRONG, "discs", "discs_noise", then="discs"),
+    *_finding_kinds(WRONG, "discs", "discs_noise", next_key="discs"),
     *_finding_kinds(OK, "sensor", "reads changes"),
-    *_finding_kinds(OPEN, "sensor", "stuck as_bright", then="hand"),
-    *_finding_kinds(WRONG, "sensor", "same no_reading echo_hung", then="wires"),
+    *_finding_kinds(OPEN, "sensor", "stuck as_bright", next_key="hand"),
+    *_finding_kinds(WRONG, "sensor", "same no_reading echo_hung", next_key="wires"),
     *_finding_kinds(OK, "motor", "turns"),
-    *_finding_kinds(WRONG, "motor", "other_turn", then="trim"),
-    *_finding_kinds(WRONG, "motor", "still", then="wires"),
-    *_finding_kinds(WRONG, "motor", "ended", then="batteries"),  # of the buzzer, too
-    *_finding_kinds(OPEN, "motor", "unasked", then="person"),
-    *_finding_kinds(WRONG, "motors", "same_wheel", then="pins"),
-    *_finding_kinds(WRONG, "motors", "too_weak", then="wheels"),
-    *_finding_kinds(WRONG, "motors", "too_uneven", then="brake"),
+    *_finding_kinds(WRONG, "motor", "other_turn", next_key="trim"),
+    *_finding_kinds(WRONG, "motor", "still", next_key="wires"),
+    *_finding_kinds(WRONG, "motor", "ended", next_key="batteries"),  # of the buzzer, too
+    *_finding_kinds(OPEN, "motor", "unasked", next_key="person"),
+    *_finding_kinds(WRONG, "motors", "same_wheel", next_key="pins"),
+    *_finding_kinds(WRONG, "motors", "too_weak", next_key="wheels"),
+    *_finding_kinds(WRONG, "motors", "too_uneven", next_key="brake"),
     *_finding_kinds(OK, "buzzer", "heard"),
-    *_finding_kinds(WRONG, "buzzer", "unheard", then="wires"),
+    *_finding_kinds(WRONG, "buzzer", "unheard", next_key="wires"),
     # a module that is set up, and each of its settings
     *_finding_kinds(WRONG, "module", "module_silent"),
     *_finding_kinds(OK, "setting", "module_done module_done_baud module_done_later"),
@@ -115,9 +115,9 @@ class Finding(NamedTuple):
         return self.part_name or CAUSES[self.cause].part
 
 
-def sure(cause: str, **values: str) -> Finding:
+def sure_finding(cause: str, **values: str) -> Finding:
     return Finding(cause, True, values)
 
 
-def probably(cause: str, **values: str) -> Finding:
+def probable_finding(cause: str, **values: str) -> Finding:
     return Finding(cause, False, values)

@@ -12,8 +12,8 @@ from functools import partial
 from typing import NamedTuple
 
 from tiniscript.doctor.examination import Expectations, examine
-from tiniscript.doctor.findings import Finding, probably, sure
-from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
+from tiniscript.doctor.findings import Finding, probable_finding, sure_finding
+from tiniscript.doctor.robot import CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
 from tiniscript.link import foreign
 from tiniscript.link.foreign import ECHO_SKETCH, Foreign
@@ -28,39 +28,41 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
 )
 BLINK_WAIT_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
 BOOTLOADER_TRIES = 4
-ANSWER_LIMIT_MS = 200
-BOOTLOADER_MS = (
+ANSWER_TIMEOUT_MS = 200
+BOOTLOADER_TIMEOUT_MS = (
     5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
 )
 
 
-def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool] | None:
+def find_bootloader(
+    wire: Wire, on_bytes: Callable[[bytes], None]
+) -> tuple[Bootloader, bool] | None:
     """Restart the board and return the bootloader that answers, or None.
 
-    The second value: it answers later on, too; then there is nothing behind it. `hear` gets what
-    the board says after each restart.
+    The second value: it answers later on, too; then there is nothing behind it. `on_bytes` gets
+    what the board says after each restart.
     """
-    for line, greeting, answer in GREETINGS:
-        wire.set_baud(line.baud)
+    for bootloader, greeting, answer in GREETINGS:
+        wire.set_baud(bootloader.baud)
         wire.reset_board()
         answer_bytes = wire.receive(BLINK_WAIT_MS, BLINK_WAIT_MS)
         has_answered = False
         for _ in range(BOOTLOADER_TRIES):
             wire.send(greeting)
-            answer_bytes += wire.receive(ANSWER_LIMIT_MS)
+            answer_bytes += wire.receive(ANSWER_TIMEOUT_MS)
             if has_answered := answer in answer_bytes:
                 break
         if has_answered:
-            wire.receive(BOOTLOADER_MS, BOOTLOADER_MS)
-            return line, _greet(wire, greeting, answer)
-        hear(answer_bytes)
+            wire.receive(BOOTLOADER_TIMEOUT_MS, BOOTLOADER_TIMEOUT_MS)
+            return bootloader, _greet(wire, greeting, answer)
+        on_bytes(answer_bytes)
     return None
 
 
 def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
     for _ in range(BOOTLOADER_TRIES):
         wire.send(greeting)
-        if answer in wire.receive(ANSWER_LIMIT_MS):
+        if answer in wire.receive(ANSWER_TIMEOUT_MS):
             return True
     return False
 
@@ -69,12 +71,12 @@ def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
 BOOT_WAIT_MS = 1700
 HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
-LISTEN_LIMIT_MS = 400  # at a speed, to what a sketch prints
-PROBE_MS, RADIO_PROBE_MS = 200, 500  # for an answer of a board that is not ours
+LISTEN_MS = 400  # at a speed, to what a sketch prints
+PROBE_TIMEOUT_MS, RADIO_PROBE_TIMEOUT_MS = 200, 500  # for an answer of a board that is not ours
 LEAST_BYTES = 4  # bytes: fewer say nothing
 
 
-class Line(NamedTuple):
+class PortFacts(NamedTuple):
     """What is known of a port; `baud` is the speed that a robot should have there."""
 
     baud: int
@@ -83,32 +85,34 @@ class Line(NamedTuple):
 
 
 def diagnose_line(
-    wire: Wire, line: Line, expected: Expectations,
+    wire: Wire, facts: PortFacts, expectations: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
-    before = wire.receive(LISTEN_LIMIT_MS if line.is_radio else BOOT_WAIT_MS)
-    robot = _wire_robot(wire, line, expected)
+    early_bytes = wire.receive(LISTEN_MS if facts.is_radio else BOOT_WAIT_MS)
+    robot = _wire_robot(wire, facts, expectations)
     on_step("hello")
     reply = robot.hello(HELLO_TRIES)
     if reply is not None:
-        return examine(robot, reply, expected, on_step=on_step)
-    received = before + robot.heard
-    if _is_error(received):
-        return [sure("module_set_up", baud=str(line.baud))]
-    strangers = _Strangers(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
-    finding = strangers.find(received, robot.spoken, partial(_identify_echo, wire, line, expected))
+        return examine(robot, reply, expectations, on_step=on_step)
+    received = early_bytes + robot.received
+    if _has_module_error(received):
+        return [sure_finding("module_set_up", baud=str(facts.baud))]
+    boards = _ForeignBoards(wire, RADIO_PROBE_TIMEOUT_MS if facts.is_radio else PROBE_TIMEOUT_MS)
+    finding = boards.find(received, robot.sent, partial(_identify_echo, wire, facts, expectations))
     if finding is not None:
         return [finding]
-    if line.is_radio:
-        return [strangers.best_finding() or _diagnose_radio(received)]
-    return _diagnose_cable(wire, line, expected, received, strangers, on_step)
+    if facts.is_radio:
+        return [boards.best_finding() or _diagnose_radio(received)]
+    return _diagnose_cable(wire, facts, expectations, received, boards, on_step)
 
 
-def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
-    kit = expected.kit or 0
-    return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
+def _wire_robot(wire: Wire, facts: PortFacts, expectations: Expectations) -> WireRobot:
+    kit = expectations.kit or 0
+    return WireRobot(
+        wire, facts.nonce, kit, RADIO_TIMEOUT_MS if facts.is_radio else CABLE_TIMEOUT_MS
+    )
 
 
 def _is_echo(received: bytes, sent: bytes) -> bool:
@@ -117,41 +121,43 @@ def _is_echo(received: bytes, sent: bytes) -> bool:
     return any(frame in received for frame in frames)
 
 
-def _is_error(received: bytes) -> bool:
+def _has_module_error(received: bytes) -> bool:
     """Whether a module in its set-up mode complains."""
     return b"ERROR:(" in received or b"ERROR=" in received
 
 
-class _Strangers:
+class _ForeignBoards:
     """Looks for boards that are not ours in what is heard. What is sure is told at once; of the
     rest the best is kept until nothing else is found."""
 
     def __init__(self, wire: Wire, wait_ms: int) -> None:
         self._wire, self._wait_ms = wire, wait_ms
-        self._kept: list[Finding] = []
+        self._probable_findings: list[Finding] = []
 
-    def find(self, received: bytes, sent: bytes, echo: Callable[[], Finding]) -> Finding | None:
-        """Return what is surely there. `echo` returns what it is that sends back what is sent, and
-        says nothing else."""
-        finding = self.look(received)
+    def find(
+        self, received: bytes, sent: bytes, identify_echo: Callable[[], Finding]
+    ) -> Finding | None:
+        """Return what is surely there. `identify_echo` returns what it is that sends back what is
+        sent, and says nothing else."""
+        finding = self.identify(received)
         is_echo = _is_echo(received, sent)
         if finding is None and not (is_echo and self.best_finding() is None):
-            finding = self.ask(received, not is_echo)
+            finding = self.probe(received, not is_echo)
         if finding is None and is_echo:
             text = _text_beside(received, sent)
-            finding = sure(ECHO_SKETCH, said=text) if text else echo()
+            finding = sure_finding(ECHO_SKETCH, said=text) if text else identify_echo()
         return finding
 
-    def look(self, received: bytes) -> Finding | None:
+    def identify(self, received: bytes) -> Finding | None:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
         if foreign.is_robot(received):
-            return probably("one_way")
+            return probable_finding("one_way")
         board = foreign.identify_board(received)
         return (
             None if board is not None and board.name in foreign.GENERAL_ROWS else self._judge(board)
         )
 
-    def ask(self, received: bytes, may_be_text: bool) -> Finding | None:
+    def probe(self, received: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
 
         Each answer is looked at by itself: one who says again what it gets must not be taken for a
@@ -174,14 +180,14 @@ class _Strangers:
                 return finding
         return self._judge(foreign.identify_stranger(received)) if may_be_text else None
 
-    def settle(self, received: bytes) -> Finding | None:
+    def identify_any(self, received: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
         board = foreign.identify_board(received)
         return None if board is None else self._judge(board)
 
     def best_finding(self) -> Finding | None:
         """Return what is probably there."""
-        return self._kept[0] if self._kept else None
+        return self._probable_findings[0] if self._probable_findings else None
 
     def _judge(self, board: Foreign | None) -> Finding | None:
         if board is None:
@@ -189,25 +195,25 @@ class _Strangers:
         finding = Finding(board.name, board.is_sure, {"said": board.said})
         if board.is_sure:
             return finding
-        self._kept.append(finding)
+        self._probable_findings.append(finding)
         return None
 
 
-def _identify_echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
+def _identify_echo(wire: Wire, facts: PortFacts, expectations: Expectations) -> Finding:
     """Return what sends back: a sketch has one speed, a wire has every one."""
-    if line.is_radio:
-        return probably("echo")
-    wire.set_baud(next(baud for baud in BAUDS if baud != line.baud))
-    robot = _wire_robot(wire, line, expected)
+    if facts.is_radio:
+        return probable_finding("echo")
+    wire.set_baud(next(baud for baud in BAUDS if baud != facts.baud))
+    robot = _wire_robot(wire, facts, expectations)
     robot.hello(1)
-    if _is_echo(robot.heard, robot.spoken):
-        return sure("echo")
-    return _identify_echo_of_one_speed(wire, line.baud)
+    if _is_echo(robot.received, robot.sent):
+        return sure_finding("echo")
+    return _identify_echo_of_one_speed(wire, facts.baud)
 
 
 def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     """Return what sends back at this speed only: what takes commands may do so, too."""
-    return _find_module(wire, (baud,)) or sure(ECHO_SKETCH, said="")
+    return _find_module(wire, (baud,)) or sure_finding(ECHO_SKETCH, said="")
 
 
 def _text_beside(received: bytes, sent: bytes) -> str:
@@ -228,60 +234,67 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         if board is not None:
             return Finding(board.name, board.is_sure, {"said": board.said})
     cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
-    return sure(cause, baud=str(module.baud), module=module.dialect.name)
+    return sure_finding(cause, baud=str(module.baud), module=module.dialect.name)
 
 
 def _diagnose_radio(received: bytes) -> Finding:
     """The module has answered, for its port is open: what is behind it?"""
     if len(received) >= LEAST_BYTES:
-        return probably("module_baud", n=str(len(received)))
-    return probably("crossed")
+        return probable_finding("module_baud", n=str(len(received)))
+    return probable_finding("crossed")
 
 
 def _diagnose_cable(
-    wire: Wire, line: Line, expected: Expectations, received: bytes, strangers: _Strangers,
+    wire: Wire,
+    facts: PortFacts,
+    expectations: Expectations,
+    received: bytes,
+    boards: _ForeignBoards,
     on_step: Callable[[str], None],
-) -> list[Finding]:  # fmt: skip
+) -> list[Finding]:
     garbage_bytes = len(received)
     for baud in BAUDS:
-        if baud == line.baud:
+        if baud == facts.baud:
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        received_later = wire.receive(LISTEN_LIMIT_MS)
-        robot = _wire_robot(wire, line, expected)
+        later_bytes = wire.receive(LISTEN_MS)
+        robot = _wire_robot(wire, facts, expectations)
         reply = robot.hello(1)
         if reply is not None:
-            finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            findings = examine(robot, reply, expected, on_step=on_step)
+            finding = sure_finding("wrong_baud", baud=str(baud), expected=str(facts.baud))
+            findings = examine(robot, reply, expectations, on_step=on_step)
             return [finding, *(finding for finding in findings if finding.cause != "fine")]
-        received_later += robot.heard
+        later_bytes += robot.received
         identify_echo = partial(_identify_echo_of_one_speed, wire, baud)
-        other_finding = strangers.find(received_later, robot.spoken, identify_echo)
+        other_finding = boards.find(later_bytes, robot.sent, identify_echo)
         if other_finding is not None:
             return [other_finding]
-        garbage_bytes = max(garbage_bytes, len(received_later))
+        garbage_bytes = max(garbage_bytes, len(later_bytes))
     on_step("module")
-    other_finding = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
+    other_finding = _find_module(wire, tuple(dict.fromkeys((facts.baud, *dialects.BAUDS))))
     if other_finding is not None:
         return [other_finding]
     on_step("bootloader")
-    booted: list[bytes] = []
-    found_bootloader = find_bootloader(wire, booted.append)
-    for boot_text in booted:
-        other_finding = strangers.look(boot_text) or strangers.settle(boot_text)
+    boot_outputs: list[bytes] = []
+    found_bootloader = find_bootloader(wire, boot_outputs.append)
+    for boot_output in boot_outputs:
+        other_finding = boards.identify(boot_output) or boards.identify_any(boot_output)
         if other_finding is not None:
             return [other_finding]
     if found_bootloader is not None:
         board, has_only_bootloader = found_bootloader
-        return [sure("bootloader_only", board=board.name) if has_only_bootloader
-                else strangers.best_finding() or probably("other_sketch", said="")]  # fmt: skip
-    best_finding = strangers.best_finding()
+        return [
+            sure_finding("bootloader_only", board=board.name)
+            if has_only_bootloader
+            else boards.best_finding() or probable_finding("other_sketch", said="")
+        ]
+    best_finding = boards.best_finding()
     return [
         best_finding
         or (
-            probably("garbled", n=str(garbage_bytes))
+            probable_finding("garbled", n=str(garbage_bytes))
             if garbage_bytes >= LEAST_BYTES
-            else probably("silent")
+            else probable_finding("silent")
         )
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tiniscript.doctor.computer import NONE, OFF, ON, Access, Adapter, Computer, chip_of
 from tiniscript.doctor.system import Owner, System
 
-USB, BLUETOOTH, SWITCHES = "/sys/bus/usb/devices", "/sys/class/bluetooth", "/sys/class/rfkill"
+USB, BLUETOOTH, RFKILL = "/sys/bus/usb/devices", "/sys/class/bluetooth", "/sys/class/rfkill"
 LOCKS = "/run/lock", "/var/lock"
 PROGRAMS_OF_INTEREST = {"brltty", "ModemManager"}
 
@@ -26,16 +26,18 @@ def _adapters(system: System) -> list[Adapter]:
     adapters = []
     for name in system.names(USB):
         vendor, product = (
-            system.text(f"{USB}/{name}/{each}") or "" for each in ("idVendor", "idProduct")
+            system.text(f"{USB}/{name}/{entry}") or "" for entry in ("idVendor", "idProduct")
         )
         chip = chip_of(vendor.lower(), product.lower())
         if chip is None:
             continue
-        parts = [each for each in system.names(USB) if each.startswith(f"{name}:")]
-        drivers = [system.target(f"{USB}/{part}/driver") for part in parts]
+        interfaces = [entry for entry in system.names(USB) if entry.startswith(f"{name}:")]
+        drivers = [system.target(f"{USB}/{interface}/driver") for interface in interfaces]
         driver = next((driver.rpartition("/")[2] for driver in drivers if driver), "")
         has_port = any(
-            inside.startswith("tty") for part in parts for inside in system.names(f"{USB}/{part}")
+            child.startswith("tty")
+            for interface in interfaces
+            for child in system.names(f"{USB}/{interface}")
         )
         adapters.append(Adapter(chip[0], chip[1], driver, has_port))
     return adapters
@@ -44,10 +46,10 @@ def _adapters(system: System) -> list[Adapter]:
 def _bluetooth(system: System) -> str:
     if not any(name.startswith("hci") for name in system.names(BLUETOOTH)):
         return NONE
-    for name in system.names(SWITCHES):
-        folder = f"{SWITCHES}/{name}"
-        blocks = (system.text(f"{folder}/{item}") for item in ("soft", "hard"))
-        if system.text(f"{folder}/type") == "bluetooth" and "1" in blocks:
+    for name in system.names(RFKILL):
+        folder = f"{RFKILL}/{name}"
+        block_flags = (system.text(f"{folder}/{flag_name}") for flag_name in ("soft", "hard"))
+        if system.text(f"{folder}/type") == "bluetooth" and "1" in block_flags:
             return OFF
     return ON
 
@@ -64,37 +66,37 @@ def _paired_devices(system: System) -> tuple[str, ...] | None:
 
 def _programs(system: System) -> dict[str, str]:
     """Return the names of all programs that run, by their numbers."""
-    numbers = [name for name in system.names("/proc") if name.isdigit()]
-    return {number: system.text(f"/proc/{number}/comm") or "" for number in numbers}
+    process_ids = [name for name in system.names("/proc") if name.isdigit()]
+    return {process_id: system.text(f"/proc/{process_id}/comm") or "" for process_id in process_ids}
 
 
 def access(system: System, port: str, owner: Owner) -> Access:
     group, members = _group(system, owner.group)
     is_joined = system.user() in members and owner.group not in system.groups()
-    return Access(owner.may_use, group, is_joined, tuple(_users(system, port)))
+    return Access(owner.may_use, group, is_joined, tuple(_using_programs(system, port)))
 
 
-def _group(system: System, number: int) -> tuple[str, list[str]]:
+def _group(system: System, group_id: int) -> tuple[str, list[str]]:
     for row in (system.text("/etc/group") or "").splitlines():
         parts = row.split(":")
-        if len(parts) == 4 and parts[2] == str(number):
+        if len(parts) == 4 and parts[2] == str(group_id):
             return parts[0], parts[3].split(",")
     return "", []
 
 
-def _users(system: System, port: str) -> list[str]:
+def _using_programs(system: System, port: str) -> list[str]:
     """Return the programs that use a port.
 
     Those of other users are known by their lock files alone.
     """
-    users = []
+    using_programs = []
     programs = _programs(system)
-    for number, name in programs.items():
-        folder = f"/proc/{number}/fd"
+    for process_id, name in programs.items():
+        folder = f"/proc/{process_id}/fd"
         if any(system.target(f"{folder}/{name}") == port for name in system.names(folder)):
-            users.append(name)
+            using_programs.append(name)
     for folder in LOCKS:
-        number = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()
-        if number in programs:
-            users.append(programs[number])
-    return list(dict.fromkeys(name for name in users if name))
+        process_id = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()
+        if process_id in programs:
+            using_programs.append(programs[process_id])
+    return list(dict.fromkeys(name for name in using_programs if name))

@@ -12,20 +12,22 @@ from tiniscript.doctor.system import Owner, System
 
 def inspect_macos(system: System) -> Computer:
     ports = system.ports()
-    usb = _query(system, "SPUSBDataType")
+    usb_devices = _query(system, "SPUSBDataType")
     has_port = any("usb" in port.port.lower() for port in ports)
-    adapters = None if usb is None else tuple(_adapters(usb, has_port))
-    bluetooth, paired = _bluetooth(_query(system, "SPBluetoothDataType"))
-    return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
+    adapters = None if usb_devices is None else tuple(_adapters(usb_devices, has_port))
+    bluetooth, paired_names = _bluetooth(_query(system, "SPBluetoothDataType"))
+    return Computer(system.platform, tuple(ports), adapters, bluetooth, paired_names)
 
 
 def _query(system: System, data_type: str) -> list[dict[str, Any]] | None:
     text = system.output("system_profiler", data_type, "-json")
     try:
-        result = json.loads(text or "")[data_type]
+        report = json.loads(text or "")[data_type]
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
-    return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else None
+    return (
+        [entry for entry in report if isinstance(entry, dict)] if isinstance(report, list) else None
+    )
 
 
 def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
@@ -35,7 +37,9 @@ def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter
         device = pending_devices.pop()
         inner_devices = device.get("_items")
         if isinstance(inner_devices, list):
-            pending_devices += [item for item in inner_devices if isinstance(item, dict)]
+            pending_devices += [
+                inner_device for inner_device in inner_devices if isinstance(inner_device, dict)
+            ]
         vendor, product = (
             str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
             for key in ("vendor_id", "product_id")

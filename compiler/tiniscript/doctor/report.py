@@ -71,7 +71,9 @@ def facts(computer: Computer) -> list[tuple[str, str]]:
             f"{adapter.chip} ({adapter.driver or ('port' if adapter.has_port else '-')})"
             for adapter in computer.adapters
         )
-    modules = "?" if computer.paired is None else str(sum(map(is_module, computer.paired)))
+    modules = (
+        "?" if computer.paired_names is None else str(sum(map(is_module, computer.paired_names)))
+    )
     return [
         ("system", computer.platform),
         ("ports", ", ".join(shown_port(port.port) for port in computer.ports) or "-"),

@@ -21,16 +21,16 @@ from tiniscript.link.wire import Wire
 
 MOST_TRIES = 3
 MOST_READS = 4  # of the wire in one try: what the robot tells by itself may come in between
-CABLE_MS, RADIO_MS = 300, 700  # for an answer
-SHARED_LIMIT_MS = 4000  # for one through another tsc, with its own retries
+CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # for an answer
+SHARED_TIMEOUT_MS = 4000  # for one through another tsc, with its own retries
 MOST_UNANSWERED = 3  # of these without an answer, one after another: the robot is asked no more
 
 
 class Robot(ABC):
-    """`missed` is how many requests were not answered at the first try. `has_shown_keys`: those of
-    this computer, so that the robot has told whether it is the person's."""
+    """`missed_count` is how many requests were not answered at the first try. `has_shown_keys`:
+    those of this computer, so that the robot has told whether it is the person's."""
 
-    missed = 0
+    missed_count = 0
     has_shown_keys = False
 
     @abstractmethod
@@ -50,12 +50,14 @@ class Robot(ABC):
 
 
 class WireRobot(Robot):
-    """The robot on a wire. `heard` are all bytes that came, `spoken` all that were sent."""
+    """The robot on a wire. `received` are all bytes that came, `sent` all that were sent."""
 
-    def __init__(self, wire: Wire, nonce: int, kit: int, answer_ms: int = CABLE_MS) -> None:
+    def __init__(
+        self, wire: Wire, nonce: int, kit: int, answer_timeout_ms: int = CABLE_TIMEOUT_MS
+    ) -> None:
         self.wire = wire
-        self.answer_ms = answer_ms
-        self.heard = self.spoken = b""
+        self.answer_timeout_ms = answer_timeout_ms
+        self.received = self.sent = b""
         self._seq = 0
         self._epoch = 0
         isa = isa_for_needs(0)
@@ -65,7 +67,7 @@ class WireRobot(Robot):
         self._values: dict[str, Mapping[str, int | bytes]] = {"HELLO": hello, "TRIM": {"trim": b""}}
 
     def pause(self, wait_ms: int) -> None:
-        self.heard += self.wire.receive(wait_ms, wait_ms)
+        self.received += self.wire.receive(wait_ms, wait_ms)
 
     def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
         """Ask until an answer comes; 0x00 goes before each try, as `docs/develop/link.md` says."""
@@ -76,24 +78,24 @@ class WireRobot(Robot):
             message.number, self._seq, self._epoch, encode_payload(message.request, values)
         )
         data = b"\0" + encode_frame(frame)
-        for number in range(try_count):
+        for try_index in range(try_count):
             self.wire.send(data)
-            self.spoken += data
-            reply = self._answer(name, message.number)
+            self.sent += data
+            reply = self._read_reply(name, message.number)
             if reply is not None:
                 return reply
-            self.missed += number == 0
+            self.missed_count += try_index == 0
         return None
 
-    def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
-        result = b""
+    def _read_reply(self, name: str, number: int) -> Reply[SentReply] | None:
+        buffer = b""
         for _ in range(MOST_READS):
-            new_bytes = self.wire.receive(self.answer_ms)
+            new_bytes = self.wire.receive(self.answer_timeout_ms)
             if not new_bytes:
                 break
-            result += new_bytes
-            self.heard += new_bytes
-            for packet in result.split(b"\0"):
+            buffer += new_bytes
+            self.received += new_bytes
+            for packet in buffer.split(b"\0"):
                 frame = decode_frame(packet) if packet else None
                 if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
                     reply = reply_of(name, frame.payload)
@@ -112,32 +114,34 @@ class SharedRobot(Robot):
     has_shown_keys = True
 
     def __init__(
-        self, line: LinkConnection, wait: Callable[[PendingRequest[Any]], Reply[Any]] | None = None
+        self,
+        connection: LinkConnection,
+        wait: Callable[[PendingRequest[Any]], Reply[Any]] | None = None,
     ) -> None:
-        self.line = line
-        self._wait = wait or line.wait
+        self.connection = connection
+        self._wait = wait or connection.wait
         self._unanswered = 0
 
     def pause(self, wait_ms: int) -> None:
-        self.line.event(wait_ms / 1000)
+        self.connection.event(wait_ms / 1000)
 
     def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
         def with_limit(session: Requester) -> PendingRequest[Any]:
             request: PendingRequest[Any] = getattr(session, name.lower())()
-            request.limit_ms = SHARED_LIMIT_MS
+            request.limit_ms = SHARED_TIMEOUT_MS
             return request
 
         if self._unanswered < MOST_UNANSWERED:
-            reply: Reply[SentReply] = self._wait(self.line.begin(with_limit))
+            reply: Reply[SentReply] = self._wait(self.connection.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
                 self._unanswered = 0
                 return reply
         self._unanswered += 1
-        self.missed += 1
+        self.missed_count += 1
         return None
 
 
-def values_of(reply: Reply[SentReply] | None) -> HelloReply | None:
+def hello_values(reply: Reply[SentReply] | None) -> HelloReply | None:
     """Return what a robot says of itself, where its answer to HELLO is OK."""
     if reply is None or reply.status != OK:
         return None

@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.link import ports
 from tiniscript.link.ports import ListedPort
 
-FILE_BYTES = 65_536
-OUTPUT_LIMIT_S = 8.0  # timeout of a program
+MOST_FILE_BYTES = 65_536
+OUTPUT_TIMEOUT_S = 8.0  # timeout of a program
 
 
 class Owner(NamedTuple):
@@ -50,13 +50,15 @@ class System:
 
     def text(self, path: str) -> str | None:
         try:
-            return contents(self._path(path), FILE_BYTES).decode("utf-8", "replace").strip()
+            return (
+                read_limited(self._path(path), MOST_FILE_BYTES).decode("utf-8", "replace").strip()
+            )
         except (OSError, ValueError):
             return None
 
-    def target(self, link: str) -> str | None:
+    def target(self, link_path: str) -> str | None:
         try:
-            return os.readlink(self._path(link))  # noqa: PTH115 - what it says, not a path
+            return os.readlink(self._path(link_path))  # noqa: PTH115 - what it says, not a path
         except (OSError, ValueError):
             return None
 
@@ -84,16 +86,16 @@ class System:
         except KeyError:  # a user without an entry, as in a container
             return ""
 
-    def output(self, *words: str) -> str | None:
+    def output(self, *command: str) -> str | None:
         """Return what a program prints, or None where there is no such program."""
         try:
-            completed = subprocess.run(
-                words,
+            process = subprocess.run(
+                command,
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
-                timeout=OUTPUT_LIMIT_S,
+                timeout=OUTPUT_TIMEOUT_S,
                 check=False,
             )
         except (OSError, ValueError, subprocess.TimeoutExpired):
             return None
-        return completed.stdout.decode("utf-8", "replace") if completed.returncode == 0 else None
+        return process.stdout.decode("utf-8", "replace") if process.returncode == 0 else None

@@ -17,22 +17,24 @@ _NAME = re.compile(r":\s*(.+?)\s*$")
 
 def inspect_windows(system: System) -> Computer:
     ports = system.ports()
-    connected = _query(system)
-    problems = _query(system, "/problem")
+    connected_devices = _query(system)
+    problem_devices = _query(system, "/problem")
     adapters = None
-    if connected is not None:
-        broken = _chips(problems or "")
+    if connected_devices is not None:
+        broken_chips = _chips(problem_devices or "")
         adapters = tuple(
-            Adapter(chip, "", "", chip not in broken)
-            for chip in _chips(connected + (problems or ""))
+            Adapter(chip, "", "", chip not in broken_chips)
+            for chip in _chips(connected_devices + (problem_devices or ""))
         )
-    radio = _query(system, "/class", "Bluetooth")
-    bluetooth, paired = UNKNOWN, None
-    if radio is not None:
-        has_adapter = re.search(r"(?:USB\\VID|PCI\\VEN|ACPI\\)", radio, re.I) is not None
+    bluetooth_devices = _query(system, "/class", "Bluetooth")
+    bluetooth, paired_names = UNKNOWN, None
+    if bluetooth_devices is not None:
+        has_adapter = (
+            re.search(r"(?:USB\\VID|PCI\\VEN|ACPI\\)", bluetooth_devices, re.I) is not None
+        )
         bluetooth = ON if has_adapter else NONE
-        paired = tuple(_names(radio))
-    return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
+        paired_names = tuple(_names(bluetooth_devices))
+    return Computer(system.platform, tuple(ports), adapters, bluetooth, paired_names)
 
 
 def _query(system: System, *words: str) -> str | None:
@@ -40,16 +42,16 @@ def _query(system: System, *words: str) -> str | None:
 
 
 def _chips(output: str) -> list[str]:
-    result = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(output))
-    return list(dict.fromkeys(chip[0] for chip in result if chip is not None))
+    chips = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(output))
+    return list(dict.fromkeys(chip[0] for chip in chips if chip is not None))
 
 
 def _names(output: str) -> list[str]:
     """Return the names of paired devices: the row after their number."""
     names = []
     rows = output.splitlines()
-    for number, row in enumerate(rows[:-1]):
-        name = _NAME.search(rows[number + 1])
-        if _PAIRED.search(row) and name:
-            names.append(name[1])
+    for index, row in enumerate(rows[:-1]):
+        match = _NAME.search(rows[index + 1])
+        if _PAIRED.search(row) and match:
+            names.append(match[1])
     return names

@@ -19,10 +19,12 @@ from tiniscript.flash import children
 from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
-NOBODY_LIMIT_S, SILENCE_LIMIT_S = 15.0, 30.0
-EXIT_LIMIT_S = 5.0  # that it has after its last output
-RUN_LIMIT_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
-MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
+NO_ANSWER_TIMEOUT_S, SILENCE_TIMEOUT_S = 15.0, 30.0
+EXIT_TIMEOUT_S = 5.0  # that it has after its last output
+RUN_TIMEOUT_S = (
+    300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
+)
+MOST_OUTPUT_BYTES = 200_000  # limit of its output; about 2,000 are normal
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 BAR_MARKS = 50  # of a whole bar
 
@@ -59,9 +61,9 @@ class StepProgress(NamedTuple):
 
 def find_avrdude() -> list[str] | None:
     """Return the command that runs avrdude: from PATH, or where other programs have put it."""
-    on_path = shutil.which("avrdude")
-    if on_path:
-        return [on_path]
+    path = shutil.which("avrdude")
+    if path:
+        return [path]
     if sys.platform == "win32":  # comes as a package of its own
         try:
             from avrdude_windows import get_avrdude_path
@@ -70,9 +72,9 @@ def find_avrdude() -> list[str] | None:
         else:
             return [str(get_avrdude_path())]
     for program in _bundled_avrdudes(Path.home()):
-        for settings in (program.parent.parent / "etc", program.parent):
-            if (settings / "avrdude.conf").is_file():
-                return [str(program), "-C", str(settings / "avrdude.conf")]
+        for folder in (program.parent.parent / "etc", program.parent):
+            if (folder / "avrdude.conf").is_file():
+                return [str(program), "-C", str(folder / "avrdude.conf")]
     return None
 
 
@@ -98,7 +100,7 @@ def write(
     on_progress: Callable[[StepProgress | None], None],
 ) -> WriteResult:
     """Write a firmware, read it back, and compare. `on_progress` is called periodically."""
-    words = [
+    arguments = [
         *command,
         "-c",
         bootloader.programmer,
@@ -110,19 +112,21 @@ def write(
         str(bootloader.baud),
         "-D",
     ]
-    words += ["-U", f"flash:w:{firmware}:i"]
+    arguments += ["-U", f"flash:w:{firmware}:i"]
     try:
-        exit_code, output = children.run(words, None, _Watch(on_progress), leave_s=EXIT_LIMIT_S)
-    except _Ended as over:
-        return over.result
+        exit_code, output = children.run(
+            arguments, None, _Watch(on_progress), exit_timeout_s=EXIT_TIMEOUT_S
+        )
+    except _GivenUp as given_up:
+        return given_up.result
     except subprocess.TimeoutExpired:
         return WriteResult(ENDLESS)
-    except children.CannotStart as why:
-        return WriteResult(FAILED, str(why.strerror or why))
-    return outcome(exit_code, output)
+    except children.CannotStart as error:
+        return WriteResult(FAILED, str(error.strerror or error))
+    return result_of(exit_code, output)
 
 
-class _Ended(Exception):
+class _GivenUp(Exception):
     """It is not waited for any longer."""
 
     def __init__(self, outcome: str) -> None:
@@ -131,25 +135,25 @@ class _Ended(Exception):
 
 
 class _Watch:
-    """Looks at its whole output again and again. Raises _Over."""
+    """Looks at its whole output again and again. Raises _GivenUp."""
 
     def __init__(self, on_progress: Callable[[StepProgress | None], None]) -> None:
         self._on_progress = on_progress
-        self._said = ""
-        self._began_s = self._heard_s = monotonic()
+        self._output = ""
+        self._began_s = self._output_s = monotonic()
 
     def __call__(self, output: str) -> None:
         now_s, progress = monotonic(), parse_progress(output)
         self._on_progress(progress)
-        if output != self._said:
-            self._said, self._heard_s = output, now_s
-        if now_s - self._began_s >= RUN_LIMIT_S or len(output) > MOST_BYTES:
-            raise _Ended(ENDLESS)
+        if output != self._output:
+            self._output, self._output_s = output, now_s
+        if now_s - self._began_s >= RUN_TIMEOUT_S or len(output) > MOST_OUTPUT_BYTES:
+            raise _GivenUp(ENDLESS)
         if progress is not None:
-            if now_s - self._heard_s >= SILENCE_LIMIT_S:
-                raise _Ended(BROKEN_OFF)
-        elif now_s - self._heard_s >= NOBODY_LIMIT_S or _attempt(output) >= MOST_ATTEMPTS:
-            raise _Ended(NOBODY)
+            if now_s - self._output_s >= SILENCE_TIMEOUT_S:
+                raise _GivenUp(BROKEN_OFF)
+        elif now_s - self._output_s >= NO_ANSWER_TIMEOUT_S or _attempt(output) >= MOST_ATTEMPTS:
+            raise _GivenUp(NOBODY)
 
 
 def _attempt(output: str) -> int:
@@ -160,15 +164,15 @@ def _attempt(output: str) -> int:
 def parse_progress(output: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
     bars = _PROGRESS_BAR.findall(output)
-    names = [name for name, _ in bars]
-    if "Writing" not in names:
+    step_names = [name for name, _ in bars]
+    if "Writing" not in step_names:
         return None  # the bar before that is for the signature
     name, marks = bars[-1]
     phase = READING if name == "Reading" else WRITING
     return StepProgress(phase, min(100, 100 * len(marks) // BAR_MARKS))
 
 
-def outcome(exit_code: int, output: str) -> WriteResult:
+def result_of(exit_code: int, output: str) -> WriteResult:
     """Return the outcome, from its exit code and its whole output."""
     if exit_code == 0:
         return WriteResult(DONE)

@@ -29,12 +29,12 @@ PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE_FOLDERS = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
 SETTINGS_FILE, PARTITIONS_FILE = "platformio.ini", "partitions.csv"
 HEADER_FILE = "src/boards/kits/own.h"
-MADE_BY = "tsc firmware, from a robot profile."
+HEADER_ORIGIN = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 # It is too large, and is built once more, without tasks or without a remote control.
 WITHOUT_TASKS, WITHOUT_REMOTE = "less_tasks", "less_remote"
-CORE_FILES = 26  # of Arduino's core, about
+CORE_FILE_COUNT = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with all of it: one of more devices than tinibot.
 SMALLER_FIRMWARE = {
     "uno": ("uno_without_tasks", WITHOUT_TASKS),
@@ -47,8 +47,8 @@ ENVIRONMENT_WITH_BREAKPOINTS = {"uno": "uno_breakpoints", "nano": "nano_breakpoi
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
 # core and build tools, by estimate from what public indexes say of their archives for Linux.
-_COMPILERS = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
-_AVR_COMPILER = ("atmelavr", 50)
+_COMPILER_PACKAGES = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
+_AVR_COMPILER_PACKAGE = ("atmelavr", 50)
 
 # The user's PlatformIO settings that would change the build or its folder.
 _UNWANTED_LINE = re.compile(
@@ -78,9 +78,9 @@ class CannotBuild(Exception):
     UNREACHABLE, FAILED, TOO_LARGE = "unreachable", "build_failed", "too_large"
     NOT_WRITTEN = "not_written"
 
-    def __init__(self, why: str, last_output: str = "", log: str = "") -> None:
-        super().__init__(last_output or why)
-        self.why = why
+    def __init__(self, reason: str, last_output: str = "", log: str = "") -> None:
+        super().__init__(last_output or reason)
+        self.reason = reason
         self.last_output = last_output
         self.log = log
 
@@ -103,21 +103,21 @@ class Sources(NamedTuple):
 
 def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
-    for place in SOURCE_FOLDERS:
-        if (place / SETTINGS_FILE).is_file():
+    for folder in SOURCE_FOLDERS:
+        if (folder / SETTINGS_FILE).is_file():
             paths = [
-                place / SETTINGS_FILE,
-                place / PARTITIONS_FILE,
-                *sorted((place / "src").rglob("*")),
+                folder / SETTINGS_FILE,
+                folder / PARTITIONS_FILE,
+                *sorted((folder / "src").rglob("*")),
             ]
-            names = {path.relative_to(place).as_posix(): path for path in paths if path.is_file()}
+            names = {path.relative_to(folder).as_posix(): path for path in paths if path.is_file()}
             names.pop(HEADER_FILE, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
     return None
 
 
 def header(robot: Robot) -> str:
-    return firmware.header([robot], MADE_BY)
+    return firmware.header([robot], HEADER_ORIGIN)
 
 
 def platformio() -> list[str] | None:
@@ -126,32 +126,32 @@ def platformio() -> list[str] | None:
         return [sys.executable, "-m", "platformio"]
     home = Path.home() / ".platformio" / "penv"
     for name in ("pio", "platformio", str(home / "bin" / "pio"), str(home / "Scripts" / "pio.exe")):
-        result = shutil.which(name)
-        if result:
-            return [result]
+        path = shutil.which(name)
+        if path:
+            return [path]
     return None
 
 
 def missing_mb(robot: Robot) -> int:
     """Return how many megabytes PlatformIO fetches before it builds for a board, about."""
-    platform, mb = _COMPILERS.get(robot.board.chip, _AVR_COMPILER)
-    core = Path(os.environ.get("PLATFORMIO_CORE_DIR") or _core())
-    platforms = Path(os.environ.get("PLATFORMIO_PLATFORMS_DIR") or core / "platforms")
-    return 0 if any(platforms.glob(f"{platform}*/platform.json")) else mb
+    platform, mb = _COMPILER_PACKAGES.get(robot.board.chip, _AVR_COMPILER_PACKAGE)
+    core_folder = Path(os.environ.get("PLATFORMIO_CORE_DIR") or _core_folder())
+    platforms_folder = Path(os.environ.get("PLATFORMIO_PLATFORMS_DIR") or core_folder / "platforms")
+    return 0 if any(platforms_folder.glob(f"{platform}*/platform.json")) else mb
 
 
-def _core() -> Path:
+def _core_folder() -> Path:
     """Return where PlatformIO keeps what it has fetched; a short folder of Windows comes first."""
     home = Path.home() / ".platformio"
-    short = Path(home.drive + "\\.platformio")
-    return short if sys.platform == "win32" and short.is_dir() else home
+    short_folder = Path(home.drive + "\\.platformio")
+    return short_folder if sys.platform == "win32" and short_folder.is_dir() else home
 
 
 class _Project:
     """A folder with the sources of a firmware and the header of its robot."""
 
     def __init__(
-        self, made_from: Sources, robot: Robot, folder: Path, has_breakpoints: bool = False
+        self, sources: Sources, robot: Robot, folder: Path, has_breakpoints: bool = False
     ) -> None:
         command = platformio()
         if command is None:
@@ -162,8 +162,10 @@ class _Project:
         self.environment = ENVIRONMENT_WITH_DISCS.get(chip, chip) if robot.board.discs else chip
         if has_breakpoints:
             self.environment = ENVIRONMENT_WITH_BREAKPOINTS[chip]
-        self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
-        for name, data in {**made_from.files, HEADER_FILE: header(robot).encode()}.items():
+        self.file_count = (
+            sum(name.endswith((".cpp", ".S")) for name in sources.files) + CORE_FILE_COUNT
+        )
+        for name, data in {**sources.files, HEADER_FILE: header(robot).encode()}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
 
@@ -177,21 +179,21 @@ class _Project:
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
         """
 
-        def look_at(output: str) -> None:
-            if progress := parse_progress(output, self.files):
+        def read_progress(output: str) -> None:
+            if progress := parse_progress(output, self.file_count):
                 on_progress(progress)
 
         command = [*self.command, self.environment, *words]
-        return children.run(command, self.folder, look_at, _environment())
+        return children.run(command, self.folder, read_progress, _environment())
 
     def build(self, on_progress: Callable[[StepProgress], None], is_hex: bool) -> None:
-        code, log = self.run(on_progress)
+        exit_code, log = self.run(on_progress)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
-        if code != 0 or (is_hex and not is_complete_hex(self.hex_file)):
+        if exit_code != 0 or (is_hex and not is_complete_hex(self.hex_file)):
             has_begun = _COMPILING.search(log) or not _NETWORK_MESSAGE.search(log)
-            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
-            raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
+            reason = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
+            raise CannotBuild(reason, children.reason(log) or f"exit code {exit_code}", log)
 
 
 def can_have_breakpoints(robot: Robot) -> bool:
@@ -201,46 +203,46 @@ def can_have_breakpoints(robot: Robot) -> bool:
 
 
 def build(
-    made_from: Sources, robot: Robot, on_progress: Callable[[StepProgress], None],
+    sources: Sources, robot: Robot, on_progress: Callable[[StepProgress], None],
     has_breakpoints: bool = False,
 ) -> bytes:  # fmt: skip
     """Return the firmware of a robot for its board, an Intel HEX file.
 
     `on_progress` is called often. Raises CannotBuild, and OSError where there is no room to build.
     """
-    with _folder() as folder:
-        project = _Project(made_from, robot, folder, has_breakpoints)
+    with _temporary_folder() as folder:
+        project = _Project(sources, robot, folder, has_breakpoints)
         try:
             project.build(on_progress, is_hex=True)
-        except CannotBuild as why:
-            if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
+        except CannotBuild as error:
+            if error.reason != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
                 raise
-            project.environment, lack = SMALLER_FIRMWARE[project.environment]
-            on_progress(StepProgress(lack, 0))
+            project.environment, phase = SMALLER_FIRMWARE[project.environment]
+            on_progress(StepProgress(phase, 0))
             project.build(on_progress, is_hex=True)
         return project.hex_file.read_bytes()
 
 
 def upload(
-    made_from: Sources, robot: Robot, port: str | None, on_progress: Callable[[StepProgress], None]
+    sources: Sources, robot: Robot, port: str | None, on_progress: Callable[[StepProgress], None]
 ) -> None:
     """Build the firmware of a robot with an ESP32, and write it to the board on a port, if any.
 
     PlatformIO brings the program that writes. Raises CannotBuild and OSError.
     """
-    with _folder() as folder:
-        project = _Project(made_from, robot, folder)
+    with _temporary_folder() as folder:
+        project = _Project(sources, robot, folder)
         project.build(on_progress, is_hex=False)
         if port is None:
             return
-        code, log = project.run(on_progress, "-t", "upload", "--upload-port", port)
-        if code != 0:
-            why = children.reason(log) or f"exit code {code}"
-            raise CannotBuild(CannotBuild.NOT_WRITTEN, why, log)
+        exit_code, log = project.run(on_progress, "-t", "upload", "--upload-port", port)
+        if exit_code != 0:
+            reason = children.reason(log) or f"exit code {exit_code}"
+            raise CannotBuild(CannotBuild.NOT_WRITTEN, reason, log)
 
 
 @contextmanager
-def _folder() -> Iterator[Path]:
+def _temporary_folder() -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
         yield Path(folder)
 
@@ -254,15 +256,15 @@ def _environment() -> dict[str, str]:
 
 def parse_progress(output: str, file_count: int) -> StepProgress | None:
     """Return the progress, from its whole output; `file_count` is the total number of files."""
-    text = _WRITING.findall(output)
-    if text:
-        return StepProgress(WRITING, min(100, int(text[-1])))
+    percent_texts = _WRITING.findall(output)
+    if percent_texts:
+        return StepProgress(WRITING, min(100, int(percent_texts[-1])))
     compiled_count = len(_COMPILING.findall(output))
     if compiled_count:
         return StepProgress(COMPILING, min(99, 100 * compiled_count // file_count))
-    installing = list(_INSTALLING.finditer(output))
-    if installing:
-        percents = _PERCENT.findall(output, installing[-1].end())
+    installs = list(_INSTALLING.finditer(output))
+    if installs:
+        percents = _PERCENT.findall(output, installs[-1].end())
         percent = min(100, int(percents[-1])) if percents else 0
-        return StepProgress(FETCHING, percent, installing[-1][1])
+        return StepProgress(FETCHING, percent, installs[-1][1])
     return None

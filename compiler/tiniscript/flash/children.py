@@ -17,7 +17,7 @@ from threading import Thread, current_thread, main_thread
 
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
 LOOK_INTERVAL_S = 0.1
-KILLED_AFTER_S = 5.0  # that a program has to end by itself
+KILL_DELAY_S = 5.0  # that a program has to end by itself
 
 
 class CannotStart(OSError):
@@ -30,18 +30,18 @@ def run(
     on_output: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
     may_end: Callable[[str], bool] = lambda output: True,
-    leave_s: float | None = None,
+    exit_timeout_s: float | None = None,
 ) -> tuple[int, str]:
     """Run a program in a folder, or here; return its exit code, and what it has said.
 
     `on_output` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
     ends the program and its children; where it may not end after what it has said, it is waited for
-    first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
-    output.
+    first. Raises CannotStart, and TimeoutExpired where it has not ended `exit_timeout_s` after its
+    last output.
     """
-    with _hold_interrupt() as let_through:
+    with _hold_interrupt() as release_interrupt:
         try:
-            running = subprocess.Popen(
+            process = subprocess.Popen(
                 command,
                 cwd=folder,
                 env=environment,
@@ -50,10 +50,10 @@ def run(
                 stderr=subprocess.STDOUT,
                 start_new_session=True,  # it has children, which end with it
             )
-        except OSError as why:
-            raise CannotStart(*why.args) from why
-        assert running.stdout
-        pipe, output = running.stdout, bytearray()
+        except OSError as error:
+            raise CannotStart(*error.args) from error
+        assert process.stdout
+        pipe, output = process.stdout, bytearray()
 
         def read() -> None:
             with pipe:
@@ -63,24 +63,24 @@ def run(
 
         reader = Thread(target=read, daemon=True)
         try:
-            let_through()
+            release_interrupt()
             reader.start()
             while True:  # one look at least, also at what has ended meanwhile
                 reader.join(LOOK_INTERVAL_S)
                 on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
                     break
-            exit_code = running.wait(leave_s)
+            exit_code = process.wait(exit_timeout_s)
         except BaseException:
             if may_end(output.decode(errors="replace")):
-                _end(running)
+                _end(process)
             else:
-                running.wait()
-                _kill(running)
+                process.wait()
+                _kill(process)
             if reader.is_alive():  # a thread that reads while Python ends can take it down
-                reader.join(KILLED_AFTER_S)
+                reader.join(KILL_DELAY_S)
             raise
-    _kill(running)  # what it has started may go on, and hold a port
+    _kill(process)  # what it has started may go on, and hold a port
     return exit_code, output.decode(errors="replace")
 
 
@@ -94,40 +94,40 @@ def _hold_interrupt() -> Iterator[Callable[[], None]]:
         yield lambda: None
         return
     interrupts: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
+    handler_before = signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
 
-    def let_through() -> None:
-        signal.signal(signal.SIGINT, before)
+    def release_interrupt() -> None:
+        signal.signal(signal.SIGINT, handler_before)
         if interrupts:
             interrupts.clear()
             signal.raise_signal(signal.SIGINT)
 
     try:
-        yield let_through
+        yield release_interrupt
     finally:
-        let_through()
+        release_interrupt()
 
 
-def _end(running: subprocess.Popen[bytes]) -> None:
+def _end(process: subprocess.Popen[bytes]) -> None:
     """End a program and its children: it may be in the middle of keeping what it has fetched."""
     try:
         if sys.platform != "win32":
             with suppress(OSError, subprocess.TimeoutExpired):
-                os.killpg(running.pid, signal.SIGINT)
-                running.wait(KILLED_AFTER_S)
+                os.killpg(process.pid, signal.SIGINT)
+                process.wait(KILL_DELAY_S)
     finally:  # also at a second Ctrl-C
-        _kill(running)
+        _kill(process)
 
 
-def _kill(running: subprocess.Popen[bytes]) -> None:
+def _kill(process: subprocess.Popen[bytes]) -> None:
     with suppress(OSError):  # it has ended, and nothing is left of it
         if sys.platform != "win32":
-            os.killpg(running.pid, signal.SIGKILL)
-        elif running.poll() is None:
-            words = ["taskkill", "/F", "/T", "/PID", str(running.pid)]
+            os.killpg(process.pid, signal.SIGKILL)
+        elif process.poll() is None:
+            words = ["taskkill", "/F", "/T", "/PID", str(process.pid)]
             subprocess.run(words, capture_output=True, check=False)
-    running.kill()
-    running.wait()
+    process.kill()
+    process.wait()
 
 
 def reason(log: str) -> str:

@@ -14,16 +14,16 @@ from tiniscript.base.files import cache_folder, replace
 from tiniscript.robots.profile import Robot, language_number
 
 FOLDER = Path(__file__).resolve().parent / "ready"
-NOTICE = "NOTICE.txt"
+NOTICE_FILE = "NOTICE.txt"
 MOST_FILES = 30  # files in the cache; the oldest go first
 BREAKPOINTS = "breakpoints"  # in a title
-NAME_CHARACTERS = 24  # of a title, in a file's name
+MOST_NAME_CHARACTERS = 24  # of a title, in a file's name
 IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
-MAGIC = b"\xe9"  # its first byte
+IMAGE_MAGIC = b"\xe9"  # its first byte
 DATA_RECORD, END_RECORD = "00", "01"  # in the row of a HEX file
 
 
-class Ready(NamedTuple):
+class ReadyFile(NamedTuple):
     """A firmware: an Intel HEX file, or what an ESP32 has in its flash."""
 
     title: str
@@ -32,13 +32,13 @@ class Ready(NamedTuple):
     path: Path
 
     @property
-    def bytes(self) -> int:
+    def flash_bytes(self) -> int:
         """How many bytes of flash it fills."""
         rows = self.path.read_text(encoding="ascii").splitlines()
         return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA_RECORD)
 
 
-def cache() -> Path:
+def firmware_cache() -> Path:
     """Return the user's folder for what was built."""
     return cache_folder() / "firmware"
 
@@ -55,38 +55,41 @@ def title_of(robot: Robot, has_breakpoints: bool = False) -> str:
     return f"{robot.name}_{language}" if language_number(language) else robot.name
 
 
-def name_of(title: str, board: str, digest: str) -> str:
-    plain = "".join(letter if letter.isalnum() else "_" for letter in title)
-    return f"{plain[:NAME_CHARACTERS]}-{board}-{digest}.hex"
+def file_name_of(title: str, board: str, digest: str) -> str:
+    safe_title = "".join(letter if letter.isalnum() else "_" for letter in title)
+    return f"{safe_title[:MOST_NAME_CHARACTERS]}-{board}-{digest}.hex"
 
 
-def files(folder: Path = FOLDER) -> list[Ready]:
+def files(folder: Path = FOLDER) -> list[ReadyFile]:
     """Return the files of a folder, by title and board. An incomplete file is left out."""
-    result = []
+    ready_files = []
     for path in sorted(folder.glob("*-*-*.hex")):
         if is_complete_hex(path):
             title, board, digest = path.stem.rsplit("-", 2)
-            result.append(Ready(title, board, digest, path))
-    return result
+            ready_files.append(ReadyFile(title, board, digest, path))
+    return ready_files
 
 
-def images(folder: Path = FOLDER) -> list[Ready]:
+def images(folder: Path = FOLDER) -> list[ReadyFile]:
     """Return what ESP32s get: whole firmware from address 0 on, as `esptool merge_bin` makes it."""
-    result = []
+    ready_files = []
     for path in sorted(folder.glob("*-*-*.bin")):
         title, board, digest = path.stem.rsplit("-", 2)
-        head = IMAGE_OFFSETS.get(board, 0)
-        if board in IMAGE_OFFSETS and path.read_bytes()[head : head + 1] == MAGIC:
-            result.append(Ready(title, board, digest, path))
-    return result
+        image_offset = IMAGE_OFFSETS.get(board, 0)
+        if (
+            board in IMAGE_OFFSETS
+            and path.read_bytes()[image_offset : image_offset + 1] == IMAGE_MAGIC
+        ):
+            ready_files.append(ReadyFile(title, board, digest, path))
+    return ready_files
 
 
-def find(title: str, board: str, digest: str) -> Ready | None:
+def find(title: str, board: str, digest: str) -> ReadyFile | None:
     """Return the file with this digest, from the package or the cache."""
-    name = name_of(title, board, digest)
-    for folder in (FOLDER, cache()):
+    name = file_name_of(title, board, digest)
+    for folder in (FOLDER, firmware_cache()):
         if is_complete_hex(folder / name):
-            return Ready(title, board, digest, folder / name)
+            return ReadyFile(title, board, digest, folder / name)
     return None
 
 
@@ -94,20 +97,20 @@ def is_complete_hex(path: Path) -> bool:
     """Return whether all rows of a HEX file have valid checksums and the last is an end record."""
     try:
         rows = path.read_text(encoding="ascii").split()
-        sums = [sum(bytes.fromhex(row[1:])) % 256 for row in rows if row[0] == ":"]
+        checksums = [sum(bytes.fromhex(row[1:])) % 256 for row in rows if row[0] == ":"]
     except (OSError, ValueError):
         return False
-    return bool(rows) and rows[-1][7:9] == END_RECORD and sums == [0] * len(rows)
+    return bool(rows) and rows[-1][7:9] == END_RECORD and checksums == [0] * len(rows)
 
 
-def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
+def store(title: str, board: str, digest: str, data: bytes) -> ReadyFile:
     """Put a firmware into the cache, all of it or nothing. Raises OSError."""
-    folder = cache()
+    folder = firmware_cache()
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / name_of(title, board, digest)
+    path = folder / file_name_of(title, board, digest)
     replace(path, data)
     cached_files = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
-    for old in cached_files[:-MOST_FILES]:
-        if old != path:
-            old.unlink(missing_ok=True)
-    return Ready(title, board, digest, path)
+    for old_file in cached_files[:-MOST_FILES]:
+        if old_file != path:
+            old_file.unlink(missing_ok=True)
+    return ReadyFile(title, board, digest, path)

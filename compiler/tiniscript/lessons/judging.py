@@ -358,7 +358,7 @@ def _expected_value(
         return float(min(max(shown_value.value, _stopped_ms(shown_value, run)), shown_value.ms))
     if sensor_name:
         names = [device.name for device in run.robot.profile.kit.sensors]
-        return run.robot.sensing.look(names.index(sensor_name), shown_value.pose)
+        return run.robot.sensing.peek(names.index(sensor_name), shown_value.pose)
     return None if expected_number == ANY_VALUE else expected_number * ONE
 
 

@@ -124,7 +124,7 @@ def _sentences(table: Table) -> dict[str, str]:
     )
     gaps = GAP_NAME.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *SENTENCE_VALUES])
-    values = {name: table.text(name) or "" for name in names if table.has(name)}
+    values = {name: table.text(name) or "" for name in names if table.check_for(name)}
     places = {language: values[language] for language in languages() if language in values}
     finding = Finding(
         "", key, values, ByLanguage({SOURCE_LANGUAGE: values.get("place", ""), **places})
@@ -144,7 +144,7 @@ def _sentences(table: Table) -> dict[str, str]:
 def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     labels: ByLanguage[str] = ByLanguage()
-    for language in [language for language in languages() if table.has(language)] or [
+    for language in [language for language in languages() if table.check_for(language)] or [
         SOURCE_LANGUAGE
     ]:
         labels[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
@@ -158,7 +158,7 @@ def _variation(table: Table, world: World) -> Variation:
         _span(table, *key_and_limit)
         for key_and_limit in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
     ]
-    if place.part == "lamps" and table.has("heading"):
+    if place.part == "lamps" and table.check_for("heading"):
         table.complain("lamp_has_no_heading", "heading")
     table.finish()
     return Variation(place, *spans)
@@ -180,7 +180,7 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
 
 def _span(table: Table, key: str, greatest: int) -> tuple[float, float]:
     """Return from and to; both are 0 if they are left out."""
-    low, high = table.pair(key, "") if table.has(key) else (0, 0)
+    low, high = table.pair(key, "") if table.check_for(key) else (0, 0)
     if low > high:
         table.complain("range_empty", key)
     if max(abs(low), abs(high)) > greatest * ONE:
@@ -217,7 +217,7 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
                 known=", ".join(KINDS),
             )
         return Criterion("", {}, (), (), NO_LABELS)
-    has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
+    has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.check_for("at"))
     numbers_asked = [number for number in kind.numbers if has_places or number is not WITHIN]
     numbers = {number.key: _number(table, number) for number in numbers_asked}
     numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
@@ -226,15 +226,15 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
             table.complain("low_above_high", low, other=table.path_of(high))
     places = _places(table, world, kind.places) if has_places else ()
     area = None
-    if kind.has_area and any(table.has(key) for key in AREA_KEYS):
+    if kind.has_area and any(table.check_for(key) for key in AREA_KEYS):
         x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA_KEYS)
         area = x_cm, y_cm
     labels: dict[str, str] = NO_LABELS
-    if has_places and any(map(table.has, languages())):
+    if has_places and any(map(table.check_for, languages())):
         labels = _labels(table)
     words: tuple[str, ...] = ()
     if kind.words in DEVICE_KINDS:
-        if kind.words == "switch" or table.has("what"):
+        if kind.words == "switch" or table.check_for("what"):
             words = _asked_device(table, known_words[kind.words])
     elif kind.words:
         words = _words(table, known_words[kind.words])
@@ -243,7 +243,7 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
 
 
 def _number(table: Table, number: Number) -> float:
-    if number.default is not None and not table.has(number.key):
+    if number.default is not None and not table.check_for(number.key):
         return number.default
     low, high = round(number.low * ONE), round(number.high * ONE)
     return table.number(number.key, low, high, f"{number.key} = {number.low:g}") / ONE

@@ -169,8 +169,8 @@ def _upload(robot: VirtualRobot, image: Image) -> Computer:
     computer = Computer(robot, robot.settings.seed)
     session = computer.session
     for reply in (
-        computer.until(session.hello()),
-        computer.until(session.upload(image, True, False, True)),
+        computer.wait_for(session.hello()),
+        computer.wait_for(session.upload(image, True, False, True)),
     ):
         assert not reply.status, reply
     if image.start == "SB":
@@ -206,7 +206,7 @@ class _Witness:
         pose = robot.pose
         for event in robot.take_events():
             self.events += 1
-            if event.what == "START" and self.started_ms is None:
+            if event.kind == "START" and self.started_ms is None:
                 self.started_ms = event.time_ms
                 self._track.append(Sample(0, robot.world.start))
             elif self.started_ms is not None:
@@ -221,7 +221,7 @@ class _Witness:
             self._collisions.append(Collision(ms, self._nearest_obstacle(pose)))
 
     def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
-        if event.what == "MOTORS":
+        if event.kind == "MOTORS":
             powers_before = self._motors[-1][1:] if self._motors else (0, 0)
             self._motors.append((ms, event.values[0], event.values[1]))
             if any(event.values) and event.values[:2] != powers_before:
@@ -229,15 +229,15 @@ class _Witness:
             elif self._is_moving and not any(event.values):
                 self._add_stop(ms)
             self._is_moving = any(event.values)
-        elif event.what == "BEEP":
+        elif event.kind == "BEEP":
             self._beeps.append(Beep(ms, event.values[0], pose))
             self._event_words.append("beeps")
-        elif event.what == "SET":
+        elif event.kind == "SET":
             actuator, value = event.values
             if value and not self._value_of_actuator.get(actuator):
                 self._switched_on.append(SwitchedOn(ms, actuator, self._is_moving))
             self._value_of_actuator[actuator] = value
-        elif event.what == "SHOW":
+        elif event.kind == "SHOW":
             self._event_words.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
             self._shown_values.append(ShownValue(ms, event.values[0], is_yes_no, pose))

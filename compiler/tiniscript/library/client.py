@@ -37,42 +37,44 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-PATIENCE_MS = DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
-SAVE_LIMIT_S = 10.0  # timeout for saving a program while the motors stand
+REQUEST_TIMEOUT_MS = (
+    DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
+)
+SAVE_TIMEOUT_S = 10.0  # timeout for saving a program while the motors stand
 # Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
-LOW_VOLTAGE_LIMIT_S = 2.0
+LOW_VOLTAGE_TIMEOUT_S = 2.0
 
 
 class Client:
     """The connection to a port, from the constructor until `close`; one thread uses it.
 
-    `line` is the connection itself; `server` shares it, or is None.
+    `connection` is the connection itself; `server` shares it, or is None.
     """
 
     def __init__(
         self, port: str, verb: str, profile: Robot, baud: int | None = None, language: str = "en",
-        limit_s: float = opening.OPEN_LIMIT_S, is_shared: bool = True,
-        is_latched: Callable[[], bool] = lambda: False, heed: Callable[[], None] = lambda: None,
+        limit_s: float = opening.OPEN_TIMEOUT_S, is_shared: bool = True,
+        is_latched: Callable[[], bool] = lambda: False, poll: Callable[[], None] = lambda: None,
     ) -> None:  # fmt: skip
         """Connect to a port through its server, or open it. Raises RobotError.
 
         `verb` is the name that other commands show for this one. `baud` is the speed that the user
         has asked for, else that of the profile. While `is_latched` no other command starts a run.
-        `heed` is called before every request, and repeatedly in every wait.
+        `poll` is called before every request, and repeatedly in every wait.
         """
-        self._heed = heed
+        self._poll = poll
         self.port = port
         self.profile = profile
         self.language = language
         speed = profile.board.baud if baud is None else baud
         kit = profile.kit.fingerprint
-        self.line = opening.connection_to(port, verb, speed, kit, limit_s, baud, language)
+        self.connection = opening.connection_to(port, verb, speed, kit, limit_s, baud, language)
         self.server: Server | None = None
         try:
-            if is_shared and not self.line.held_by:
+            if is_shared and not self.connection.held_by:
                 self.server = self._share(speed, verb, is_latched)
         except BaseException:
-            self.line.close()
+            self.connection.close()
             raise
 
     def _share(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
@@ -80,9 +82,9 @@ class Client:
         from tiniscript.link.port_connection import PortConnection
         from tiniscript.link.sharing.server import Server
 
-        assert isinstance(self.line, PortConnection)
+        assert isinstance(self.connection, PortConnection)
         with suppress(OSError):
-            return Server(self.line, self.port, baud, verb, is_latched)
+            return Server(self.connection, self.port, baud, verb, is_latched)
         return None
 
     @property
@@ -90,7 +92,7 @@ class Client:
         """Whether another command drives the robot through this one, or is about to: the end of
         what this one has done is no stop of that one's program."""
         server = self.server
-        return server is not None and not self.line.has_ended and server.is_needed
+        return server is not None and not self.connection.has_ended and server.is_needed
 
     @property
     def drives_another(self) -> bool:
@@ -109,16 +111,16 @@ class Client:
             if self.server is not None:
                 self.server.close()  # until then a client may start a run
                 has_run = has_run or self.server.may_have_run  # its client can no longer stop it
-            if has_run and not self.line.has_ended:
+            if has_run and not self.connection.has_ended:
                 self.stop(stop_s)
         finally:
-            self.line.close()
+            self.connection.close()
 
     @property
     def device_info(self) -> DeviceInfo:
         """The robot's answer to HELLO; call `meet` first."""
-        assert self.line.robot is not None
-        return self.line.robot
+        assert self.connection.robot is not None
+        return self.connection.robot
 
     # -- requests: all raise RobotError where the connection has ended ----------------------------
 
@@ -131,55 +133,57 @@ class Client:
         reply = self.hello(board)
         while reply.status == CANCELLED and is_patient():
             reply = self.wait(self.search())
-        if reply.status or self.line.robot is None:
-            raise self.failure(reply)
-        return self.line.robot
+        if reply.status or self.connection.robot is None:
+            raise self.error_for_reply(reply)
+        return self.connection.robot
 
     def hello(self, board: str = "") -> Reply[HelloReply]:
         """Send HELLO, but not so early that a board stays in its bootloader."""
-        if self.line.held_by:  # the port is open already
+        if self.connection.held_by:  # the port is open already
             return self.wait(self.search())
         from tiniscript.link import ports
 
         if ports.is_radio(self.port):  # else opening it has reset the board
             return self.wait(self.search())
         sleep(opening.QUIET_S_BY_BOARD.get(board or self.profile.board.chip, 0.0))
-        reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
-        if not self.line.heard:
+        reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
+        if not self.connection.heard:
             sleep(opening.LONG_QUIET_S)
-            reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
-        if reply.status == LOST and self.line.heard and not self.line.is_echoed:
+            reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
+        if reply.status == LOST and self.connection.heard and not self.connection.is_echoed:
             return self.wait(self.search())  # what is heard may be a robot that answers late
         return reply
 
     def search(self, limit_ms: int | None = None) -> PendingRequest[HelloReply]:
         """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""
-        return self.begin_request(lambda session: session.hello(), limit_ms or opening.ANSWER_MS)
+        return self.begin_request(
+            lambda session: session.hello(), limit_ms or opening.ANSWER_TIMEOUT_MS
+        )
 
     def begin_request(
-        self, make: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
+        self, begin: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
     ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
 
         def with_limit(session: Requester) -> PendingRequest[T]:
-            request = make(session)
-            request.limit_ms = limit_ms or PATIENCE_MS
+            request = begin(session)
+            request.limit_ms = limit_ms or REQUEST_TIMEOUT_MS
             return request
 
-        self._heed()  # a robot that answers at once makes nobody wait
+        self._poll()  # a robot that answers at once makes nobody wait
         with self._convert_loss():
-            return self.line.begin(with_limit)
+            return self.connection.begin(with_limit)
 
     def wait(
         self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
     ) -> Reply[T]:
-        def watch() -> None:
-            self._heed()
+        def poll() -> None:
+            self._poll()
             if on_wait is not None:
                 on_wait()
 
         with self._convert_loss():
-            return self.line.wait(request, watch)
+            return self.connection.wait(request, poll)
 
     def request(
         self,
@@ -189,14 +193,14 @@ class Client:
         """Return the reply to a request: OK, or one of `accepted_statuses`. Raises RobotError."""
         reply = self.wait(self.begin_request(begin_request))
         if reply.status and reply.status not in accepted_statuses:
-            raise self.failure(reply)
+            raise self.error_for_reply(reply)
         return reply
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives in time."""
-        self._heed()
+        self._poll()
         with self._convert_loss():
-            return self.line.event(limit_s)
+            return self.connection.event(limit_s)
 
     def send_program(
         self, image: Image, runs: bool, saves: bool, is_detached: bool,
@@ -221,17 +225,17 @@ class Client:
     def stop(self, limit_s: float | None = None) -> bool:
         """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
 
-        The default of `limit_s` is CONFIRM_S. Events from before the call do not count.
+        The default of `limit_s` is CONFIRM_TIMEOUT_S. Events from before the call do not count.
         """
-        end_s = monotonic() + (opening.CONFIRM_S if limit_s is None else limit_s)
-        began_ms = self.line.stop()
+        end_s = monotonic() + (opening.CONFIRM_TIMEOUT_S if limit_s is None else limit_s)
+        stop_ms = self.connection.stop()
         try:
             while monotonic() < end_s:
-                result = self.line.event()
-                if result is None or result[0] < began_ms:
+                timed_event = self.connection.event()
+                if timed_event is None or timed_event[0] < stop_ms:
                     continue
-                if result[1].name in ("STOPPED", "LOST"):
-                    return result[1].name == "STOPPED"
+                if timed_event[1].name in ("STOPPED", "LOST"):
+                    return timed_event[1].name == "STOPPED"
         except (ConnectionLost, KeyboardInterrupt):
             pass
         return False
@@ -251,7 +255,7 @@ class Client:
 
     def robot_error_for_loss(self, loss: ConnectionLost) -> RobotError:
         reason = self._reason_of_end(loss)
-        values = {"port": opening.printable_name(self.port), "verb": self.line.held_by}
+        values = {"port": opening.printable_name(self.port), "verb": self.connection.held_by}
         return RobotError(reason, self.language, values)
 
     def _reason_of_end(self, loss: ConnectionLost) -> str:
@@ -261,30 +265,30 @@ class Client:
             return "radio_gone"
         if is_at_broker(self.port):
             return "port_taken" if str(loss) == errors.TAKEN else "broker_gone"
-        if self.line.heard and self.line.robot is None:  # it reported busy, and closed
+        if self.connection.heard and self.connection.robot is None:  # it reported busy, and closed
             return "port_busy"
         return "port_gone"
 
-    def foreign(self) -> tuple[str, str]:
+    def foreign_board_sentences(self) -> tuple[str, str]:
         """Return the sentences on the board that answers instead of a robot."""
         from tiniscript.link.foreign import explain
 
-        board = stranger(self.line)
+        board = stranger(self.connection)
         assert board is not None
         return explain(board, self.language)
 
-    def failure(self, reply: Reply[object]) -> Exception:
+    def error_for_reply(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
-        reason = reason_of(self.line, reply)
+        reason = reason_of(self.connection, reply)
         if reason != "status":
             values = {"port": opening.printable_name(self.port), "id": f"{reply.detail:08x}"}
             if reason == FOREIGN:
-                values["what"], values["then"] = self.foreign()
+                values["what"], values["then"] = self.foreign_board_sentences()
             return RobotError(reason, self.language, values)
         text = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
-        kind = ProgramError if name == "TOO_LARGE" else RobotError
-        return kind(name, self.language, sentence_text=text)
+        error_type = ProgramError if name == "TOO_LARGE" else RobotError
+        return error_type(name, self.language, sentence_text=text)
 
 
 class Saving:
@@ -298,18 +302,18 @@ class Saving:
     def is_over(self) -> bool:
         return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
-    def learn(self, status: StatusReply) -> None:
+    def update(self, status: StatusReply) -> None:
         """Take what the robot says; of another program: somebody has sent that since."""
         self.saved = status.saved if status.program == self.program else SAVED_STORED
 
-    def rounds(self) -> Iterator[None]:
+    def polls(self) -> Iterator[None]:
         """Yield while it is worth waiting, as the motors stand: learn the status each time."""
         begun_s = monotonic()
-        low_s: float | None = None
-        while not self.is_over and monotonic() < begun_s + SAVE_LIMIT_S:
+        low_since_s: float | None = None
+        while not self.is_over and monotonic() < begun_s + SAVE_TIMEOUT_S:
             yield
-            low_s = (low_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
-            if low_s is not None and monotonic() > low_s + LOW_VOLTAGE_LIMIT_S:
+            low_since_s = (low_since_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
+            if low_since_s is not None and monotonic() > low_since_s + LOW_VOLTAGE_TIMEOUT_S:
                 return
 
     @property

@@ -27,41 +27,41 @@ from tiniscript.semantics.optimizer import optimize_program
 from tiniscript.syntax.parser import parse
 
 
-class Compiled(NamedTuple):
+class Compilation(NamedTuple):
     """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
-    `program` is the checked program, as written, and `lowered` what the code was made of; `places`
-    says where in the text each instruction comes from, `yes_no` which of its variables are a
-    yes/no.
+    `program` is the checked program, as written, and `lowered_program` what the code was made of;
+    `locations` says where in the text each instruction comes from, `yes_no_flags` which of its
+    variables are a yes/no.
     """
 
     source: Source
     diagnostics: list[codes.Diagnostic]
     program: ir.Program | None = None
     code: bytes = b""
-    places: tuple[SourceLocation, ...] = ()
+    locations: tuple[SourceLocation, ...] = ()
     verdict: Verdict | None = None
     image: bytes = b""
-    lowered: ir.Program | None = None
-    yes_no: tuple[bool, ...] = ()
+    lowered_program: ir.Program | None = None
+    yes_no_flags: tuple[bool, ...] = ()
 
     @property
     def variables(self) -> tuple[str, ...]:
         """The names of the code's variables, in the order of their numbers."""
-        return self.lowered.variables if self.lowered is not None else ()
+        return self.lowered_program.variables if self.lowered_program is not None else ()
 
     @property
     def is_right(self) -> bool:
         return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
 
 
-def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
+def check_text(text: str, kit: Kit, name: str = "") -> Compilation:
     """Return the checked program of a text, and all that is wrong with it."""
     compilation = analyze(text, kit, name)
     return compilation if compilation.is_right else _add_findings(compilation, kit)
 
 
-def _add_findings(compilation: Compiled, kit: Kit) -> Compiled:
+def _add_findings(compilation: Compilation, kit: Kit) -> Compilation:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import diagnose
 
@@ -74,33 +74,33 @@ def _add_findings(compilation: Compiled, kit: Kit) -> Compiled:
     )
 
 
-def analyze(text: str, kit: Kit, name: str = "") -> Compiled:
+def analyze(text: str, kit: Kit, name: str = "") -> Compilation:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
-    parsed = parse(source)
+    parse_result = parse(source)
     kit = _kit_in(text, kit)
-    checked = check(source, parsed.program, kit)
-    diagnostics = [*parsed.diagnostics, *checked.diagnostics]
+    check_result = check(source, parse_result.program, kit)
+    diagnostics = [*parse_result.diagnostics, *check_result.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
-        diagnostics += lint(checked.program, kit, source, parsed.scan)
+        diagnostics += lint(check_result.program, kit, source, parse_result.scan)
         if kit.given_words:
             from tiniscript.syntax.later_words import report_given_way
 
-            diagnostics += report_given_way(parsed.scan.tokens, kit, source)
-    return Compiled(source, codes.in_order(diagnostics), checked.program)
+            diagnostics += report_given_way(parse_result.scan.tokens, kit, source)
+    return Compilation(source, codes.in_order(diagnostics), check_result.program)
 
 
 def _kit_in(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    sentence = text.upper()
-    if not any(word in sentence for word in KIT_WORDS_SINCE):
+    upper_text = text.upper()
+    if not any(word in upper_text for word in KIT_WORDS_SINCE):
         return kit
     from tiniscript.syntax.later_words import kit_for_text
 
     return kit_for_text(text, kit)
 
 
-def check_size(compilation: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
+def check_size(compilation: Compilation, robot: Robot, is_mistake: bool) -> Compilation:
     """Return `compilation` with a message if the robot's memory is too small."""
     excess_bytes = len(compilation.code) - robot.board.program_bytes
     if excess_bytes <= 0:
@@ -113,7 +113,7 @@ def check_size(compilation: Compiled, robot: Robot, is_mistake: bool) -> Compile
     return compilation._replace(diagnostics=[*compilation.diagnostics, diagnostic])
 
 
-def fit_to_robot(compilation: Compiled, robot: Robot) -> Compiled:
+def fit_to_robot(compilation: Compilation, robot: Robot) -> Compilation:
     """Return `compilation`, with a mistake and no image where the robot lacks what it uses.
 
     For what is about to be sent to a robot, a virtual one too.
@@ -126,14 +126,14 @@ def fit_to_robot(compilation: Compiled, robot: Robot) -> Compiled:
         return compilation
     from tiniscript.library.known_kits import has_remote, lacks
 
-    needed = (
+    feature_checks = (
         (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
         (codes.NO_WAYS, GO, ir.first_extent_move(program)),
     )
     missing_features = [
         codes.Diagnostic(code, span, {"robot": robot.name})
-        for code, missing, span in needed
-        if span is not None and lacks(missing, robot)
+        for code, need, span in feature_checks
+        if span is not None and lacks(need, robot)
     ]
     if asks_remote and not has_remote(robot):
         missing_features.append(_remote_missing(compilation, robot))
@@ -144,16 +144,20 @@ def fit_to_robot(compilation: Compiled, robot: Robot) -> Compiled:
     )
 
 
-def _remote_missing(compilation: Compiled, robot: Robot) -> codes.Diagnostic:
+def _remote_missing(compilation: Compilation, robot: Robot) -> codes.Diagnostic:
     """Return the mistake of a program that asks a remote control which the robot does not have."""
     from tiniscript.bytecode.disassembly import devices_of, rows
 
-    first = next(row for row in rows(compilation.code) if robot.kit.asks_remote(devices_of(row)))
-    span = max(place for place in compilation.places if place.offset <= first.offset).span
+    first_row = next(
+        row for row in rows(compilation.code) if robot.kit.asks_remote(devices_of(row))
+    )
+    span = max(
+        location for location in compilation.locations if location.offset <= first_row.offset
+    ).span
     return codes.Diagnostic(codes.NO_REMOTE, span, {"robot": robot.name})
 
 
-def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
+def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compilation:
     """Return the image of a text for robots with this kit, or all that is wrong with it.
 
     The garbage collector pauses meanwhile: there are many small values and no cycles among
@@ -168,7 +172,7 @@ def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> 
             gc.enable()
 
 
-def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
+def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compilation:
     compilation = check_text(text, kit, name)
     program = compilation.program
     if program is None or not compilation.is_right:
@@ -177,19 +181,25 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         from tiniscript.semantics.task_copies import copy_defs_per_task
 
         program = copy_defs_per_task(program)
-    yes_no = tuple(ir.yes_no_variables(program, kit))
+    yes_no_flags = tuple(ir.yes_no_variables(program, kit))
     program = optimize_program(program) if optimize else program
-    lowered = lower(program)
-    if len(lowered.code) > CODE_BYTES:
-        values = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
-        place = Span(len(text), len(text))
-        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, values)
+    lowered_code = lower(program)
+    if len(lowered_code.code) > CODE_BYTES:
+        values = {"limit": str(CODE_BYTES), "over": str(len(lowered_code.code) - CODE_BYTES)}
+        end_span = Span(len(text), len(text))
+        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, end_span, values)
         return compilation._replace(diagnostics=[*compilation.diagnostics, diagnostic])
-    verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
-    devices = kit.hash_of_used(verdict.uses)
-    image = pack(program.start, devices, lowered.code, needs=verdict.needs)
-    return compilation._replace(lowered=program, code=lowered.code, places=lowered.locations,
-                                verdict=verdict, image=image, yes_no=yes_no)  # fmt: skip
+    verdict = verify(lowered_code.code, len(kit.readings), len(kit.actuators))
+    devices_hash = kit.hash_of_used(verdict.uses)
+    image = pack(program.start, devices_hash, lowered_code.code, needs=verdict.needs)
+    return compilation._replace(
+        lowered_program=program,
+        code=lowered_code.code,
+        locations=lowered_code.locations,
+        verdict=verdict,
+        image=image,
+        yes_no_flags=yes_no_flags,
+    )
 
 
 def compile_source(
@@ -200,7 +210,7 @@ def compile_source(
     optimize: bool = True,
     names_robots: bool = True,
     is_chosen: bool = False,
-) -> Compiled:
+) -> Compilation:
     """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
@@ -212,14 +222,14 @@ def compile_source(
         return text
     unknown_robot_diagnostic = None if is_chosen else unknown_robot(text)
     if unknown_robot_diagnostic is not None:  # which words there are nobody knows
-        return Compiled(Source(text, name), [unknown_robot_diagnostic])
-    result = compile_text(text, robot.kit, name, optimize)
-    if not result.is_right:
-        return add_robot_hints(result, robot, is_chosen) if names_robots else result
-    return check_size(result, robot, is_strict)
+        return Compilation(Source(text, name), [unknown_robot_diagnostic])
+    compilation = compile_text(text, robot.kit, name, optimize)
+    if not compilation.is_right:
+        return add_robot_hints(compilation, robot, is_chosen) if names_robots else compilation
+    return check_size(compilation, robot, is_strict)
 
 
-def add_robot_hints(compilation: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
+def add_robot_hints(compilation: Compilation, robot: Robot, is_chosen: bool = False) -> Compilation:
     """Return `compilation` with hints to the robots that have a word that this robot lacks."""
     from tiniscript.library.other_robots import with_robot_hints
 
@@ -229,35 +239,38 @@ def add_robot_hints(compilation: Compiled, robot: Robot, is_chosen: bool = False
     return compilation._replace(diagnostics=diagnostics)
 
 
-def text_of(data: bytes, name: str) -> str | Compiled:
+def text_of(data: bytes, name: str) -> str | Compilation:
     """Return a program's text, or a result with one diagnostic where the bytes are no text."""
     try:
         return decode(data)
-    except Unreadable as unreadable:
+    except Unreadable as error:
         reasons = {"too_large": codes.TOO_LARGE, "binary": codes.BINARY}
-        code = reasons.get(unreadable.reason, codes.NOT_UTF8)
-        return Compiled(Source("", name), [codes.Diagnostic(code, Span(0, 0))])
+        code = reasons.get(error.reason, codes.NOT_UTF8)
+        return Compilation(Source("", name), [codes.Diagnostic(code, Span(0, 0))])
 
 
-def image_of(compilation: Compiled, robot: Robot) -> Image:
+def image_of(compilation: Compilation, robot: Robot) -> Image:
     """Return the image of a program without mistakes."""
     assert compilation.program is not None and compilation.verdict is not None
-    devices, needs = robot.kit.hash_of_used(compilation.verdict.uses), compilation.verdict.needs
-    return Image(compilation.program.start, devices, compilation.code,
+    devices_hash, needs = (
+        robot.kit.hash_of_used(compilation.verdict.uses),
+        compilation.verdict.needs,
+    )
+    return Image(compilation.program.start, devices_hash, compilation.code,
                  checksum(compilation.image), isa_for_needs(needs), needs=needs)  # fmt: skip
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
-    def make(text: str) -> Image | None:
-        result = compile_source(text.encode(), robot, "", is_strict=True)
-        return image_of(result, robot) if result.is_right else None
+    def make_image(text: str) -> Image | None:
+        compilation = compile_source(text.encode(), robot, "", is_strict=True)
+        return image_of(compilation, robot) if compilation.is_right else None
 
-    return make
+    return make_image
 
 
-def kit_of(compilation: Compiled, robot: Robot) -> int:
+def used_fingerprint(compilation: Compilation, robot: Robot) -> int:
     """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
     assert compilation.verdict is not None
     return robot.kit.fingerprint if compilation.verdict.uses else 0

@@ -21,7 +21,7 @@ from tiniscript.library import opening
 from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
-from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
+from tiniscript.library.events import Ending, EventReader, RobotEvent, ending_of
 from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.library.programs import Language, Program, profile_of, program_of
 from tiniscript.library.refusing import refusal
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 VERB = "python"  # the name that other commands show for the process that holds the port
-LONGEST_S = 10**9
+MOST_TIMEOUT_S = 10**9
 LOOK_INTERVAL_S = 0.1
 
 
@@ -80,7 +80,7 @@ class RobotConnection:
         self.port = port
         self.language = language
         self._profile = profile
-        self._reader = Reader()
+        self._reader = EventReader()
         self._follower: Follower | None = None
         self._ending: Ending | None = None
         self._is_detached = self._is_replaced = False
@@ -90,15 +90,15 @@ class RobotConnection:
         try:
             self._meet(is_robot_named)
         except BaseException:
-            self._part()
+            self._close_port()
             raise
 
     def __enter__(self: Self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        is_interrupted = kind is not None and not issubclass(kind, Exception)
-        self._leave(is_clean=kind is None, is_interrupted=is_interrupted)
+    def __exit__(self, error_type: type[BaseException] | None, *_: object) -> None:
+        is_interrupted = error_type is not None and not issubclass(error_type, Exception)
+        self._leave(is_clean=error_type is None, is_interrupted=is_interrupted)
 
     @property
     def info(self) -> RobotInfo:
@@ -121,14 +121,14 @@ class RobotConnection:
         the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready_program = self._ready(program)
+        ready_program = self._prepare(program)
         if ready_program.start == "PING":
             raise UsageError("ping_program", self.language)
         reply = self._client.send_program(
             ready_program._image, run, save, detached, profile=ready_program._profile
         )
         if reply.status:
-            raise self._client.failure(reply)
+            raise self._client.error_for_reply(reply)
         self._saving = Saving(reply.values) if save else None
         return self._begin_run(reply.values, run and ready_program.start == "SI", detached)
 
@@ -140,14 +140,14 @@ class RobotConnection:
         line to the next. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready_program = self._ready(line)
+        ready_program = self._prepare(line)
         if ready_program.start != "SI":
             reason = "live_button" if ready_program.start == "SB" else "ping_program"
             raise UsageError(reason, self.language)
         image, kit = ready_program._image, ready_program._profile.kit.fingerprint
         refused_reply = refusal(image, ready_program._profile, self._client.device_info)
         if refused_reply is not None:
-            raise self._client.failure(refused_reply)
+            raise self._client.error_for_reply(refused_reply)
         reply = self._client.request(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )
@@ -180,30 +180,30 @@ class RobotConnection:
         """
         self._check_open()
         if timeout is not None:
-            checked_number("timeout", timeout, 0, LONGEST_S, self.language)
+            checked_number("timeout", timeout, 0, MOST_TIMEOUT_S, self.language)
         end_s = None if timeout is None else monotonic() + timeout
-        any_run = Follower(None)
+        any_run_follower = Follower(None)
         while self._follower is None or self._ending is None:
-            follower = self._follower or any_run
+            follower = self._follower or any_run_follower
             left_s = LOOK_INTERVAL_S if end_s is None else min(LOOK_INTERVAL_S, end_s - monotonic())
-            result = self._client.event(max(left_s, 0.0))
+            timed_event = self._client.event(max(left_s, 0.0))
             robot_event = None
-            if result is not None and self._concerns_us(follower, result[1]):
-                robot_event = self._reader.to_robot_event(*result)
+            if timed_event is not None and self._follow(follower, timed_event[1]):
+                robot_event = self._reader.to_robot_event(*timed_event)
                 if (
                     robot_event is not None
-                    and follower.end(result[1]) is not None
+                    and follower.end(timed_event[1]) is not None
                     and self._follower
                 ):
                     self._ending = ending_of(robot_event)
             if robot_event is not None:
                 yield robot_event
             # an event that arrived before the timeout is still reported
-            last_s = monotonic() if result is None else result[0] / 1000
-            if end_s is not None and last_s >= end_s:
+            event_s = monotonic() if timed_event is None else timed_event[0] / 1000
+            if end_s is not None and event_s >= end_s:
                 return
 
-    def _concerns_us(self, follower: Follower, event: Event) -> bool:
+    def _follow(self, follower: Follower, event: Event) -> bool:
         """The same for sentences of this connection, which knows from then on what has happened."""
         try:
             return follower.follow(event, opening.printable_name(self.port), self.language)
@@ -236,18 +236,18 @@ class RobotConnection:
         the robot has it, or has not answered in time. Raises RobotError where it takes none.
         """
         self._check_open()
-        for way, percent in (("x", x), ("y", y)):
-            check_whole_number(way, percent, -MOST_PAD, MOST_PAD, self.language)
+        for axis, percent in (("x", x), ("y", y)):
+            check_whole_number(axis, percent, -MOST_PAD, MOST_PAD, self.language)
         for key in keys:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        pressed = pressed_of(keys, x, y)
+        remote_state = pressed_of(keys, x, y)
         reply = self._client.wait(
-            self._client.begin_request(lambda session: session.press(*pressed))
+            self._client.begin_request(lambda session: session.press(*remote_state))
         )
         if reply.status not in (OK, CANCELLED, LOST):
-            raise self._client.failure(reply)
+            raise self._client.error_for_reply(reply)
 
     def stop(self) -> None:
         """Stop the robot now; return when it has confirmed the stop. Raises StopNotConfirmed."""
@@ -280,7 +280,7 @@ class RobotConnection:
             if is_clean:
                 self._await_saving()
         finally:
-            self._part(holds_port=not is_interrupted)
+            self._close_port(holds_port=not is_interrupted)
 
     def _stop(self) -> None:
         if not self._client.stop():
@@ -291,7 +291,7 @@ class RobotConnection:
         if self._follower is not None and self._ending is None:
             self._ending = Ending("STOPPED", cause="SEQUENCE")
 
-    def _part(self, holds_port: bool = False) -> None:
+    def _close_port(self, holds_port: bool = False) -> None:
         """Close the port: at once, or where it `holds_port` once no other command drives the robot
         through it, which a thread waits for. The run of a client ends with this server."""
         if not holds_port or not self._client.holds_for_others:
@@ -301,9 +301,9 @@ class RobotConnection:
         warnings.warn(
             text.format(port=opening.printable_name(self.port)), RuntimeWarning, stacklevel=4
         )
-        Thread(target=self._hold, name="holder").start()
+        Thread(target=self._hold_port, name="holder").start()
 
-    def _hold(self) -> None:
+    def _hold_port(self) -> None:
         try:
             with suppress(RobotError):  # the port is gone
                 self._client.hold_for_others()
@@ -320,9 +320,9 @@ class RobotConnection:
             self._saving = saving
             return
 
-        saving.learn(status)
-        for _ in saving.rounds():
-            saving.learn(self._client.request(Requester.status).values)
+        saving.update(status)
+        for _ in saving.polls():
+            saving.update(self._client.request(Requester.status).values)
             if not saving.is_over:
                 self._client.event(LOOK_INTERVAL_S)
         if saving.reason:
@@ -340,11 +340,11 @@ class RobotConnection:
         if self._is_closed:
             raise UsageError("closed", self.language)
 
-    def _ready(self, program: Program | str | bytes) -> Program:
-        is_made = isinstance(program, Program)
-        ready_program = program_of(program, None if is_made else self._profile, self.language)
+    def _prepare(self, program: Program | str | bytes) -> Program:
+        is_program = isinstance(program, Program)
+        ready_program = program_of(program, None if is_program else self._profile, self.language)
         if ready_program._map is not None:
-            self._reader.maps[ready_program.checksum] = ready_program._map
+            self._reader.map_by_checksum[ready_program.checksum] = ready_program._map
         return ready_program
 
     def _begin_run(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
@@ -373,7 +373,7 @@ def connect(
     if baud is not None:
         check_whole_number("baud", baud, opening.SLOWEST_BAUD, opening.FASTEST_BAUD, language)
     if port is None:
-        port = _usual_port(language)
+        port = _default_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():
         raise UsageError(
             "bad_port", language, {"port": printable(repr(port), opening.MOST_NAME_CHARACTERS)}
@@ -381,19 +381,19 @@ def connect(
     return RobotConnection(port, profile, robot is not None, baud, language)
 
 
-def _usual_port(language: Language) -> str:
+def _default_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
-    if (last_port := opening.last_port()) is not None:
-        return last_port
-    last = known_ports.remembered_ports().last
+    if (usable_port := opening.usable_last_port()) is not None:
+        return usable_port
+    last_port = known_ports.remembered_ports().last
     running = directory.unclaimed_robots()
     if len(running) == 1:
         return running[0].address
-    listed = [item.port for item in ports.list_ports()]
-    values = {"known": opening.printable_name(", ".join(listed)) or "-",
-              "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
-    if last is not None:
+    port_names = [port_info.port for port_info in ports.list_ports()]
+    values = {"known": opening.printable_name(", ".join(port_names)) or "-",
+              "example": port_names[0] if port_names else "/dev/ttyUSB0"}  # fmt: skip
+    if last_port is not None:
         raise RobotError(
-            "last_port_missing", language, {**values, "port": opening.printable_name(last)}
+            "last_port_missing", language, {**values, "port": opening.printable_name(last_port)}
         )
     raise RobotError("which_port", language, values)

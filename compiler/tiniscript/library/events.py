@@ -10,8 +10,8 @@ from tiniscript.base.fixed_point import value_of
 from tiniscript.base.source import printable
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of
-from tiniscript.library.shows import Finder
-from tiniscript.library.source_map import Map
+from tiniscript.library.shows import ShowFinder
+from tiniscript.library.source_map import SourceMap
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import FaultEvent
@@ -43,13 +43,13 @@ class Ending(NamedTuple):
     cause: str | None = None
 
 
-class Reader:
-    """Reads the events of one connection. `maps` are the source maps of the sent programs, by
-    checksum."""
+class EventReader:
+    """Reads the events of one connection. `map_by_checksum` are the source maps of the sent
+    programs, by checksum."""
 
     def __init__(self) -> None:
-        self.maps: dict[int, Map] = {}
-        self._shows = Finder(self.maps)
+        self.map_by_checksum: dict[int, SourceMap] = {}
+        self._shows = ShowFinder(self.map_by_checksum)
         self._began_ms = int(monotonic() * 1000)
 
     def begin(self, run: int, program: int) -> None:
@@ -67,7 +67,7 @@ class Reader:
         elif event.name == "STARTED":
             fields = {"checksum": event.program}
         elif event.name == "FAULT":
-            fields = self._fault(event)
+            fields = self._fault_values(event)
         elif event.name == "STOPPED":
             fields = {"cause": cause_name(event.cause)}
         elif event.name == "MISSED":
@@ -78,13 +78,13 @@ class Reader:
             return None
         return RobotEvent(time_ms - self._began_ms, event.name, fields)
 
-    def _fault(self, event: FaultEvent) -> dict[str, Value]:
-        places = self._shows.map_of(event.run, event.program)
-        fault = fault_of(fault_name(event.fault), event.at, places)
-        result: dict[str, Value] = {"fault": fault.name, "offset": event.at}
+    def _fault_values(self, event: FaultEvent) -> dict[str, Value]:
+        program_map = self._shows.map_of(event.run, event.program)
+        fault = fault_of(fault_name(event.fault), event.at, program_map)
+        values: dict[str, Value] = {"fault": fault.name, "offset": event.at}
         if fault.line is not None and fault.column is not None:
-            result |= {"line": fault.line, "column": fault.column}
-        return result
+            values |= {"line": fault.line, "column": fault.column}
+        return values
 
 
 def ending_of(event: RobotEvent) -> Ending:
@@ -92,8 +92,8 @@ def ending_of(event: RobotEvent) -> Ending:
     values = event.values
     if event.name == FAULT:
         line, column = values.get("line"), values.get("column")
-        place = (None, None) if line is None or column is None else (int(line), int(column))
-        return Ending("FAULT", Fault(str(values["fault"]), int(values["offset"]), *place))
+        position = (None, None) if line is None or column is None else (int(line), int(column))
+        return Ending("FAULT", Fault(str(values["fault"]), int(values["offset"]), *position))
     if event.name == DONE:
         return Ending("DONE")
     return Ending("STOPPED", cause=str(values["cause"]))

@@ -26,13 +26,13 @@ LOCKS = {STUDIO: CLONE / "tools" / "studio" / "requirements.txt"}
 
 def command(extra: str) -> str:
     """Return the command to type."""
-    expected = " ".join(map(quote, requirements(extra)))
-    if is_pipx() and expected:
-        return f"pipx inject tiniscript {expected}"
+    needed_packages = " ".join(map(quote, requirements(extra)))
+    if is_pipx() and needed_packages:
+        return f"pipx inject tiniscript {needed_packages}"
     if is_clone(CLONE):
-        place = quote(f"{CLONE}[{extra}]")
-        return f"pipx install {place}" if is_managed() else f"{_pip()} install -e {place}"
-    return f"{_pip()} install {expected or quote(f'tiniscript[{extra}]')}"
+        target = quote(f"{CLONE}[{extra}]")
+        return f"pipx install {target}" if is_managed() else f"{_pip()} install -e {target}"
+    return f"{_pip()} install {needed_packages or quote(f'tiniscript[{extra}]')}"
 
 
 def install_command(extra: str) -> list[str] | None:
@@ -40,14 +40,16 @@ def install_command(extra: str) -> list[str] | None:
 
     None where that is not its business: it has no pip, or pipx or the system manages it.
     """
-    expected = requirements(extra)
-    if not expected or is_pipx() or is_managed() or find_spec("pip") is None:
+    needed_packages = requirements(extra)
+    if not needed_packages or is_pipx() or is_managed() or find_spec("pip") is None:
         return None
     lock = LOCKS.get(extra)
-    package_names = (
-        ["--require-hashes", "-r", str(lock)] if lock is not None and lock.is_file() else expected
+    package_arguments = (
+        ["--require-hashes", "-r", str(lock)]
+        if lock is not None and lock.is_file()
+        else needed_packages
     )
-    return [sys.executable, "-m", "pip", "install", "--no-input", *package_names]
+    return [sys.executable, "-m", "pip", "install", "--no-input", *package_arguments]
 
 
 def is_clone(folder: Path) -> bool:
@@ -68,25 +70,25 @@ def is_managed() -> bool:
 def requirements(extra: str) -> list[str]:
     """Return the requirements of an extra in the installed package, such as `wasmtime>=20`."""
     try:
-        rows = metadata.requires("tiniscript") or []
+        lines = metadata.requires("tiniscript") or []
     except metadata.PackageNotFoundError:
         return []
-    marked = re.compile(rf"\bextra\s*==\s*['\"]{extra}['\"]")
-    return [row.partition(";")[0].strip() for row in rows if marked.search(row)]
+    extra_marker = re.compile(rf"\bextra\s*==\s*['\"]{extra}['\"]")
+    return [line.partition(";")[0].strip() for line in lines if extra_marker.search(line)]
 
 
 def _pip() -> str:
     """Return `pip` if the shell finds this Python's pip, else the command with its full path."""
-    active = os.environ.get("VIRTUAL_ENV")
-    if active and Path(active).resolve() == Path(sys.prefix).resolve():
+    venv_path = os.environ.get("VIRTUAL_ENV")
+    if venv_path and Path(venv_path).resolve() == Path(sys.prefix).resolve():
         return "pip"
     return f"{quote(sys.executable)} -m pip"
 
 
 def quote(word: str) -> str:
     """Return a word quoted for the shell of this system."""
-    plain = r"[\w./:=,@+-]+" if sys.platform != "win32" else r"[\w./:=,@+\\-]+"
-    if re.fullmatch(plain, word):
+    plain_pattern = r"[\w./:=,@+-]+" if sys.platform != "win32" else r"[\w./:=,@+\\-]+"
+    if re.fullmatch(plain_pattern, word):
         return word
     if sys.platform == "win32" or not re.search(r'["$`\\!]', word):
         return f'"{word}"'

@@ -31,28 +31,33 @@ def robot_of_kit(fingerprint: int) -> Robot | None:
     return given.recall(fingerprint) if name is None else robots.load(name)
 
 
-def may_run(image: Image, profile: Robot, kit: int) -> bool:
+def may_run(image: Image, profile: Robot, fingerprint: int) -> bool:
     """Return whether the robot of this kit may run an image that was verified for `profile`.
 
     True if this computer does not know the kit: then the robot itself refuses a wrong image.
     """
-    if not image.devices or kit == profile.kit.fingerprint:
+    if not image.devices or fingerprint == profile.kit.fingerprint:
         return True
-    robot = robot_of_kit(kit)
+    robot = robot_of_kit(fingerprint)
     return robot is None or is_runnable(image, robot)
 
 
-def find_robot_for(image: Image, first: Robot) -> Robot | None:
-    """Return a robot that may run an image: `first`, a shipped one, or one given before.
+def find_robot_for(image: Image, preferred_robot: Robot) -> Robot | None:
+    """Return a robot that may run an image: `preferred_robot`, a shipped one, or one given before.
 
     Returns None if no such robot is known.
     """
-    if is_runnable(image, first):
-        return first
+    if is_runnable(image, preferred_robot):
+        return preferred_robot
     shipped = (robots.load(name) for name in robots.names())
     given_robots = (robot for _, robot in given.profiles())
     return next(
-        (robot for item in (shipped, given_robots) for robot in item if is_runnable(image, robot)),
+        (
+            robot
+            for robot_group in (shipped, given_robots)
+            for robot in robot_group
+            if is_runnable(image, robot)
+        ),
         None,
     )
 
@@ -84,7 +89,7 @@ def has_remote(robot: Robot) -> bool:
     return not robot.board.discs or AVRS.get(robot.board.chip) is not AVR_328P
 
 
-def missing_need(needs: int, robot: Robot) -> str:
+def missing_need_key(needs: int, robot: Robot) -> str:
     """Return the name of the text that says what the firmware lacks of `needs`, or nothing."""
     if lacks(needs & TASKS, robot):
         return "no_tasks"

@@ -31,18 +31,18 @@ class NamedRobot(NamedTuple):
 
 def named_robot(text: str) -> NamedRobot | None:
     """Return the robot that a program names first, or None."""
-    at = 0
-    while at < len(text) and (line := _ROBOT_LINE.match(text, at)):
-        if line["name"]:
-            return NamedRobot(line["name"], Span(*line.span("name")))
-        at = line.end()
+    offset = 0
+    while offset < len(text) and (match := _ROBOT_LINE.match(text, offset)):
+        if match["name"]:
+            return NamedRobot(match["name"], Span(*match.span("name")))
+        offset = match.end()
     return None
 
 
 def rename_robot(text: str, name: str) -> str:
     """Return a program that names a robot with another name; any other stays as it is."""
-    result = named_robot(text)
-    return text if result is None else apply_edits(text, [Edit(result.span, name)])
+    robot_in_text = named_robot(text)
+    return text if robot_in_text is None else apply_edits(text, [Edit(robot_in_text.span, name)])
 
 
 def robot_of(data: bytes, default: Robot) -> Robot:
@@ -53,27 +53,27 @@ def robot_of(data: bytes, default: Robot) -> Robot:
 
 def shipped_name_in(data: bytes) -> str | None:
     """Return the name of the shipped robot that a program's text names, or None."""
-    result = (robot_name(data) or "").lower()
-    return result if result in robots.names() else None
+    name = (robot_name(data) or "").lower()
+    return name if name in robots.names() else None
 
 
 def robot_name(data: bytes) -> str | None:
     """Return how a program's text names its robot, or None; an image names none."""
     try:
-        result = named_robot(decode(data))
+        robot_in_text = named_robot(decode(data))
     except Unreadable:
         return None
-    return result.name if result else None
+    return robot_in_text.name if robot_in_text else None
 
 
 def unknown_robot(text: str) -> Diagnostic | None:
     """Return the mistake of a program that names a robot which does not come with tsc."""
-    result = named_robot(text)
-    if result is None or result.name.lower() in robots.names():
+    robot_in_text = named_robot(text)
+    if robot_in_text is None or robot_in_text.name.lower() in robots.names():
         return None
     from tiniscript.base.spelling import nearest
 
-    suggestion = nearest(result.name.lower(), robots.names()) or ""
-    values = {"found": result.name, "near": suggestion, "known": ", ".join(robots.names())}
-    repair = Repair((Edit(result.span, suggestion),) if suggestion else (), False)
-    return Diagnostic(NO_SUCH_ROBOT, result.span, values, repair=repair)
+    suggestion = nearest(robot_in_text.name.lower(), robots.names()) or ""
+    values = {"found": robot_in_text.name, "near": suggestion, "known": ", ".join(robots.names())}
+    repair = Repair((Edit(robot_in_text.span, suggestion),) if suggestion else (), False)
+    return Diagnostic(NO_SUCH_ROBOT, robot_in_text.span, values, repair=repair)

@@ -28,25 +28,25 @@ from tiniscript.virtual import directory
 if TYPE_CHECKING:
     from tiniscript.link.port_connection import PortConnection
 
-BUSY_LIMIT_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
-STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
+BUSY_TIMEOUT_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
+STOP_BUSY_TIMEOUT_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
 RETRY_INTERVAL_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
-OPEN_LIMIT_S = 20.0  # timeout for opening a port
+OPEN_TIMEOUT_S = 20.0  # timeout for opening a port
 MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
-ANSWER_MS = 6000  # timeout for HELLO by radio
+ANSWER_TIMEOUT_MS = 6000  # timeout for HELLO by radio
 # By cable the timeout is shorter, and HELLO has two tries: an Uno takes 1.4 s after a reset.
-CABLE_ANSWER_MS = 2000
+CABLE_ANSWER_TIMEOUT_MS = 2000
 # A Mega begins 0.9 s after a reset. Bytes that arrive earlier keep it in its bootloader until the
 # line has been silent for 4.2 s.
 QUIET_S_BY_BOARD = {"mega": 1.2}  # by board
 LONG_QUIET_S = 4.5
-CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
+CONFIRM_TIMEOUT_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
 
 
 def connection_to(
-    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_LIMIT_S,
+    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_TIMEOUT_S,
     asked_baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
@@ -58,28 +58,32 @@ def connection_to(
     is_stop = verb == "stop"
     begun_s = monotonic()
     while True:
-        is_held_up = is_stop and _is_suspended(address)
-        client = None if is_held_up else _join_shared(address, verb, asked_baud, language)
-        if client is not None:
-            return client
+        is_holder_suspended = is_stop and _is_suspended(address)
+        shared_connection = (
+            None if is_holder_suspended else _join_shared(address, verb, asked_baud, language)
+        )
+        if shared_connection is not None:
+            return shared_connection
         if is_name(address):
             address = _resolve_address(port, language)
             begun_s = monotonic()
             continue
         try:
             lock = _claim(address, language)
-            line = _open_line(address, baud, kit, limit_s, lock, language, port, verb)
+            port_connection = _open_connection(
+                address, baud, kit, limit_s, lock, language, port, verb
+            )
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
-            return line
-        except RobotError as failure:
+            return port_connection
+        except RobotError as error:
             waited_s = monotonic() - begun_s
-            if failure.reason != "port_busy" or (waited_s > BUSY_LIMIT_S and not is_stop):
+            if error.reason != "port_busy" or (waited_s > BUSY_TIMEOUT_S and not is_stop):
                 raise
         if is_stop:
-            past = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
-            if past is not None:
-                return past
+            connection = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
+            if connection is not None:
+                return connection
         sleep(RETRY_INTERVAL_S)
 
 
@@ -104,9 +108,11 @@ def _connect_past_holder(
         if sys.platform == "linux" and not is_address(address):
             speed = baud if registration is None else registration.baud
             with suppress(RobotError):
-                return _open_line(address, speed, kit, limit_s, None, language, port, "stop", True)
+                return _open_connection(
+                    address, speed, kit, limit_s, None, language, port, "stop", True
+                )
         holder.wake()
-    if waited_s <= STOP_BUSY_S:
+    if waited_s <= STOP_BUSY_TIMEOUT_S:
         return None
     if holder is None:
         raise RobotError("stop_held_unknown", language, {"port": printable_name(port)})
@@ -114,7 +120,7 @@ def _connect_past_holder(
     raise RobotError("stop_held", language, values)
 
 
-def _open_line(
+def _open_connection(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
     port: str, verb: str = "", opens_past_lock: bool = False,
 ) -> PortConnection:  # fmt: skip
@@ -128,46 +134,48 @@ def _open_line(
     from tiniscript.link.ports import open_past_lock, open_port
     from tiniscript.link.session import Session
 
-    with ExitStack() as unless_it_fails:
+    with ExitStack() as cleanup:
         if lock is not None:
-            unless_it_fails.callback(lock.close)
-        open_it = open_past_lock if opens_past_lock else open_port
+            cleanup.callback(lock.close)
+        open_function = open_past_lock if opens_past_lock else open_port
         try:
-            device = open_it(address, baud, limit_s)
-        except PortError as failure:
-            raise port_error(port, failure, language) from None
-        unless_it_fails.callback(device.close)
+            opened_port = open_function(address, baud, limit_s)
+        except PortError as error:
+            raise port_error(port, error, language) from None
+        cleanup.callback(opened_port.close)
         if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
             raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
         keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
-        place = port_names.canonical_port(port)  # an address may be another robot's tomorrow
+        canonical_port = port_names.canonical_port(
+            port
+        )  # an address may be another robot's tomorrow
         nonce = int.from_bytes(os.urandom(4), "little")
-        session = Session(nonce, baud, kit, keys=keys, place=place)
-        line = PortConnection(device, session, lock, address)
-        unless_it_fails.pop_all()
-        return line
+        session = Session(nonce, baud, kit, keys=keys, place=canonical_port)
+        connection = PortConnection(opened_port, session, lock, address)
+        cleanup.pop_all()
+        return connection
 
 
-def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
+def port_error(port: str, error: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
-    reason = f"port_{failure.reason}"
-    values = {"port": printable_name(port), "why": printable_name(failure.why)}
-    if failure.reason == errors.NOT_INSTALLED:
+    reason = f"port_{error.reason}"
+    values = {"port": printable_name(port), "why": printable_name(error.why)}
+    if error.reason == errors.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
         extra = install_advice.BROKER if is_at_broker(port) else install_advice.RADIO
         values["how"] = install_advice.command(extra)
-    if failure.reason == errors.UNREACHABLE and is_at_broker(port):
+    if error.reason == errors.UNREACHABLE and is_at_broker(port):
         reason = "broker_unreachable"
-    if failure.reason == errors.NOT_FOUND and failure.why:
+    if error.reason == errors.NOT_FOUND and error.why:
         reason = "port_not_found_but"
-    if failure.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
+    if error.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
-    if failure.reason == errors.MISSING:
+    if error.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        ports_text = ", ".join(item.port for item in ports.list_ports())
+        ports_text = ", ".join(port_info.port for port_info in ports.list_ports())
         if ports_text:
             reason, values["known"] = "port_missing_but", printable_name(ports_text)
     return RobotError(reason, language, values)
@@ -180,11 +188,15 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
         known_ports.remember(port, name, is_used)
 
 
-def last_port() -> str | None:
+def usable_last_port() -> str | None:
     """Return the last used port, unless it is known that it is not there."""
-    last = known_ports.remembered_ports().last
-    is_there = last is not None and port_names.is_there(last) and not directory.is_gone(last)
-    return last if is_there else None
+    last_port = known_ports.remembered_ports().last
+    is_there = (
+        last_port is not None
+        and port_names.is_there(last_port)
+        and not directory.is_gone(last_port)
+    )
+    return last_port if is_there else None
 
 
 def is_virtual(port: str) -> bool:
@@ -200,19 +212,27 @@ def printable_name(name: str) -> str:
 
 def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
     try:
-        client = join(port, verb)
-    except OtherVersion as other:
+        shared_connection = join(port, verb)
+    except OtherVersion as error:
         values = {
-            "verb": other.registration.verb,
-            "theirs": printable_name(other.version),
+            "verb": error.registration.verb,
+            "theirs": printable_name(error.version),
             "port": printable_name(port),
         }
         raise RobotError("holder_other", language, values) from None
-    if client is not None and baud not in (None, client.baud) and verb != "stop":
-        client.close()
-        values = {"verb": client.held_by, "baud": str(client.baud), "port": printable_name(port)}
+    if (
+        shared_connection is not None
+        and baud not in (None, shared_connection.baud)
+        and verb != "stop"
+    ):
+        shared_connection.close()
+        values = {
+            "verb": shared_connection.held_by,
+            "baud": str(shared_connection.baud),
+            "port": printable_name(port),
+        }
         raise RobotError("holder_baud", language, values)
-    return client
+    return shared_connection
 
 
 def _resolve_address(port: str, language: str) -> str:
@@ -221,8 +241,8 @@ def _resolve_address(port: str, language: str) -> str:
 
     try:
         return ports.resolve(port)
-    except errors.PortError as failure:
-        raise port_error(port, failure, language) from None
+    except errors.PortError as error:
+        raise port_error(port, error, language) from None
 
 
 def _claim(port: str, language: str) -> IO[bytes] | None:

@@ -39,18 +39,22 @@ def with_robot_hints(
     """
     if not any(diagnostic.code in (*_UNKNOWN_CODES, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    result = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
-    return result if is_chosen else [_add_robot_name(diagnostic, text) for diagnostic in result]
+    hinted = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    return hinted if is_chosen else [_add_robot_name(diagnostic, text) for diagnostic in hinted]
 
 
 def _add_robot_name(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a hint to a robot that comes with tsc with what the program needs to name it."""
-    first = diagnostic.values.get("first")
-    if diagnostic.code is not OTHER_ROBOT or first not in robots.names():
+    first_robot = diagnostic.values.get("first")
+    if diagnostic.code is not OTHER_ROBOT or first_robot not in robots.names():
         return diagnostic
-    own = named_robot(text)
-    edit = Edit(own.span, first) if own else Edit(Span(0, 0), f"// robot: {first}\n")
-    values = {**diagnostic.values, "named": first}
+    robot_in_text = named_robot(text)
+    edit = (
+        Edit(robot_in_text.span, first_robot)
+        if robot_in_text
+        else Edit(Span(0, 0), f"// robot: {first_robot}\n")
+    )
+    values = {**diagnostic.values, "named": first_robot}
     return diagnostic._replace(values=values, repair=Repair((edit,), False))
 
 
@@ -64,56 +68,60 @@ def hints_among(
     """
     own_words = set(kit.names)
     words_by_robot = {
-        robot: set(own_kit.names) for robot, own_kit in other_kits.items() if robot != name
+        robot: set(other_kit.names) for robot, other_kit in other_kits.items() if robot != name
     }
     kit_names = own_words.union(*words_by_robot.values())
-    texts = {token.text for token in scan(text).tokens if token.kind is WORD}
+    words_in_text = {token.text for token in scan(text).tokens if token.kind is WORD}
     words_used = {
-        word if word in kit_names else lexicon_concept(word) for word in texts
+        word if word in kit_names else lexicon_concept(word) for word in words_in_text
     } & kit_names
-    own_name = named_robot(text)
-    named_name = own_name.name.lower() if own_name else ""
-    full_kits = [robot for robot, own_kit in words_by_robot.items() if words_used <= own_kit]
-    robots_named: list[Diagnostic] = []
-    messages: list[set[str]] = []  # robots that words have led to
-    codes = {*_UNKNOWN_CODES, NO_BUTTON} if words_used - own_words - {BUTTON} else {*_UNKNOWN_CODES}
+    robot_in_text = named_robot(text)
+    named_robot_name = robot_in_text.name.lower() if robot_in_text else ""
+    complete_robots = [
+        robot for robot, kit_words in words_by_robot.items() if words_used <= kit_words
+    ]
+    hinted_diagnostics: list[Diagnostic] = []
+    hinted_robot_sets: list[set[str]] = []  # robots that words have led to
+    hinted_codes = (
+        {*_UNKNOWN_CODES, NO_BUTTON} if words_used - own_words - {BUTTON} else {*_UNKNOWN_CODES}
+    )
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
         word = BUTTON if diagnostic.code is NO_BUTTON else word
         word = word if word in kit_names else lexicon_concept(word) or word
         stem = "".join(lexicon_meaning(word, "stem"))
-        side = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
-        word = side if side in kit_names - own_words else word
+        left_word = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
+        word = left_word if left_word in kit_names - own_words else word
         robots_with_word = [
-            robot for robot, own_kit in words_by_robot.items() if word in own_kit - own_words
+            robot for robot, kit_words in words_by_robot.items() if word in kit_words - own_words
         ]
-        if diagnostic.code in codes and robots_with_word:
+        if diagnostic.code in hinted_codes and robots_with_word:
             robots_with_word = [
-                item for item in robots_with_word if item in full_kits
+                robot for robot in robots_with_word if robot in complete_robots
             ] or robots_with_word
             # that which the program names is meant, else one with more of its words, or of a lesson
             robots_with_word.sort(
-                key=lambda item: (
-                    item != named_name,
-                    -len(words_used & words_by_robot[item]),
-                    item not in LESSON_ROBOTS,
+                key=lambda robot: (
+                    robot != named_robot_name,
+                    -len(words_used & words_by_robot[robot]),
+                    robot not in LESSON_ROBOTS,
                 )
             )
-            if any(item <= {*robots_with_word} for item in messages):
+            if any(hinted <= {*robots_with_word} for hinted in hinted_robot_sets):
                 continue
-            messages.append({*robots_with_word})
+            hinted_robot_sets.append({*robots_with_word})
             values = {
                 "found": word,
                 "own": name,
                 **dict(zip(_ORDINALS, robots_with_word, strict=False)),
             }
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
-        robots_named.append(diagnostic)
-    return robots_named
+        hinted_diagnostics.append(diagnostic)
+    return hinted_diagnostics
 
 
-def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
-    """Whether a program has words of another robot: they have been through `naming_robots`."""
+def has_words_of_other_robots(diagnostics: list[Diagnostic]) -> bool:
+    """Whether a program has words of another robot: they have been through `with_robot_hints`."""
     if any(diagnostic.code is OTHER_ROBOT for diagnostic in diagnostics):
         return True
     words = {

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.base.languages import languages
 from tiniscript.base.source import PROGRAM_ENDINGS, printable
 from tiniscript.bytecode import verify
@@ -16,18 +16,18 @@ from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compile_source, image_of
+from tiniscript.library.compiling import Compilation, compile_source, image_of
 from tiniscript.library.errors import ProgramError, UsageError, sentence
 from tiniscript.library.known_kits import find_robot_for
 from tiniscript.library.named_robot import robot_of
-from tiniscript.library.source_map import Map
+from tiniscript.library.source_map import SourceMap
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
 Language = str  # the code of one, such as "en"
 MOST_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
 MOST_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
-MOST_BYTES = 1_000_000  # of a file
+MOST_FILE_BYTES = 1_000_000  # of a file
 FILE_ENDINGS = (*PROGRAM_ENDINGS, ".bin")
 
 
@@ -47,7 +47,7 @@ class Program:
         image: bytes,
         parsed_image: Image,
         profile: Robot,
-        places: Map | None,
+        program_map: SourceMap | None,
         diagnostics: tuple[Message, ...],
     ) -> None:
         """Internal: use `compile` instead."""
@@ -56,7 +56,7 @@ class Program:
         self.diagnostics = diagnostics
         self._image = parsed_image
         self._profile = profile
-        self._map = places
+        self._map = program_map
 
     @property
     def robot(self) -> str:
@@ -99,7 +99,7 @@ def compile(
     if not isinstance(text, str):
         raise UsageError("bad_program", _check_language(language), {"found": type(text).__name__})
     _refuse_file_name(text, language)
-    return _program(text, robot, name, optimize, language)
+    return _compile_program(text, robot, name, optimize, language)
 
 
 def check(
@@ -110,8 +110,8 @@ def check(
     warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _check_language(language), {"found": type(text).__name__})
-    result = _compile_for(text, robot, "", language, is_strict=False)[0]
-    return diagnostics_of(result, language)
+    compilation = _compile_for(text, robot, "", language, is_strict=False)[0]
+    return diagnostics_of(compilation, language)
 
 
 def show(
@@ -132,13 +132,13 @@ def _refuse_file_name(text: str, language: Language) -> None:
         raise UsageError("file_name", _check_language(language), values)
 
 
-def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
+def _read_file(path: os.PathLike[str], language: Language) -> str | bytes:
     """Return the text of a program's file, or the bytes of an image. Raises UsageError."""
     try:
-        data = contents(Path(path), MOST_BYTES)
+        data = read_limited(Path(path), MOST_FILE_BYTES)
         return data if Path(path).suffix.lower() == ".bin" else data.decode("utf-8-sig")
-    except (OSError, ValueError) as why:
-        text = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+    except (OSError, ValueError) as error:
+        text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         values = {"path": printable(str(path), 200), "why": printable(text, 200)}
         raise UsageError("unreadable", _check_language(language), values) from None
 
@@ -154,16 +154,16 @@ def program_of(
     if isinstance(program, Program) and robot is None:
         return program
     if isinstance(program, os.PathLike):
-        program = _contents(program, language)
+        program = _read_file(program, language)
     if isinstance(program, str):
         _refuse_file_name(program, language)
-        return _program(program, robot, "", True, language)
+        return _compile_program(program, robot, "", True, language)
     if robot is None or isinstance(robot, str | os.PathLike):
         profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     else:
         profile = robot
     if isinstance(program, Program):
-        parsed_image = _read(program.image, profile, language)
+        parsed_image = _read_image(program.image, profile, language)
         return Program(program.text, program.image, parsed_image, profile, program._map,
                        program.diagnostics)  # fmt: skip
     if not isinstance(program, bytes | bytearray):
@@ -173,7 +173,7 @@ def program_of(
     data = bytes(program)
     if robot is None:
         profile = find_robot_for(_unpack(data, language), profile) or profile
-    parsed_image = _read(data, profile, language)
+    parsed_image = _read_image(data, profile, language)
     return Program(None, data, parsed_image, profile, source_map.recall(parsed_image.checksum), ())
 
 
@@ -184,40 +184,40 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
         raise UsageError("bad_robot", language, {"found": type(robot).__name__})
     try:
         return robots.load(os.fspath(robot))
-    except ProfileRefused as refused:
-        values = {"reasons": "\n".join(describe(refused, language))}
+    except ProfileRefused as error:
+        values = {"reasons": "\n".join(describe(error, language))}
         raise UsageError("profile_refused", language, values) from None
 
 
-def diagnostics_of(compilation: Compiled, language: Language) -> list[Message]:
+def diagnostics_of(compilation: Compilation, language: Language) -> list[Message]:
     return [
         message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
     ]
 
 
-def remarks(places: Map | None, language: Language) -> dict[int, str]:
+def remarks(program_map: SourceMap | None, language: Language) -> dict[int, str]:
     """Return the source line for each instruction that begins one, as remarks in a disassembly."""
-    result: dict[int, str] = {}
-    if places is None:
-        return result
-    for place in places.places:
-        line = places.line(place.line)
-        code_shown = line.strip()
-        if len(code_shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
-            end = place.end_column - 1 if place.end_line == place.line else len(line)
-            code_shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
-        values = {"line": str(place.line), "shown": printable(code_shown.replace("\t", " "))}
-        result[place.offset] = sentence("line", language, values)
-    return result
+    remark_by_offset: dict[int, str] = {}
+    if program_map is None:
+        return remark_by_offset
+    for location in program_map.locations:
+        line = program_map.line(location.line)
+        shown_text = line.strip()
+        if len(shown_text) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
+            end = location.end_column - 1 if location.end_line == location.line else len(line)
+            shown_text = line[location.column - 1 : end][:MOST_REMARK_CHARACTERS]
+        values = {"line": str(location.line), "shown": printable(shown_text.replace("\t", " "))}
+        remark_by_offset[location.offset] = sentence("line", language, values)
+    return remark_by_offset
 
 
 def _compile_for(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, language: Language,
     is_strict: bool = True, optimize: bool = True,
-) -> tuple[Compiled, Robot]:  # fmt: skip
+) -> tuple[Compilation, Robot]:  # fmt: skip
     """Return what becomes of a text for a robot; for None, for the one that it names, or the
     default one."""
-    data = _data(text)
+    data = _encode(text)
     if robot is None:
         profile = robot_of(data, profile_of(robots.DEFAULT, language))
     else:
@@ -226,7 +226,7 @@ def _compile_for(
     return compile_source(data, profile, name, is_strict, optimize, is_chosen=is_chosen), profile
 
 
-def _program(
+def _compile_program(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, optimize: bool,
     language: Language,
 ) -> Program:  # fmt: skip
@@ -241,17 +241,17 @@ def _program(
         error = ProgramError("mistakes", language, sentence_text="\n".join(texts))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.map_of_compiled(compilation)
+    program_map = source_map.map_of_compiled(compilation)
     return Program(
-        text, compilation.image, image_of(compilation, profile), profile, places, diagnostics
+        text, compilation.image, image_of(compilation, profile), profile, program_map, diagnostics
     )
 
 
-def _data(text: str) -> bytes:
+def _encode(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")  # a lone surrogate becomes a mistake
 
 
-def _read(data: bytes, profile: Robot, language: Language) -> Image:
+def _read_image(data: bytes, profile: Robot, language: Language) -> Image:
     """Return an image, verified for this robot. Raises ProgramError."""
     image = _unpack(data, language)
     try:
@@ -270,8 +270,8 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
 def _unpack(data: bytes, language: Language) -> Image:
     try:
         return unpack(data)
-    except ImageRefused as refused:
-        raise ProgramError(refused.name, _check_language(language)) from None
+    except ImageRefused as error:
+        raise ProgramError(error.name, _check_language(language)) from None
 
 
 def _check_language(language: Language) -> Language:

@@ -15,20 +15,20 @@ from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.robots.profile import Robot
 
 
-def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | None:
+def refusal(image: Image, profile: Robot, device_info: DeviceInfo) -> Reply[Any] | None:
     """Return why a robot may not run a program: another kit, or what it lacks. None: it may."""
     if lacks(image.needs, profile):
         return Reply(REFUSALS["UNKNOWN_NEEDS"][0])
-    if lacks_remote(image.code, profile.kit, robot):
+    if lacks_remote(image.code, profile.kit, device_info):
         return Reply(STATUSES["NO_REMOTE"])
-    if may_run(image, profile, robot.kit):
+    if may_run(image, profile, device_info.kit):
         return None
-    return Reply(STATUSES["WRONG_KIT"], robot.kit)
+    return Reply(STATUSES["WRONG_KIT"], device_info.kit)
 
 
-def lacks_remote(code: bytes, kit: Kit, robot: DeviceInfo) -> bool:
+def lacks_remote(code: bytes, kit: Kit, device_info: DeviceInfo) -> bool:
     """Return whether code for this kit reads a remote control, which the robot does not have."""
-    return reads_remote(code, kit) and not has_remote(robot)
+    return reads_remote(code, kit) and not has_remote(device_info)
 
 
 def reads_remote(code: bytes, kit: Kit) -> bool:

@@ -14,7 +14,7 @@ from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.library.errors import UsageError, sentence
 from tiniscript.library.programs import Language, Program, program_of
-from tiniscript.library.source_map import Map
+from tiniscript.library.source_map import SourceMap
 from tiniscript.robots.profile import Robot
 from tiniscript.vm.runner import MAX_STEPS, MachineOf
 from tiniscript.vm.runner import run as run_code
@@ -104,14 +104,14 @@ def run(
     if machine == "cpp":
         try:
             machine_of = cpp_machine(image, profile)
-        except (ImportError, OSError, RuntimeError) as why:
+        except (ImportError, OSError, RuntimeError) as error:
             from tiniscript.library import install_advice
 
             install_command = install_advice.command(install_advice.VIRTUAL)
             raise UsageError(
-                "no_wasmtime", language, {"why": str(why), "how": install_command}
+                "no_wasmtime", language, {"why": str(error), "how": install_command}
             ) from None
-    return _trace(
+    return _collect_trace(
         iter_actions(image, profile, reading_lists, max_ms, max_steps, seed, machine_of),
         profile.kit,
         ready_program._map,
@@ -145,17 +145,17 @@ def cpp_machine(image: Image, robot: Robot) -> MachineOf:
     data = pack(image.start, image.devices, image.code, image.later_fields, image.needs)
     try:
         return WasmImage(data, kit).machine
-    except (ImageRefused, Refused) as refused:
-        raise AssertionError(f"the C++ machine refuses what Python accepts: {refused}") from None
+    except (ImageRefused, Refused) as error:
+        raise AssertionError(f"the C++ machine refuses what Python accepts: {error}") from None
 
 
 def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int, list[int]]:
     """Return readings in thousandths, by sensor number. Raises UsageError."""
     devices = robot.kit.readings
-    numbers = {device.name: number for number, device in enumerate(devices) if device.name}
+    number_by_name = {device.name: number for number, device in enumerate(devices) if device.name}
     reading_lists: dict[int, list[int]] = {}
     for name, readings in sensors.items():
-        number = numbers.get(str(name).upper())
+        number = number_by_name.get(str(name).upper())
         if number is None:
             sensors_text = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
                 "no_sensors", language, {}
@@ -163,72 +163,68 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
             values = {"robot": robot.name, "found": printable(str(name), 60), "known": sensors_text}
             raise UsageError("no_sensor", language, values)
         reading_list = readings if isinstance(readings, Iterable) else [readings]
-        result = [] if isinstance(reading_list, str | bytes) else list(reading_list)
-        if not result:
+        reading_values = [] if isinstance(reading_list, str | bytes) else list(reading_list)
+        if not reading_values:
             raise UsageError("bad_readings", language, {"name": devices[number].name})
-        reading_lists[number] = [_reading(devices[number], item, language) for item in result]
+        reading_lists[number] = [
+            _convert_reading(devices[number], reading, language) for reading in reading_values
+        ]
     return reading_lists
 
 
-def fault_of(name: str, offset: int, places: Map | None) -> Fault:
+def fault_of(name: str, offset: int, program_map: SourceMap | None) -> Fault:
     """Return a fault with its place in the text, if that is known."""
-    place = places.at(offset) if places is not None else None
-    if place is None:
+    location = program_map.location_at(offset) if program_map is not None else None
+    if location is None:
         return Fault(name, offset, None, None)
-    return Fault(name, offset, place.line, place.column)
+    return Fault(name, offset, location.line, location.column)
 
 
-def _trace(events: Iterator[Event | Ending], kit: Kit, places: Map | None) -> Trace:
+def _collect_trace(
+    events: Iterator[Event | Ending], kit: Kit, program_map: SourceMap | None
+) -> Trace:
     trace_events: list[TraceEvent] = []
     for event in events:
         if not isinstance(event, Ending):
-            trace_events.append(_event(event, kit))
+            trace_events.append(_trace_event(event, kit))
             continue
-        fault = fault_of(event.fault, event.offset, places) if event.what == "FAULT" else None
-        return Trace(tuple(trace_events), event.what, fault, trace_events[-1].ms, event.steps)  # type: ignore[arg-type]
+        fault = fault_of(event.fault, event.offset, program_map) if event.kind == "FAULT" else None
+        return Trace(tuple(trace_events), event.kind, fault, trace_events[-1].ms, event.steps)  # type: ignore[arg-type]
     raise AssertionError("a run without an ending")
 
 
-def _event(event: Event, kit: Kit) -> TraceEvent:
-    numbers = event.values
+def _trace_event(event: Event, kit: Kit) -> TraceEvent:
+    event_values = event.values
     values: dict[str, Value] = {}
-    if event.what == "MOTORS":
-        values = {"left": numbers[0], "right": numbers[1]}
-    elif event.what == "BEEP":
-        values = {"hertz": numbers[0], "ms": numbers[1]}
-    elif event.what == "SHOW":
+    if event.kind == "MOTORS":
+        values = {"left": event_values[0], "right": event_values[1]}
+    elif event.kind == "BEEP":
+        values = {"hertz": event_values[0], "ms": event_values[1]}
+    elif event.kind == "SHOW":
         is_yes_no = event.text.endswith(("TRUE", "FALSE"))
-        values = {"value": value_of(numbers[0], is_yes_no)}
-    elif event.what in ("READ", "SET"):
+        values = {"value": value_of(event_values[0], is_yes_no)}
+    elif event.kind in ("READ", "SET"):
         device_kind, devices = {
             "READ": ("sensor", kit.readings),
             "SET": ("actuator", kit.actuators),
-        }[event.what]
-        device = devices[numbers[0]]
-        values = {device_kind: device.name, "value": value_of(numbers[1], device.is_yes_no)}
-    return TraceEvent(event.time_ms, event.what, values, event.text)
+        }[event.kind]
+        device = devices[event_values[0]]
+        values = {device_kind: device.name, "value": value_of(event_values[1], device.is_yes_no)}
+    return TraceEvent(event.time_ms, event.kind, values, event.text)
 
 
-def _reading(device: Device, given_value: object, language: Language) -> int:
+def _convert_reading(device: Device, reading: object, language: Language) -> int:
     value: int | None = None
     if device.is_yes_no:
-        value = (
-            int(given_value)
-            if given_value in (0, 1) and isinstance(given_value, int | float)
-            else None
-        )
-    elif (
-        isinstance(given_value, int | float)
-        and not isinstance(given_value, bool)
-        and abs(given_value) < 1e9
-    ):
-        value = round(given_value * 1000)
+        value = int(reading) if reading in (0, 1) and isinstance(reading, int | float) else None
+    elif isinstance(reading, int | float) and not isinstance(reading, bool) and abs(reading) < 1e9:
+        value = round(reading * 1000)
     if value is None or not device.low <= value <= device.high:
         low, high = device.text(device.low), device.text(device.high)
         key = "range_yes_no" if device.is_yes_no else "range"
         range_text = sentence(key, language, {"low": low, "high": high})
         values = {
-            "found": printable(repr(given_value), 60),
+            "found": printable(repr(reading), 60),
             "name": device.name,
             "range": range_text,
         }

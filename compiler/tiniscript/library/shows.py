@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.source import printable
 from tiniscript.library import source_map
-from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.library.source_map import MapLocation, SourceMap
 from tiniscript.link.outcomes import ShownEvent
 from tiniscript.syntax.formatter import instruction_text, pieces_of
 from tiniscript.syntax.lexer import scan
@@ -38,63 +38,69 @@ class Show(NamedTuple):
 class Shows:
     """The SHOWs of a program. The copies of a DEF, one for each task, have one."""
 
-    def __init__(self, places: Map) -> None:
-        self._places = places
-        expression_by_place = {place[1:]: expression_of(places, place) for place in places.places}
-        named_places = {place: text for place, text in expression_by_place.items() if text}
-        texts = Counter(named_places.values())
-        lines = Counter((text, place[0]) for place, text in named_places.items())
+    def __init__(self, program_map: SourceMap) -> None:
+        self._program_map = program_map
+        expression_by_location = {
+            location[1:]: expression_of(program_map, location) for location in program_map.locations
+        }
+        text_by_location = {
+            location: text for location, text in expression_by_location.items() if text
+        }
+        text_counts = Counter(text_by_location.values())
+        line_counts = Counter((text, location[0]) for location, text in text_by_location.items())
         self._shows = {
-            place: Show(text, *place[:2], texts[text] > 1, lines[text, place[0]] > 1)
-            for place, text in named_places.items()
+            location: Show(
+                text, *location[:2], text_counts[text] > 1, line_counts[text, location[0]] > 1
+            )
+            for location, text in text_by_location.items()
         }
 
-    def at(self, offset: int) -> Show | None:
+    def show_at(self, offset: int) -> Show | None:
         """Return the SHOW whose instruction is at `offset`, if it has a name."""
-        place = self._places.at(offset)
-        return None if place is None else self._shows.get(place[1:])
+        location = self._program_map.location_at(offset)
+        return None if location is None else self._shows.get(location[1:])
 
 
-class Finder:
+class ShowFinder:
     """Finds the SHOW of a value. `own_maps` has the maps of programs that are known here, by
     checksum; those of others are in the cache. A run keeps the text that its program had when it
     began, or when it was first heard of: another one may have the same code."""
 
-    def __init__(self, own_maps: Mapping[int, Map] | None = None) -> None:
-        self._own = {} if own_maps is None else own_maps
-        self._runs: dict[int, tuple[int, Map]] = {}  # its program, which comes round again
-        self._shows: tuple[Map, Shows] | None = None
+    def __init__(self, own_maps: Mapping[int, SourceMap] | None = None) -> None:
+        self._own_maps = {} if own_maps is None else own_maps
+        self._runs: dict[int, tuple[int, SourceMap]] = {}  # its program, which comes round again
+        self._shows: tuple[SourceMap, Shows] | None = None
 
     def begin(self, run: int, program: int) -> None:
         """Note that a run begins."""
         self._runs.pop(run, None)
         self.map_of(run, program)
 
-    def map_of(self, run: int, program: int) -> Map | None:
+    def map_of(self, run: int, program: int) -> SourceMap | None:
         """Return the map of a run's program."""
-        begin_ms, places = self._runs.get(run, (-1, None))
-        if begin_ms != program:
-            places = self._own.get(program) or source_map.recall(program)
-            if places is not None:
-                self._runs[run] = program, places
-        return places
+        known_program, program_map = self._runs.get(run, (-1, None))
+        if known_program != program:
+            program_map = self._own_maps.get(program) or source_map.recall(program)
+            if program_map is not None:
+                self._runs[run] = program, program_map
+        return program_map
 
     def show_of(self, event: ShownEvent) -> Show | None:
-        places = self.map_of(event.run, event.program) if event.at >= 0 else None
-        if places is None:
+        program_map = self.map_of(event.run, event.program) if event.at >= 0 else None
+        if program_map is None:
             return None
-        if self._shows is None or self._shows[0] is not places:
-            self._shows = places, Shows(places)
-        return self._shows[1].at(event.at)
+        if self._shows is None or self._shows[0] is not program_map:
+            self._shows = program_map, Shows(program_map)
+        return self._shows[1].show_at(event.at)
 
 
-def expression_of(places: Map, place: MapLocation) -> str:
+def expression_of(program_map: SourceMap, location: MapLocation) -> str:
     """Return the expression of a SHOW; nothing for another instruction, or for a plain number."""
-    lines = list(places.lines[place.line - 1 : place.end_line])
+    lines = list(program_map.lines[location.line - 1 : location.end_line])
     if not lines:
         return ""
-    lines[-1] = lines[-1][: place.end_column - 1]
-    lines[0] = lines[0][place.column - 1 :]
+    lines[-1] = lines[-1][: location.end_column - 1]
+    lines[0] = lines[0][location.column - 1 :]
     if not lines[0].upper().startswith("SHOW"):
         return ""
     pieces = pieces_of(scan("\n".join(lines)))

@@ -58,9 +58,9 @@ def virtual_robot(
     left, right = motors
     for motor in (left, right):
         checked_number("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
-    message = thousandths(sensors or {}, profile, language)
-    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=message)
-    simulated = Simulated(
+    reading_lists = thousandths(sensors or {}, profile, language)
+    settings = Settings(seed=seed, noise=noise, motors=(left, right), given_readings=reading_lists)
+    simulated = SimulatedRobot(
         _make_robot(profile, os.fspath(world), settings, language),
         0.0 if hurry == math.inf else hurry,
     )
@@ -70,7 +70,7 @@ def virtual_robot(
 class VirtualRobotConnection(RobotConnection):
     """A connection to a virtual robot, with its true position in the world."""
 
-    def __init__(self, simulated: Simulated, profile: Robot, language: Language) -> None:
+    def __init__(self, simulated: SimulatedRobot, profile: Robot, language: Language) -> None:
         """Internal: use `virtual_robot` instead."""
         self._simulated = simulated
         super().__init__(simulated.port, profile, True, None, language)
@@ -79,27 +79,27 @@ class VirtualRobotConnection(RobotConnection):
     def pose(self) -> tuple[float, float, float]:
         """The position, x and y in cm from the lower left corner of the floor, and the heading in
         degrees, 0 to the right and 90 up."""
-        x_cm, y_cm, heading = self._simulated.seen.pose
+        x_cm, y_cm, heading = self._simulated.drive_state.pose
         return x_cm, y_cm, heading
 
     @property
     def driven_cm(self) -> float:
         """The distance that it has driven, in cm."""
-        return self._simulated.seen.driven_cm
+        return self._simulated.drive_state.driven_cm
 
     @property
     def bumps(self) -> int:
         """The number of collisions."""
-        return self._simulated.seen.bumps
+        return self._simulated.drive_state.bumps
 
     def push_button(self) -> None:
         """Push and release its start button."""
         self._simulated.push()
 
-    def _part(self, holds_port: bool = False) -> None:
+    def _close_port(self, holds_port: bool = False) -> None:
         """Close it at once: nobody drives a virtual robot that has ended."""
         try:
-            super()._part()
+            super()._close_port()
         finally:
             self._simulated.close()
 
@@ -110,7 +110,7 @@ class DriveState(NamedTuple):
     bumps: int
 
 
-class Simulated(SimulatorThread):
+class SimulatedRobot(SimulatorThread):
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
         super().__init__(robot, VERB, hurry)
         self.on_turn()
@@ -119,18 +119,18 @@ class Simulated(SimulatorThread):
     def on_turn(self) -> None:
         self.robot.take_events()  # discarded: nothing draws them
         driving = self.robot.driving
-        self.seen = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
+        self.drive_state = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
 
 
 def _make_robot(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     try:
         return VirtualRobot(profile.with_language(language), worlds.load(world), settings)
-    except NoWebAssembly as why:
+    except NoWebAssembly as error:
         install_command = install_advice.command(install_advice.VIRTUAL)
         raise UsageError(
-            "no_wasmtime", language, {"why": str(why), "how": install_command}
+            "no_wasmtime", language, {"why": str(error), "how": install_command}
         ) from None
-    except WorldRefused as refused:
-        values = {"reasons": "\n".join(describe(refused, language))}
+    except WorldRefused as error:
+        values = {"reasons": "\n".join(describe(error, language))}
         raise UsageError("world_refused", language, values) from None

@@ -13,15 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.base import files
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.base.words import TASKS
 from tiniscript.bytecode import image as images
 
 if TYPE_CHECKING:
-    from tiniscript.library.compiling import Compiled
+    from tiniscript.library.compiling import Compilation
 
 VERSION = 1
-FILE_BYTES = 32_000_000
+MOST_FILE_BYTES = 32_000_000
 MOST_MAPS = 1000  # maps in the cache; the oldest go first
 
 
@@ -35,74 +35,83 @@ class MapLocation(NamedTuple):
     end_column: int
 
 
-class Map(NamedTuple):
+class SourceMap(NamedTuple):
     """`lines` are those of the program's text, without their ends; `variables` are names in the
-    order of their numbers, and `yes_no` says which of them are a yes/no: none where a map of an
-    earlier version was kept."""
+    order of their numbers, and `yes_no_flags` says which of them are a yes/no: none where a map of
+    an earlier version was kept."""
 
     name: str
     lines: tuple[str, ...]
-    places: tuple[MapLocation, ...]
+    locations: tuple[MapLocation, ...]
     variables: tuple[str, ...] = ()
-    yes_no: tuple[bool, ...] = ()
+    yes_no_flags: tuple[bool, ...] = ()
 
-    def at(self, offset: int) -> MapLocation | None:
+    def location_at(self, offset: int) -> MapLocation | None:
         """Return where the instruction at `offset` comes from."""
-        map_location = None
-        for place in self.places:
-            if place.offset > offset:
+        last_location = None
+        for location in self.locations:
+            if location.offset > offset:
                 break
-            map_location = place
-        return map_location
+            last_location = location
+        return last_location
 
-    def task_of(self, place: MapLocation) -> tuple[str, int] | None:
+    def task_of(self, location: MapLocation) -> tuple[str, int] | None:
         """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
 
         Returns None where there are no tasks, and in a DEF, which any of them may have called.
         """
-        blocks = [(self._word(location), location) for location in self.places]
+        blocks = [(self._word(block_location), block_location) for block_location in self.locations]
         if not any(word in TASKS for word, _ in blocks):
             return None
-        for word, map_location in blocks:
-            is_enclosing = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
+        for word, enclosing_location in blocks:
+            is_enclosing = (
+                enclosing_location[1:3] <= location[1:3] and location[3:] <= enclosing_location[3:]
+            )
             if is_enclosing and word in (*TASKS, "DEF"):
-                return None if word == "DEF" else (word, map_location.line)
+                return None if word == "DEF" else (word, enclosing_location.line)
         return "", 0
 
-    def _word(self, place: MapLocation) -> str:
-        rest = self.line(place.line)[place.column - 1 :]
-        return "".join(takewhile(lambda sign: sign.isalnum() or sign == "_", rest)).upper()
+    def _word(self, location: MapLocation) -> str:
+        text_after = self.line(location.line)[location.column - 1 :]
+        return "".join(
+            takewhile(lambda letter: letter.isalnum() or letter == "_", text_after)
+        ).upper()
 
-    def line(self, number: int) -> str:
-        return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
+    def line(self, line_number: int) -> str:
+        return self.lines[line_number - 1] if 1 <= line_number <= len(self.lines) else ""
 
 
-def map_of_compiled(compilation: Compiled) -> Map:
+def map_of_compiled(compilation: Compilation) -> SourceMap:
     """Return the map of a program that has just been compiled."""
     source = compilation.source
     map_locations = tuple(
         MapLocation(
-            place.offset, *source.position(place.span.start), *source.position(place.span.end)
+            location.offset,
+            *source.position(location.span.start),
+            *source.position(location.span.end),
         )
-        for place in compilation.places
+        for location in compilation.locations
     )
-    last = source.position(len(source.text))[0]
-    lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, map_locations, compilation.variables, compilation.yes_no)
+    last_line = source.position(len(source.text))[0]
+    lines = tuple(source.line_text(line) for line in range(1, last_line + 1))
+    return SourceMap(
+        source.name, lines, map_locations, compilation.variables, compilation.yes_no_flags
+    )
 
 
-def as_json(places: Map) -> str:
+def as_json(source_map: SourceMap) -> str:
     """Return a map as JSON: version, name, lines, places as lists of numbers, variables, and which
     of them are a yes/no.
 
     Importing json takes longer than writing this.
     """
-    lines = ", ".join(map(_c_string, places.lines))
-    numbers = ", ".join(f"[{', '.join(map(str, place))}]" for place in places.places)
-    yes_no = ", ".join("true" if item else "false" for item in places.yes_no)
+    lines = ", ".join(map(_json_string, source_map.lines))
+    numbers = ", ".join(f"[{', '.join(map(str, location))}]" for location in source_map.locations)
+    variables = ", ".join(map(_json_string, source_map.variables))
+    yes_no = ", ".join("true" if flag else "false" for flag in source_map.yes_no_flags)
     return (
-        f'{{"version": {VERSION}, "name": {_c_string(places.name)}, "lines": [{lines}],'
-        f' "places": [{numbers}], "variables": [{", ".join(map(_c_string, places.variables))}],'
+        f'{{"version": {VERSION}, "name": {_json_string(source_map.name)}, "lines": [{lines}],'
+        f' "places": [{numbers}], "variables": [{variables}],'
         f' "yes_no": [{yes_no}]}}'
     )
 
@@ -113,11 +122,11 @@ _ESCAPES |= {
 }
 
 
-def _c_string(text: str) -> str:
+def _json_string(text: str) -> str:
     return f'"{text.translate(_ESCAPES)}"'
 
 
-def from_json(text: str) -> Map:
+def from_json(text: str) -> SourceMap:
     """Return the map in a text. Raises ValueError if the text is not a map."""
     import json
 
@@ -125,27 +134,29 @@ def from_json(text: str) -> Map:
     try:
         if fields["version"] != VERSION:
             raise ValueError("another version")
-        places = tuple(MapLocation(*map(int, place)) for place in fields["places"])
+        locations = tuple(MapLocation(*map(int, location)) for location in fields["places"])
         lines, variables = tuple(map(str, fields["lines"])), fields.get("variables", [])
-        yes_no = tuple(map(bool, fields.get("yes_no", [])))
-        return Map(str(fields["name"]), lines, places, tuple(map(str, variables)), yes_no)
-    except (KeyError, TypeError, AttributeError) as wrong:
-        raise ValueError("no map") from wrong
+        yes_no_flags = tuple(map(bool, fields.get("yes_no", [])))
+        return SourceMap(
+            str(fields["name"]), lines, locations, tuple(map(str, variables)), yes_no_flags
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError("no map") from error
 
 
-def remember(image: bytes, places: Map) -> None:
+def remember(image: bytes, source_map: SourceMap) -> None:
     """Keep a map in the cache. If the cache cannot be written, the map is not kept."""
     path = _path(images.checksum(image))
-    if files.keep(path, as_json(places).encode(errors="backslashreplace")):
+    if files.keep(path, as_json(source_map).encode(errors="backslashreplace")):
         with suppress(OSError):
             _forget_oldest(path.parent)
 
 
-def recall(checksum: int) -> Map | None:
+def recall(checksum: int) -> SourceMap | None:
     """Return the map of the image with this checksum, if it is in the cache."""
     path = _path(checksum)
     try:
-        return from_json(contents(path, FILE_BYTES).decode("utf-8"))
+        return from_json(read_limited(path, MOST_FILE_BYTES).decode("utf-8"))
     except OSError:
         return None
     except (ValueError, OverflowError, RecursionError):
@@ -163,8 +174,8 @@ def _forget_oldest(folder: Path) -> None:
     files.remove_abandoned(folder, names)
     map_names = [name for name in names if name.endswith(".json")]
     if len(map_names) > MOST_MAPS:
-        result = sorted((_modification_s(folder / name), name) for name in map_names)
-        for _, name in result[: len(map_names) - MOST_MAPS]:
+        dated_names = sorted((_modification_s(folder / name), name) for name in map_names)
+        for _, name in dated_names[: len(map_names) - MOST_MAPS]:
             with suppress(OSError):
                 (folder / name).unlink()
 

@@ -20,36 +20,36 @@ from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
 
-def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
+def find_misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
     parsed_program = parse(source)
     tokens = list(spell_out(parsed_program.scan.tokens))
-    ends = ("end", "alias")  # what begins their block says it
-    lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
+    end_roles = ("end", "alias")  # what begins their block says it
+    lacking_words = {word for word in level.lacks if WORDS[word].role.name not in end_roles}
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
-        if token.kind is WORD and (token.text in lacked or len(token.text) > LONGEST_WORD)
+        if token.kind is WORD and (token.text in lacking_words or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
         diagnostics += _value_problems(program, kit, level)
-    plain = plain_code(program)
+    program_code = plain_code(program)
     limit = min(CODE_BYTES, level.room)
-    if plain.short_length > limit:
-        place = _first_span_beyond(plain, limit)
-        diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.short_length, limit))
+    if program_code.short_length > limit:
+        span = _first_span_beyond(program_code, limit)
+        diagnostics.append(
+            _too_many(codes.LEVEL_CODE, span, level, program_code.short_length, limit)
+        )
         return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
     if reader.extra_bracket_span is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
         diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.extra_bracket_span, values))
-    for need_of_bytes in reader.needs:
-        if need_of_bytes.byte_count > level.room:
+    for need in reader.needs:
+        if need.byte_count > level.room:
             diagnostics.append(
-                _too_many(
-                    codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most_bytes, level.room
-                )
+                _too_many(codes.LEVEL_ROOM, need.span, level, reader.most_bytes, level.room)
             )
             break
     return diagnostics
@@ -60,23 +60,27 @@ def _value_problems(program: Program, kit: Kit, level: Level) -> list[Diagnostic
     problems, yes_no = [], yes_no_variables(program, kit)
     for procedure, tasks in zip(program.procedures, count_tasks_by_def(program), strict=True):
         level_values = {"level": level.name, "name": procedure.name}
-        place = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        span = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):
-            problems.append(Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "yes_no": name}))
+            problems.append(Diagnostic(codes.LEVEL_VALUES, span, {**level_values, "yes_no": name}))
         if procedure.values and tasks > 1:
             problems.append(
-                Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "count": str(tasks)})
+                Diagnostic(codes.LEVEL_VALUES, span, {**level_values, "count": str(tasks)})
             )
     return problems
 
 
 def _first_span_beyond(code: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
-    ends = [*(place.offset for place in code.locations[1:]), code.short_length]
-    return next(place.span for place, end in zip(code.locations, ends, strict=True) if end > limit)
+    ends = [*(location.offset for location in code.locations[1:]), code.short_length]
+    return next(
+        location.span for location, end in zip(code.locations, ends, strict=True) if end > limit
+    )
 
 
-def _too_many(code: codes.Code, place: Span, level: Level, bytes_: int, limit: int) -> Diagnostic:
-    values = {"level": level.name, "code": str(bytes_), "limit": str(limit),
-              "over": str(bytes_ - limit)}  # fmt: skip
-    return Diagnostic(code, place, values)
+def _too_many(
+    code: codes.Code, span: Span, level: Level, byte_count: int, limit: int
+) -> Diagnostic:
+    values = {"level": level.name, "code": str(byte_count), "limit": str(limit),
+              "over": str(byte_count - limit)}  # fmt: skip
+    return Diagnostic(code, span, values)

@@ -60,7 +60,7 @@ class KeyFile(KeyRing):
     def all(self) -> list[RobotKey]:
         """Return all keys. Raises BadKeys where the file is none."""
         try:
-            data = files.contents(self.path, FILE_BYTES)
+            data = files.read_limited(self.path, FILE_BYTES)
         except FileNotFoundError:
             return []
         except OSError as failure:

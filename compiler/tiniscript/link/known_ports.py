@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.base import files
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.base.source import printable
 from tiniscript.link.port_names import canonical_port, is_address
 
@@ -29,7 +29,7 @@ class KnownPorts(NamedTuple):
 def remembered_ports() -> KnownPorts:
     """Return the remembered ports."""
     try:
-        fields = json.loads(contents(_path(), FILE_BYTES))
+        fields = json.loads(read_limited(_path(), FILE_BYTES))
         last = fields["last"]
         names = {str(port): printable(str(name)) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):

@@ -29,7 +29,7 @@ class MetRobots(NamedTuple):
 def read_met_robots(path: Path) -> MetRobots:
     """Return what is in the file."""
     try:
-        fields = json.loads(files.contents(path, FILE_BYTES))
+        fields = json.loads(files.read_limited(path, FILE_BYTES))
         places = {str(place): int(robot, 16) for place, robot in fields["places"].items()}
         return MetRobots(places, [int(robot, 16) for robot in fields["accepted"]])
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import (
+    EXTENTS,
     POWER,
     UNIT_OF,
-    WAYS,
     WORDS,
     Word,
     expand_short,
@@ -50,9 +50,9 @@ _SPACED_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
 _PERCENT_AT_END = re.compile(r"[ \t]*%$")
 _TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
-_UNIT_PATTERN = rf"(?P<unit>{'|'.join(WAYS)})"
+_UNIT_PATTERN = rf"(?P<unit>{'|'.join(EXTENTS)})"
 _UNIT_BEFORE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
-_STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
+_STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(EXTENTS)})")
 
 
 class _Call(NamedTuple):

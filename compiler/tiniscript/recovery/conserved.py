@@ -19,10 +19,10 @@ from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
+    EXTENTS,
     FUNCTIONS,
     MOVES,
     UNIT_OF,
-    WAYS,
     WORDS,
     lexicon,
 )
@@ -57,7 +57,7 @@ _COMPARISON_SENSES = {
     "=!": "<>", "≤": "<", "≥": ">", "≠": "<>",
 }  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
-_WAY_UNITS = tuple(way.unit for way in WAYS.values())
+_WAY_UNITS = tuple(way.unit for way in EXTENTS.values())
 _STORED_UNIT = "="  # of what a variable keeps that nothing reads: a move would take seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
@@ -650,7 +650,7 @@ class _Statement:
             len(token.text) == 1 and following.text in (",", ")") and previous.kind is WORD
         )
         is_only_unit = kinds == {"unit"} or (
-            "unit" in kinds and (ends_argument or token.text in WAYS)
+            "unit" in kinds and (ends_argument or token.text in EXTENTS)
         )
         is_unbound = not self.names.is_name(token.text) and following.kind is not NUMBER
         if not is_only_unit or not is_unbound or (len(token.text) == 1 and not ends_argument):
@@ -701,7 +701,7 @@ class _Statement:
         argument_texts = texts(self.tokens[k : brackets_end(self.tokens, k) or k])
         extent_word = UNIT_OF.get(word.text, "")
         if extent_word in argument_texts:
-            units[0] = WAYS[extent_word].unit
+            units[0] = EXTENTS[extent_word].unit
         return units
 
     def _units_of_names(self) -> dict[str, str]:

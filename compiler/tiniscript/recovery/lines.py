@@ -14,7 +14,7 @@ from typing import NamedTuple
 from unicodedata import category
 
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, lexicon_concept, lexicon_meaning
+from tiniscript.base.words import EXTENTS, FUNCTIONS, MOVES, WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
@@ -405,7 +405,7 @@ def _code_of_call(words: Sequence[Lexeme]) -> Code:
         return codes.NAMED_ARGUMENT
     argument_tokens = words[signs.index("(") :]
     if any(
-        lexicon_meaning(token.text, "unit") and token.text not in (*WAYS, "°", "º")
+        lexicon_meaning(token.text, "unit") and token.text not in (*EXTENTS, "°", "º")
         for token in argument_tokens
     ):
         return codes.UNIT

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.spelling import Speller, is_slip, nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, LexiconEntry, lexicon
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, WORDS, LexiconEntry, lexicon
 from tiniscript.base.words import lexicon_concept as lexicon_concept
 from tiniscript.base.words import lexicon_meaning as lexicon_meaning
 from tiniscript.syntax.blocks import ENDS
@@ -550,7 +550,7 @@ class Names:
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
-        is_glued = token.space == "" or token.text in WAYS
+        is_glued = token.space == "" or token.text in EXTENTS
         is_unit_position = (
             is_glued and token.text in WORDS and lexicon_meaning(token.text, "unit")
         )  # `5S`, `5 CM`
@@ -582,7 +582,7 @@ class Names:
         classes += ["@unit"] if "unit" in kinds and text not in WORDS and not is_own_name else []
         classes += ["@cross"] if text == "X" and not is_own_name else []
         if "unit" not in kinds and text not in WORDS and not is_own_name:
-            classes += [f"@like_{unit_word}" for unit_word in WAYS if is_slip(text, unit_word)]
+            classes += [f"@like_{unit_word}" for unit_word in EXTENTS if is_slip(text, unit_word)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.spelling import is_slip, nearest
-from tiniscript.base.words import MOVES, UNIT_OF, WAYS, lexicon_meaning
+from tiniscript.base.words import EXTENTS, MOVES, UNIT_OF, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
@@ -181,7 +181,7 @@ def _code_and_values(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     values = explanation.values_as(code)
     found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
     is_misspelling = nearest(found_word, [suggestion]) or (
-        suggestion in WAYS and is_slip(found_word, suggestion)
+        suggestion in EXTENTS and is_slip(found_word, suggestion)
     )
     if code is codes.OTHER_LANGUAGE and is_misspelling:
         code = codes.UNKNOWN_WORD
@@ -221,7 +221,7 @@ def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
     meaning = lexicon_meaning(plain(unit), "unit")
     return next(
-        (word for word, way_unit in WAYS.items() if meaning and way_unit.unit == meaning[0]), ""
+        (word for word, way_unit in EXTENTS.items() if meaning and way_unit.unit == meaning[0]), ""
     )
 
 

@@ -11,10 +11,10 @@ from math import nan
 from typing import NamedTuple
 
 from tiniscript.base.words import (
+    EXTENTS,
     MOVES,
     OPPOSITE_MOVES,
     UNIT_OF,
-    WAYS,
     WORDS,
     Argument,
     lexicon_meaning,
@@ -416,11 +416,11 @@ class _Reader:
             unit = value.unit
             is_scratch_steps = unit == "steps" and self.words[0].text not in WORDS
             if is_scratch_steps and extent_word == "CM" and value.number >= _LEAST_STEPS:
-                unit, self.is_sure = WAYS[extent_word].unit, False
+                unit, self.is_sure = EXTENTS[extent_word].unit, False
             if unit == "turns" and extent_word == "DEG":
-                unit, self.is_sure = WAYS[extent_word].unit, False
+                unit, self.is_sure = EXTENTS[extent_word].unit, False
                 value = _Value(number_text(value.number * FULL_TURN), unit)
-            if extent_word and unit == WAYS[extent_word].unit:
+            if extent_word and unit == EXTENTS[extent_word].unit:
                 if slots[0] is not None or any(value.unit is None for value in values[:k]):
                     return None
                 slots[0], slot_of_value[k], self.extent_word = value, 0, extent_word

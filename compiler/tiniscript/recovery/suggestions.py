@@ -15,7 +15,7 @@ from itertools import islice
 from typing import NamedTuple, Protocol
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Span, overlap
+from tiniscript.base.source import Edit, Span, edits_overlap
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import BLOCK_ENDS, OPPOSITE_MOVES, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
@@ -148,7 +148,9 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
                 suggestion = _suggestion_for(trailing)
                 if suggestion and not (
                     suggestions_of_line
-                    and overlap([suggestions_of_line[-1].blanking_edit], [suggestion.blanking_edit])
+                    and edits_overlap(
+                        [suggestions_of_line[-1].blanking_edit], [suggestion.blanking_edit]
+                    )
                 ):
                     suggestions_of_line.append(suggestion)
         suggestions += suggestions_of_line

@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
+from tiniscript.base.source import Edit, Source, Span, apply_edits, edits_overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
@@ -347,7 +347,7 @@ def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -
         ]  # words that nothing may drop
         repair = (
             Repair((), False)
-            if overlap(own_edits, blanking_edits)
+            if edits_overlap(own_edits, blanking_edits)
             else repair._replace(edits=own_edits)
         )
     return Diagnostic(

@@ -14,9 +14,9 @@ from typing import NamedTuple
 from tiniscript.base.source import Span
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import (
+    EXTENTS,
     MOVES,
     OPPOSITE_MOVES,
-    WAYS,
     WORDS,
     lexicon_concept,
     lexicon_meaning,
@@ -249,7 +249,7 @@ class Trailing:
 
     def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
-        meant = "" if word in WAYS else self.names.meant(word)
+        meant = "" if word in EXTENTS else self.names.meant(word)
         return WORD_OF_END.get(meant, meant)
 
     def number(self, k: int) -> str | None:

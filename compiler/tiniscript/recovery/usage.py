@@ -19,12 +19,12 @@ from tiniscript.base.spelling import nearest
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
+    CONDITION,
+    EXTENTS,
     MOVES,
     POWER,
-    QUESTION,
     UNIT_OF,
     VERSION_OF_WORD,
-    WAYS,
     WORDS,
     Argument,
     Word,
@@ -572,7 +572,7 @@ class Usage:
         argument = word.arguments[argument_index]
         unit = lexicon_meaning(found_word, "unit")
         extent_word = UNIT_OF.get(word.text, "")
-        is_extent = bool(extent_word) and unit == (WAYS[extent_word].unit, "1000")
+        is_extent = bool(extent_word) and unit == (EXTENTS[extent_word].unit, "1000")
         extent_text = f"{before[-1].text} {extent_word}" if is_extent else ""
         return (
             _WrongValue(
@@ -878,7 +878,7 @@ def _is_call_of(instruction: str, name: str) -> bool:
 def _usage(word: str) -> str:
     known_word = WORDS.get(ALIASES.get(word, word))
     is_asking = known_word is not None and [argument.name for argument in known_word.arguments] == [
-        QUESTION.name
+        CONDITION.name
     ]
     return (known_word.example if is_asking else known_word.usage) if known_word else word
 

@@ -13,7 +13,7 @@ from tiniscript.base.files import is_pipe
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 DEFAULT = "tinibot"
-FILE_BYTES = 64 * 1024
+MOST_FILE_BYTES = 64 * 1024
 
 
 def names() -> list[str]:
@@ -32,9 +32,9 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
     """
     from tiniscript.robots.shipped import ROBOTS
 
-    make = ROBOTS.get(name_or_path.lower())
-    if make is not None:
-        robot = make()
+    make_robot = ROBOTS.get(name_or_path.lower())
+    if make_robot is not None:
+        robot = make_robot()
         if chip in (None, robot.board.chip):
             return robot
         name_or_path = f"{__path__[0]}{os.sep}{robot.name}.toml"
@@ -71,14 +71,14 @@ def text_of(path: str, refusal_type: type[ProfileRefused] = ProfileRefused) -> s
         raise refusal_type(("file_unreadable", values))
     try:
         with Path(path).open("rb") as file:
-            result = file.read(FILE_BYTES + 1)
+            data = file.read(MOST_FILE_BYTES + 1)
     except FileNotFoundError:
         raise refusal_type(("file_missing", values)) from None
     except (OSError, ValueError):  # ValueError: the name is not valid for a file
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
         raise refusal_type((code, values)) from None
-    return decode_profile(result, path, refusal_type)
+    return decode_profile(data, path, refusal_type)
 
 
 def decode_profile(
@@ -88,8 +88,8 @@ def decode_profile(
     from tiniscript.robots.refusals import printable_value
 
     values = {"file": printable_value(name)}
-    if len(data) > FILE_BYTES:
-        limit = f"{FILE_BYTES // 1024} KB"
+    if len(data) > MOST_FILE_BYTES:
+        limit = f"{MOST_FILE_BYTES // 1024} KB"
         raise refusal_type(("file_too_large", {**values, "limit": limit}))
     try:
         return data.decode("utf-8-sig")

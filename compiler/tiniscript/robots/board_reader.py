@@ -20,8 +20,8 @@ from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table
 
 LONGEST_RUN_SECONDS = 3600
-TEN_MINUTES = 600
-NOTHING = Wiring("", {}, {})
+DEFAULT_RUN_SECONDS = 600
+NO_WIRING = Wiring("", {}, {})
 
 
 class PinUse(NamedTuple):
@@ -53,60 +53,62 @@ class Pins:
         is_motor: bool = False,
     ) -> int | None:
         """Return the number of the pin at `key`, or None if no usable pin is given."""
-        text = table.get(key, "" if is_optional else f"{key} = 5")
-        if text is None:
+        given_pin = table.get(key, "" if is_optional else f"{key} = 5")
+        if given_pin is None:
             return None
-        if type(text) not in (int, str):
-            table.expect("pin", key, text)
+        if type(given_pin) not in (int, str):
+            table.expect("pin", key, given_pin)
             return None
         chip = self._chip
         if chip is None:
             return None
-        pin = chip.pin_number(text)
+        pin = chip.pin_number(given_pin)
         if pin is None:
-            table.complain("no_such_pin", key, found=printable_value(text), chip=chip.name)
+            table.complain("no_such_pin", key, found=printable_value(given_pin), chip=chip.name)
             return None
-        texts = {"pin": chip.pin_name(pin), "chip": chip.name}
-        before = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
+        values = {"pin": chip.pin_name(pin), "chip": chip.name}
+        earlier_use = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
         if pin in chip.link_pins:
-            table.complain("pin_of_link", key, **texts)
-        elif ability == "count" and not chip.counting:
-            table.complain("no_discs", key, **texts)
+            table.complain("pin_of_link", key, **values)
+        elif ability == "count" and not chip.counting_pins:
+            table.complain("no_discs", key, **values)
         elif not chip.can(pin, ability):
             table.complain(
-                "pin_cannot", key, need=ability, **texts, choices=_choices(chip, ability)
+                "pin_cannot", key, need=ability, **values, choices=_choices(chip, ability)
             )
         elif is_motor and pin in chip.boot_pins:
             choices = _choices(chip, ability, without_pins=chip.boot_pins)
-            table.complain("pin_at_boot", key, **texts, choices=choices)
+            table.complain("pin_at_boot", key, **values, choices=choices)
         elif key == "start_button" and pin == chip.reset_pin:
             choices = _choices(chip, ability, without_pins=chip.boot_pins)
-            table.complain("pin_of_reset", key, **texts, choices=choices)
-        elif before is not None:
-            table.complain("pin_twice", key, **texts, first=before.table.path_of(before.key))
+            table.complain("pin_of_reset", key, **values, choices=choices)
+        elif earlier_use is not None:
+            table.complain(
+                "pin_twice", key, **values, first=earlier_use.table.path_of(earlier_use.key)
+            )
         else:
             self._pin_uses.append(PinUse(table, key, pin, ability))
         return pin
 
-    def take_fixed(self, table: Table, key: str, fixed: PinKey) -> int | None:
+    def take_fixed(self, table: Table, key: str, pin_key: PinKey) -> int | None:
         """Return the number of a pin that a shield decides, or None if it is not usable.
 
         `key` is what a complaint names: the profile does not say the pin.
         """
-        chip, pin = self._chip, fixed.fixed
+        chip, pin = self._chip, pin_key.fixed_number
         if chip is None or pin is None:
             return None
         if chip.first_analog is None:  # its pins are in other places
             if not any(code == "shield_of_uno" for code, _ in table.reasons):
                 table.complain("shield_of_uno", key, chip=chip.name)
             return None
-        before = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
-        if before is not None:
-            first = before.table.path_of(before.key)
+        earlier_use = next((pin_use for pin_use in self._pin_uses if pin_use.pin == pin), None)
+        if earlier_use is not None:
+            first_path = earlier_use.table.path_of(earlier_use.key)
             name = chip.pin_name(pin)
-            table.complain("shield_pin_twice", key, pin=name, name=fixed.name, first=first)
+            table.complain("shield_pin_twice", key, pin=name, name=pin_key.name, first=first_path)
         else:
-            self._pin_uses.append(PinUse(table, key, pin, fixed.ability, fixed.name))
+            self._pin_uses.append(PinUse(table, key, pin, pin_key.ability, pin_key.name))
         return pin
 
     def check_timers(self) -> None:
@@ -123,7 +125,7 @@ class Pins:
             if owner is None or timer is None:
                 continue
             for pin_use in self._pin_uses:
-                if pin_use.ability == "pwm" and self._chip.pwm[pin_use.pin] == timer:
+                if pin_use.ability == "pwm" and self._chip.timer_of_pwm_pin[pin_use.pin] == timer:
                     pin_use.table.complain(
                         "shield_timer_twice" if pin_use.shield else "timer_twice",
                         pin_use.key,
@@ -136,15 +138,15 @@ class Pins:
 
     def _check_frequencies(self, chip: Chip) -> None:
         """Complain about the first PWM pin for which no timer is left."""
-        pins = dict.fromkeys(FREQUENCIES, 0)
+        pin_counts = dict.fromkeys(FREQUENCIES, 0)
         for pin_use in self._pin_uses:
-            if pin_use.ability not in pins:
+            if pin_use.ability not in pin_counts:
                 continue
-            pins[pin_use.ability] += 1
-            if sum(map(timers_of, pins.values())) > chip.pwm_timers:
-                texts = {"pin": chip.pin_name(pin_use.pin), "chip": chip.name}
+            pin_counts[pin_use.ability] += 1
+            if sum(map(timers_of, pin_counts.values())) > chip.pwm_timers:
+                values = {"pin": chip.pin_name(pin_use.pin), "chip": chip.name}
                 timers = str(chip.pwm_timers)
-                pin_use.table.complain("timers_used_up", pin_use.key, **texts, timers=timers)
+                pin_use.table.complain("timers_used_up", pin_use.key, **values, timers=timers)
                 return
 
 
@@ -153,11 +155,11 @@ def _choices(
     without_pins: frozenset[int] = frozenset(),
 ) -> str:  # fmt: skip
     """Return the pins that can do `ability`, except those of the timers in `without_timers`."""
-    every = sorted((chip.digital | chip.reading | chip.analog) - without_pins)
+    all_pins = sorted((chip.digital_pins | chip.reading_pins | chip.analog_pins) - without_pins)
     fitting_pins = [
         pin
-        for pin in every
-        if chip.can(pin, ability) and chip.pwm.get(pin, -1) not in without_timers
+        for pin in all_pins
+        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in without_timers
     ]
     return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 
@@ -168,21 +170,23 @@ def read_board(table: Table, kit: Kit) -> Board:
     pins = Pins(chip)
     most_bytes = chip.program_bytes if chip else 0
     program_bytes = most_bytes
-    if table.has("program_bytes") and chip:
+    if table.check_for("program_bytes") and chip:
         program_bytes = table.whole_number("program_bytes", 1, most_bytes)
     baud = table.whole_number("baud", BAUDS[0], BAUDS[-1], "baud = 9600")
     if baud and baud not in BAUDS:
         bauds_text = ", ".join(map(str, BAUDS))
         table.complain("not_one_of", "baud", found=str(baud), choices=bauds_text)
-    max_run = table.whole_number("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
+    max_run = table.whole_number(
+        "max_run_seconds", 1, LONGEST_RUN_SECONDS, default=DEFAULT_RUN_SECONDS
+    )
     start_button = pins.take(table, "start_button", "pull_up")
     buzzer = pins.take(table, "buzzer", "tone", is_optional=True)
     status_led = pins.take(table, "status_led", "output", is_optional=True)
     bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
-    language = table.choice("language", languages()) if table.has("language") else ""
+    language = table.choice("language", languages()) if table.check_for("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
     discs = None
-    if table.has("discs"):
+    if table.check_for("discs"):
         discs = _read_wiring(table.table("discs"), "discs", pins)
     sensors = _read_devices(table, "sensors", kit.sensors, pins)
     actuators = _read_devices(table, "actuators", kit.actuators, pins)
@@ -209,16 +213,16 @@ def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str
     """Return the table `[key.NAME]` of each device that has one. The case of NAME is ignored."""
     group = table.table(key)
     device_names = tuple(device.name for device in devices if device.name)
-    result: dict[str, Table] = {}
-    for item in group.key_names():
-        name = item.upper()
+    table_by_name: dict[str, Table] = {}
+    for key_name in group.key_names():
+        name = key_name.upper()
         if name not in device_names:
-            group.complain_not_in_kit(item, device_names)
-        elif name in result:
-            group.complain("name_twice", item, found=name)
+            group.complain_not_in_kit(key_name, device_names)
+        elif name in table_by_name:
+            group.complain("name_twice", key_name, found=name)
         else:
-            result[name] = group.table(item)
-    return result
+            table_by_name[name] = group.table(key_name)
+    return table_by_name
 
 
 def _read_devices(
@@ -227,9 +231,9 @@ def _read_devices(
     tables = device_tables(table, key, devices)
     wirings = []
     for device in devices:
-        wired = tables.get(device.name)
-        if wired is not None:
-            wirings.append(_read_wiring(wired, f"{key} {device.kind}", pins))
+        device_table = tables.get(device.name)
+        if device_table is not None:
+            wirings.append(_read_wiring(device_table, f"{key} {device.kind}", pins))
         elif device.name:
             path = f"{key}.{device.name}"
             table.complain("missing", path, example=f"[{table.path}.{path}]")
@@ -238,25 +242,25 @@ def _read_devices(
 
 def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     """Return how one device is connected. A device of unknown kind fits no driver."""
-    fitting = drivers_for(used_by)
-    if not fitting:
-        return NOTHING
-    name = table.choice("driver", fitting)
+    driver_names = drivers_for(used_by)
+    if not driver_names:
+        return NO_WIRING
+    name = table.choice("driver", driver_names)
     if not name:
-        return NOTHING
+        return NO_WIRING
     driver = DRIVERS[used_by, name]
     known_keys = {setting.key for setting in driver.settings}
     is_actuator = used_by.startswith("actuators")
     if is_actuator and AT_STOP not in known_keys and AT_STOP in table.key_names():
-        table.has(AT_STOP)  # counted as known: one complaint is enough
+        table.check_for(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
     pin_of_key = {}
     for pin_key in driver.pins:
-        key, ability, is_optional, fixed, _ = pin_key
-        if fixed is not None:
-            chosen_by = driver.chosen_by(key, settings)
-            pin = pins.take_fixed(table, chosen_by, pin_key) if chosen_by else None
+        key, ability, is_optional, fixed_number, _ = pin_key
+        if fixed_number is not None:
+            choosing_key = driver.choosing_key(key, settings)
+            pin = pins.take_fixed(table, choosing_key, pin_key) if choosing_key else None
         else:
             has_pull_up = ability == "input" and settings.get("pull_up")
             ability = "pull_up" if has_pull_up else ability
@@ -270,9 +274,9 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
 def _read_setting(table: Table, setting: Setting) -> int:
     key, kind, default, low, high, _ = setting
     if kind == "choice":
-        text = table.choice(key, setting.words) if table.has(key) else ""
+        text = table.choice(key, setting.words) if table.check_for(key) else ""
         return setting.words.index(text) if text else default
     if kind == "yes/no":
         return int(table.yes_no(key, bool(default)))
-    read = table.number if kind == "number" else table.whole_number
-    return read(key, low, high, default=default)
+    read_number = table.number if kind == "number" else table.whole_number
+    return read_number(key, low, high, default=default)

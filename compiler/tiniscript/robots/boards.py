@@ -16,29 +16,31 @@ from tiniscript.robots.ports import AVRS
 class Chip(NamedTuple):
     """A board that the firmware runs on. Pins are numbers of its Arduino core.
 
-    `digital` pins read and write, `reading` pins only read. A0 has the number `first_analog`, if
-    the board prints such names. `pwm` maps each pin to its timer. The link uses `link_pins`.
-    `boot_pins` are high, or do PWM, before the firmware runs, or decide how the chip starts: no
-    motor may hang on them. `reset_pin` is the one that a computer may pull low when it opens the
-    port: no start button may.
-    A timer field is None if the chip has enough timers. Of `pwm_timers` each serves two pins of
-    one frequency; 0: the timers are those of `pwm`.
+    `digital_pins` pins read and write, `reading_pins` pins only read. A0 has the number
+    `first_analog`, if the board prints such names. `timer_of_pwm_pin` maps each pin to its timer.
+    The link uses `link_pins`. `boot_pins` are high, or do PWM, before the firmware runs, or decide
+    how the chip starts: no motor may hang on them. `reset_pin` is the one that a computer may pull
+    low when it opens the port: no start button may. A timer field is None if the chip has enough
+    timers. Of `pwm_timers` each serves two pins of one frequency; 0: the timers are those of
+    `timer_of_pwm_pin`.
     """
 
     name: str
     program_bytes: int
-    digital: frozenset[int]
-    analog: frozenset[int]
-    echo: frozenset[int]
-    pwm: Mapping[int, int]
+    digital_pins: frozenset[int]
+    analog_pins: frozenset[int]
+    echo_pins: frozenset[int]
+    timer_of_pwm_pin: Mapping[int, int]
     link_pins: frozenset[int]
-    reading: frozenset[int] = frozenset()
+    reading_pins: frozenset[int] = frozenset()
     first_analog: int | None = None
     servo_timer: int | None = None
     tone_timer: int | None = None
     boot_pins: frozenset[int] = frozenset()
     reset_pin: int | None = None
-    counting: frozenset[int] = frozenset()  # count the edges of a disc, by interrupts of their own
+    counting_pins: frozenset[int] = (
+        frozenset()
+    )  # count the edges of a disc, by interrupts of their own
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
     capabilities: int = 0  # what its firmware has of `needs` in an image
@@ -46,16 +48,16 @@ class Chip(NamedTuple):
     def can(self, pin: int, ability: str) -> bool:
         """Return whether `pin` has the ability `ability`, one of NEEDS."""
         if ability == "input":
-            return pin in self.digital or pin in self.reading
+            return pin in self.digital_pins or pin in self.reading_pins
         if ability == "analog":
-            return pin in self.analog
+            return pin in self.analog_pins
         if ability == "pwm":
-            return pin in self.pwm
+            return pin in self.timer_of_pwm_pin
         if ability == "echo":
-            return pin in self.echo
+            return pin in self.echo_pins
         if ability == "count":
-            return pin in self.counting
-        return pin in self.digital  # output, pull_up, servo, tone
+            return pin in self.counting_pins
+        return pin in self.digital_pins  # output, pull_up, servo, tone
 
     def pin_number(self, pin_text: object) -> int | None:
         """Return the number of `5` or `"A0"`, or None where the board has no such pin."""
@@ -64,13 +66,17 @@ class Chip(NamedTuple):
             letter, digits = pin_text[:1].upper(), pin_text[1:]
             if letter == "A" and digits in ANALOG_DIGITS:
                 number = self.first_analog + int(digits)
-        every = self.digital | self.reading | self.analog | self.link_pins
-        return number if number in every else None
+        all_pins = self.digital_pins | self.reading_pins | self.analog_pins | self.link_pins
+        return number if number in all_pins else None
 
     def pin_name(self, number: int) -> str:
         """Return the name that the board prints beside a pin: `5`, `A0`."""
-        first = self.first_analog
-        return str(number) if first is None or number < first else f"A{number - first}"
+        first_number = self.first_analog
+        return (
+            str(number)
+            if first_number is None or number < first_number
+            else f"A{number - first_number}"
+        )
 
 
 ANALOG_DIGITS = frozenset(str(number) for number in range(16))
@@ -104,15 +110,15 @@ def _avr(name: str, digital: range, analog: range, program_bytes: int, capabilit
     return Chip(
         name,
         program_bytes,
-        digital=_pins(digital),
-        analog=_pins(analog),
-        echo=frozenset(avr.interrupts),
-        pwm={pin: compare.timer for pin, compare in avr.compares.items()},
+        digital_pins=_pins(digital),
+        analog_pins=_pins(analog),
+        echo_pins=frozenset(avr.interrupts),
+        timer_of_pwm_pin={pin: compare.timer for pin, compare in avr.compares.items()},
         link_pins=_pins(0, 1),
         first_analog=analog[0],
         servo_timer=1,
         tone_timer=2,
-        counting=frozenset(avr.external),
+        counting_pins=frozenset(avr.external_interrupts),
         capabilities=capabilities,
     )
 
@@ -127,15 +133,15 @@ CHIPS = {
         Chip(
             "esp32dev",
             program_bytes=8192,
-            digital=_ESP32,
-            reading=_pins(34, 35, 36, 39),
-            analog=_pins(32, 33, 34, 35, 36, 39),
-            echo=_ESP32 | _pins(34, 35, 36, 39),
-            pwm=dict.fromkeys(sorted(_ESP32), 0),
+            digital_pins=_ESP32,
+            reading_pins=_pins(34, 35, 36, 39),
+            analog_pins=_pins(32, 33, 34, 35, 36, 39),
+            echo_pins=_ESP32 | _pins(34, 35, 36, 39),
+            timer_of_pwm_pin=dict.fromkeys(sorted(_ESP32), 0),
             link_pins=_pins(1, 3),
             boot_pins=_pins(0, 5, 12, 14, 15),
             reset_pin=0,
-            counting=_ESP32 | _pins(34, 35, 36, 39),
+            counting_pins=_ESP32 | _pins(34, 35, 36, 39),
             pwm_timers=8,
             pin_volts=3_300,
             capabilities=_TASKS | _WAYS,
@@ -143,10 +149,10 @@ CHIPS = {
         Chip(
             "esp32c3",
             program_bytes=8192,
-            digital=_ESP32C3,
-            analog=_pins(range(5)),
-            echo=_ESP32C3,
-            pwm=dict.fromkeys(sorted(_ESP32C3), 0),
+            digital_pins=_ESP32C3,
+            analog_pins=_pins(range(5)),
+            echo_pins=_ESP32C3,
+            timer_of_pwm_pin=dict.fromkeys(sorted(_ESP32C3), 0),
             link_pins=_pins(18, 19, 20, 21),
             boot_pins=_pins(2, 6, 8, 9),
             reset_pin=9,

@@ -19,9 +19,9 @@ from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot, Wiring
 
 SIDES = ("left", "right")
-WAYS = ("forward", "backward")
+DIRECTIONS = ("forward", "backward")
 AT_STOP = "at_stop"  # what a stop does with a servo; it turns other actuators off
-HOLD = 1
+HOLD_CHOICE = 1
 FULL_COUNT = 1023  # reading of the A/D converter at the highest voltage
 
 # Rails: all that is joined to one of them is joined together.
@@ -31,7 +31,8 @@ FIVE_VOLTS = 5 * ONE
 
 
 class PinKey(NamedTuple):
-    """A pin of a driver. `fixed` is its number where a shield decides it, and no profile says it.
+    """A pin of a driver. `fixed_number` is its number where a shield decides it, and no profile
+    says it.
 
     A fixed pin is told to people as `name`: what the shield prints beside it.
     """
@@ -39,7 +40,7 @@ class PinKey(NamedTuple):
     key: str
     ability: str
     is_optional: bool = False
-    fixed: int | None = None
+    fixed_number: int | None = None
     name: str = ""
 
 
@@ -61,42 +62,43 @@ class Terminal(NamedTuple):
     """A terminal of a part: what is printed on it, a rail, or a key of `wiring.texts`.
 
     It goes to the pin that `pin_key` of the profile names, or to a rail, or it stays free.
-    Between the pin and the terminal may be a resistor `series`, then one `to_ground`, then one
-    `beyond`.
+    Between the pin and the terminal may be a resistor `series_resistor`, then one
+    `ground_resistor`, then one `far_resistor`.
     """
 
     name: str
     pin_key: str = ""
     rail: str = ""
-    series: str = ""
-    to_ground: str = ""
-    beyond: str = ""
+    series_resistor: str = ""
+    ground_resistor: str = ""
+    far_resistor: str = ""
 
 
 class Shape(NamedTuple):
     """What a part is: its icon, the key of what to buy, its terminals from top to bottom.
 
-    `need_key` is empty where resistors are all. `model` is printed in its title. `motors` are the
-    terminals of the left and the right motor; `notes` are keys of what to mind, `checks` of what
-    to look at before switching on. `power` is the key of which battery suits it.
+    `need_key` is empty where resistors are all. `model` is printed in its title. `motor_terminals`
+    are the terminals of the left and the right motor; `note_keys` are keys of what to mind,
+    `check_keys` of what to look at before switching on. `power_key` is the key of which battery
+    suits it.
     """
 
     icon: str
     need_key: str
     terminals: tuple[Terminal, ...]
     model: str = ""
-    motors: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    checks: tuple[str, ...] = ()
-    power: str = ""
+    motor_terminals: tuple[str, ...] = ()
+    note_keys: tuple[str, ...] = ()
+    check_keys: tuple[str, ...] = ()
+    power_key: str = ""
     needs_5v: bool = False
 
 
 class PinTexts(Protocol):
     """The pins of one robot; each text stands for an object of C++."""
 
-    vectors: list[str]  # names of interrupts, for the handlers
-    counters: list[str]  # and those of discs, left and right
+    interrupt_vectors: list[str]  # names of interrupts, for the handlers
+    counter_vectors: list[str]  # and those of discs, left and right
 
     def pin(self, pin: int | None) -> str: ...
 
@@ -111,17 +113,17 @@ class PinTexts(Protocol):
     def count(self, pin: int) -> str: ...
 
 
-class Part:
+class HeaderPart:
     """What drivers add to the header of a robot, for one chip."""
 
     def __init__(self, robot: Robot, pins: PinTexts) -> None:
         self.robot = robot
         self.pins = pins
-        self.servos: list[int] = []
-        self.ultrasonics: list[str] = []
-        self.analogs = 0  # channels up to the last one that is read
-        self.off: list[str] = []  # lines that a stop runs for actuators
-        self.begin: list[str] = []
+        self.servo_pins: list[int] = []
+        self.ultrasonic_texts: list[str] = []
+        self.analog_count = 0  # channels up to the last one that is read
+        self.off_lines: list[str] = []  # lines that a stop runs for actuators
+        self.begin_lines: list[str] = []
 
     @property
     def is_esp32(self) -> bool:
@@ -130,33 +132,35 @@ class Part:
     def analog_read(self, wiring: Wiring) -> str:
         """Return the line that puts what the converter counts into `*value`."""
         channel = wiring.pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
-        self.analogs = max(self.analogs, channel + 1)
+        self.analog_count = max(self.analog_count, channel + 1)
         return f"      if (!analog_read({channel}, value)) return false;"
 
     @staticmethod
-    def part_of_range(device: Device, first: int, last: int) -> str:
-        """Return `value` as the part of `first` to `last` that it is of an actuator's range."""
-        return f"part_of_range(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
+    def part_of_range(device: Device, start_value: int, end_value: int) -> str:
+        """Return `value` as the part of `start_value` to `end_value` that it is of an actuator's
+        range."""
+        low, high = device.low // ONE, device.high // ONE
+        return f"part_of_range(value, {low}, {high}, {start_value}, {end_value})"
 
 
-class Plan:
+class DriverPlan:
     """What drivers add to a sketch: lines, in which `$words` stand for names."""
 
     def __init__(self, robot: Robot, is_exact: bool) -> None:
         self.robot = robot
         self.is_exact = is_exact
-        self.constants: list[str] = []  # pins, and comments
-        self.begin: list[str] = []
-        self.off: list[str] = []  # what a stop turns off besides the motors
+        self.constant_lines: list[str] = []  # pins, and comments
+        self.begin_lines: list[str] = []
+        self.off_lines: list[str] = []  # what a stop turns off besides the motors
         self.servo_pins: list[str] = []
 
     def pin(self, name: str, number: int, mode: str = "", comment: str = "") -> str:
         """Add a pin, and return what it is called."""
-        note = f"  // {comment}" if comment else ""
+        comment_text = f"  // {comment}" if comment else ""
         text = CHIPS[self.robot.board.chip].pin_name(number)
-        self.constants.append(f"const int {name} = {text};{note}")
+        self.constant_lines.append(f"const int {name} = {text};{comment_text}")
         if mode:
-            self.begin.append(f"pinMode({name}, {mode});")
+            self.begin_lines.append(f"pinMode({name}, {mode});")
         return name
 
     def servo(self, pin: str) -> int:
@@ -167,34 +171,38 @@ class Plan:
         return f"$exactly({thousandths})" if self.is_exact else f"({thousandths}) / 1000.0"
 
     @staticmethod
-    def part_of(device: Device, first: int, last: int) -> str:
-        """Return `value` as the part of `first` to `last` that it is of an actuator's range."""
-        return f"$part_of(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
+    def part_of(device: Device, start_value: int, end_value: int) -> str:
+        """Return `value` as the part of `start_value` to `end_value` that it is of an actuator's
+        range."""
+        low, high = device.low // ONE, device.high // ONE
+        return f"$part_of(value, {low}, {high}, {start_value}, {end_value})"
 
 
 class Driver(ABC):
     """`used_by` is the table of [board] and the kind of the device: `sensors number`.
 
-    `profile` says to who writes a profile which keys it has: `tinibot.toml` lists it.
+    `profile_help` says to who writes a profile which keys it has: `tinibot.toml` lists it.
 
-    `looks` is its shape, where that is always the same; the catalogue `wiring` has the sentences by
-    the keys that its shape has.
+    `fixed_shape` is its shape, where that is always the same; the catalogue `wiring` has the
+    sentences by the keys that its shape has.
     """
 
     name: ClassVar[str]
     used_by: ClassVar[str]
-    profile: ClassVar[str]
+    profile_help: ClassVar[str]
     pins: ClassVar[tuple[PinKey, ...]]
     settings: ClassVar[tuple[Setting, ...]] = ()
-    looks: ClassVar[Shape]
+    fixed_shape: ClassVar[Shape]
 
-    def chosen_by(self, key: str, settings: Mapping[str, int]) -> str:
+    def choosing_key(self, key: str, settings: Mapping[str, int]) -> str:
         """Return the key of the profile that makes it take a fixed pin, or nothing: it does not."""
         return "driver"
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
-        """Return what it looks like; a sensor `sensed` what its place in the robot's body says."""
-        return self.looks
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
+        """Return what it looks like; `sensed_kind` is what the place in the robot's body says."""
+        return self.fixed_shape
 
 
 class MotorDriver(Driver):
@@ -205,16 +213,17 @@ class MotorDriver(Driver):
     drive: ClassVar[str]
 
     @abstractmethod
-    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         """Return the constants of both motors in the robot's header."""
 
     @abstractmethod
-    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         """Return the lines of a sketch that drive both motors, by `left` and `right`."""
 
 
 class DiscDriver(Driver):
-    """A slotted disc on each wheel, whose edges are counted. `has_two`: channels, and a direction.
+    """A slotted disc on each wheel, whose edges are counted. `has_two_channels`: channels, and a
+    direction.
 
     The wheels are as far apart as the robot's body says.
     """
@@ -225,27 +234,31 @@ class DiscDriver(Driver):
         Setting("holes", "whole", 20, 8, 60),
         Setting("wheel_cm", "number", 6_500, 3 * ONE, 30 * ONE),  # the diameter
     )
-    has_two: ClassVar[bool] = False
+    has_two_channels: ClassVar[bool] = False
 
     def edges(self, wiring: Wiring, wheel_base_cm: float) -> tuple[int, int]:
         """Return what a wheel goes from edge to edge, and the robot turns: 64ths of thousandths."""
-        of_wheel = math.pi * wiring.settings["wheel_cm"] / (2 * wiring.settings["holes"]) * 64
-        return round(of_wheel), round(of_wheel * 360 / (math.pi * wheel_base_cm))
+        wheel_step = math.pi * wiring.settings["wheel_cm"] / (2 * wiring.settings["holes"]) * 64
+        return round(wheel_step), round(wheel_step * 360 / (math.pi * wheel_base_cm))
 
-    def firmware(self, part: Part, wiring: Wiring, wheel_base_cm: float) -> list[str]:
+    def firmware(self, part: HeaderPart, wiring: Wiring, wheel_base_cm: float) -> list[str]:
         """Return the constants of both discs in the robot's header."""
         cm, degrees = self.edges(wiring, wheel_base_cm)
-        lines = [f"constexpr Discs kDiscs = {{{cm}, {degrees}, {str(self.has_two).lower()}}};"]
+        lines = [
+            f"constexpr Discs kDiscs = {{{cm}, {degrees}, {str(self.has_two_channels).lower()}}};"
+        ]
         for side in SIDES:
-            second = part.pins.pin(wiring.pins.get(f"{side}_b"))
-            count = part.pins.count(wiring.pins[side])
-            lines.append(f"constexpr Disc k{side.capitalize()}Disc = {{{count}, {second}}};")
+            second_pin = part.pins.pin(wiring.pins.get(f"{side}_b"))
+            count_pin = part.pins.count(wiring.pins[side])
+            lines.append(
+                f"constexpr Disc k{side.capitalize()}Disc = {{{count_pin}, {second_pin}}};"
+            )
         return lines
 
 
 class SensorDriver(Driver):
     @abstractmethod
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         """Return the lines that put a reading into `*value` and return whether there was one.
 
         Of a number `*value` has thousandths, in between also what the converter counts.
@@ -253,7 +266,7 @@ class SensorDriver(Driver):
 
     @abstractmethod
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         """Return the lines of a sketch that put a reading into `name`."""
 
@@ -264,12 +277,12 @@ class SensorDriver(Driver):
 
 class ActuatorDriver(Driver):
     @abstractmethod
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         """Return the lines that set it to `value`."""
 
     @abstractmethod
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         """Return the function of a sketch that sets it."""
 
@@ -277,55 +290,58 @@ class ActuatorDriver(Driver):
 # -- what several drivers share
 
 
-def in_limits(device: Device, low: int, high: int) -> list[str]:
+def limit_lines(device: Device, low: int, high: int) -> list[str]:
     """Return the line that keeps values from `low` to `high` in the device's range."""
     if device.low <= low and high <= device.high:
         return []
     return [f"      *value = in_limits(*value, {device.low}, {device.high});"]
 
 
-def module(output: str, need_key: str, *notes: str) -> Shape:
+def module_shape(output: str, need_key: str, *notes: str) -> Shape:
     """Return the shape of a sensor on a small board with three pins."""
     terminals = (
         Terminal("VCC", rail=BOARD_5V),
         Terminal(output, "pin"),
         Terminal("GND", rail=GROUND),
     )
-    return Shape("module", need_key, terminals, notes=notes)
+    return Shape("module", need_key, terminals, note_keys=notes)
 
 
-def photoresistor() -> Shape:
-    terminals = (Terminal("leg_1", rail=BOARD_5V), Terminal("leg_2", "pin", to_ground=PULL_DOWN))
-    return Shape("light", "need_light", terminals, notes=("mind_light",))
+def photoresistor_shape() -> Shape:
+    terminals = (
+        Terminal("leg_1", rail=BOARD_5V),
+        Terminal("leg_2", "pin", ground_resistor=PULL_DOWN),
+    )
+    return Shape("light", "need_light", terminals, note_keys=("mind_light",))
 
 
-def switch() -> Shape:
+def switch_shape() -> Shape:
     return Shape(
         "switch", "need_switch", (Terminal("leg_1", "pin"), Terminal("leg_2", rail=GROUND))
     )
 
 
-def lamp(is_on_low: bool) -> Shape:
+def lamp_shape(is_on_low: bool) -> Shape:
     """Return the shape of an LED, which shines while its pin is high, or low."""
     if is_on_low:
         terminals = (
             Terminal("long_leg", rail=BOARD_5V),
-            Terminal("short_leg", "pin", series="220 Ω"),
+            Terminal("short_leg", "pin", series_resistor="220 Ω"),
         )
     else:
         terminals = (
-            Terminal("long_leg", "pin", series="220 Ω"),
+            Terminal("long_leg", "pin", series_resistor="220 Ω"),
             Terminal("short_leg", rail=GROUND),
         )
-    return Shape("lamp", "need_lamp", terminals, notes=("mind_lamp",))
+    return Shape("lamp", "need_lamp", terminals, note_keys=("mind_lamp",))
 
 
 class Bridge(MotorDriver):
     """A chip that takes PWM and two directions for each motor."""
 
     module = "motors_bridge"
-    profile = "left_pwm, left_forward, left_backward and the same for right"
-    keys: ClassVar[tuple[str, ...]] = ("pwm", *WAYS)  # of each side
+    profile_help = "left_pwm, left_forward, left_backward and the same for right"
+    keys: ClassVar[tuple[str, ...]] = ("pwm", *DIRECTIONS)  # of each side
     pins = tuple(
         PinKey(f"{side}_{key}", need)
         for side in SIDES
@@ -338,26 +354,28 @@ void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
   analogWrite(pwmPin, abs(percent) * 255L / 100);
 }"""
 
-    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         lines = []
         for side in SIDES:
             pwm = part.pins.pwm(wiring.pins[f"{side}_pwm"])
-            forward, backward = (part.pins.pin(wiring.pins.get(f"{side}_{way}")) for way in WAYS)
+            forward, backward = (
+                part.pins.pin(wiring.pins.get(f"{side}_{direction}")) for direction in DIRECTIONS
+            )
             lines.append(f"constexpr Bridge k{side.capitalize()}Motor =")
             lines.append(f"    {{{pwm}, {forward}, {backward}}};")
         standby = part.pins.pin(wiring.pins.get("standby"))
         return [*lines, f"constexpr Pin kStandby = {standby};"]
 
-    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
-        lines = [driven_line(plan, wiring, side, self.keys) for side in SIDES]
+    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+        lines = [motor_line(plan, wiring, side, self.keys) for side in SIDES]
         if "standby" in wiring.pins:
             plan.pin("$STANDBY_$PIN", wiring.pins["standby"], "OUTPUT")
-            is_on = "left != 0 || right != 0 ? HIGH : LOW"
-            lines.insert(0, f"  digitalWrite($STANDBY_$PIN, {is_on});")
+            standby_level = "left != 0 || right != 0 ? HIGH : LOW"
+            lines.insert(0, f"  digitalWrite($STANDBY_$PIN, {standby_level});")
         return lines
 
 
-def driven_line(plan: Plan, wiring: Wiring, side: str, keys: tuple[str, ...]) -> str:
+def motor_line(plan: DriverPlan, wiring: Wiring, side: str, keys: tuple[str, ...]) -> str:
     """Return the line of a sketch that drives one motor by pins with these keys."""
     names = [
         plan.pin(f"${side.upper()}_${key.upper()}_$PIN", wiring.pins[f"{side}_{key}"], "OUTPUT")

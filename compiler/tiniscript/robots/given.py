@@ -15,8 +15,8 @@ from tiniscript import robots
 from tiniscript.base import files
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-KEPT = 20  # profiles; the oldest go first
-FILE_BYTES = 200_000
+MOST_PROFILES = 20  # profiles; the oldest go first
+MOST_FILE_BYTES = 200_000
 
 
 def remember(path: str, kit: int) -> None:
@@ -34,7 +34,7 @@ def remember(path: str, kit: int) -> None:
                     for remembered_profile in _remembered_profiles()
                     if remembered_profile != entry
                 ),
-            ][:KEPT]
+            ][:MOST_PROFILES]
             files.keep(_path(), json.dumps(paths).encode())
 
 
@@ -45,18 +45,18 @@ def recall(kit: int) -> Robot | None:
 
 def profiles() -> list[tuple[str, Robot]]:
     """Return the profiles that still exist, with their paths, the newest first."""
-    result: list[tuple[str, Robot]] = []
+    found_profiles: list[tuple[str, Robot]] = []
     for kit, path in _remembered_profiles():
         with contextlib.suppress(ProfileRefused):
             robot = robots.load(path)
             if robot.kit.fingerprint == kit:
-                result.append((path, robot))
-    return result
+                found_profiles.append((path, robot))
+    return found_profiles
 
 
 def _remembered_profiles() -> list[tuple[int, str]]:
     try:
-        entries = json.loads(files.contents(_path(), FILE_BYTES))
+        entries = json.loads(files.read_limited(_path(), MOST_FILE_BYTES))
         return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]
     except (OSError, ValueError, TypeError, RecursionError):
         return []

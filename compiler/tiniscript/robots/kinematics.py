@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tiniscript.robots.profile import Body
 
-STEP = 5.0  # degrees of an arc between two points; a straight line between them is 0.1 % off
+ARC_STEP = 5.0  # degrees of an arc between two points; a straight line between them is 0.1 % off
 
 
 class Pose(NamedTuple):
@@ -39,10 +39,10 @@ def move_pose(body: Body, pose: Pose, left: float, right: float, duration_ms: fl
     half = math.radians(turn / 2)
     # the chord of an arc points halfway between the headings at its ends
     chord_cm = (left_cm + right_cm) / 2 * (math.sin(half) / half if half else 1.0)
-    along = math.radians(pose.heading) + half
+    direction = math.radians(pose.heading) + half
     return Pose(
-        pose.x_cm + chord_cm * math.cos(along),
-        pose.y_cm + chord_cm * math.sin(along),
+        pose.x_cm + chord_cm * math.cos(direction),
+        pose.y_cm + chord_cm * math.sin(direction),
         pose.heading + turn,
     )
 
@@ -57,9 +57,9 @@ def points(body: Body, pose: Pose, left: float, right: float, duration_ms: float
     turn = abs(end.heading - pose.heading)
     if turn == 0 or left == -right:
         return [end]
-    drawn = turn if turn <= 360 else 360 + turn % 360
-    steps = math.ceil(drawn / STEP)
-    step_ms = duration_ms * drawn / turn / steps
+    drawn_turn = turn if turn <= 360 else 360 + turn % 360
+    steps = math.ceil(drawn_turn / ARC_STEP)
+    step_ms = duration_ms * drawn_turn / turn / steps
     return [*(move_pose(body, pose, left, right, step_ms * k) for k in range(1, steps)), end]
 
 
@@ -70,33 +70,33 @@ class Way:
         self.body = body
         self.left = self.right = 0  # the current setting, in percent,
         self.since_ms: float = 0  # since when,
-        self.begun = pose  # and the pose at that time
+        self.start_pose = pose  # and the pose at that time
         self.corners = [pose]  # points of the path so far, joined by straight lines
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         if (left, right) == (self.left, self.right):
             return
         self.corners += self.points_ahead(now_ms)
-        self.begun, self.since_ms = self.pose(now_ms), now_ms
+        self.start_pose, self.since_ms = self.pose(now_ms), now_ms
         self.left, self.right = left, right
 
     def pose(self, now_ms: float) -> Pose:
         """Return the pose at a time that is not before the last setting."""
-        return move_pose(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
+        return move_pose(self.body, self.start_pose, self.left, self.right, now_ms - self.since_ms)
 
     def points_ahead(self, now_ms: float) -> list[Pose]:
         """Return the points of the path since the last corner; none if the robot has not moved."""
         if self.left == -self.right:
             return []
-        return points(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
+        return points(self.body, self.start_pose, self.left, self.right, now_ms - self.since_ms)
 
     def thin_out(self, most_corners: int) -> None:
         """Drop corners too close to tell apart in a picture; if too many remain, the oldest."""
         across_cm = max(
             max(values) - min(values) for values in list(zip(*self.corners, strict=True))[:2]
         )
-        corners_kept = self.corners[:1]
+        kept_corners = self.corners[:1]
         for corner in self.corners[1:-1]:
-            if math.dist(corner[:2], corners_kept[-1][:2]) > across_cm / 500:
-                corners_kept.append(corner)
-        self.corners = [*corners_kept, self.corners[-1]][-most_corners:]
+            if math.dist(corner[:2], kept_corners[-1][:2]) > across_cm / 500:
+                kept_corners.append(corner)
+        self.corners = [*kept_corners, self.corners[-1]][-most_corners:]

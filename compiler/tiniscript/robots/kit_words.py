@@ -51,4 +51,4 @@ def pack_word(word: str) -> bytes:
 
 def pack_range(low: int, high: int) -> bytes:
     """Return the least and the largest plain number that an argument may be."""
-    return b"".join(item.to_bytes(4, "little", signed=True) for item in (low, high))
+    return b"".join(value.to_bytes(4, "little", signed=True) for value in (low, high))

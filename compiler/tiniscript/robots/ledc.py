@@ -12,7 +12,7 @@ from itertools import chain
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Board, Wiring
 
-PER_TIMER = 2  # channels
+CHANNELS_PER_TIMER = 2  # channels
 FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of their channels
 
 
@@ -31,16 +31,16 @@ def channels_of(board: Board) -> dict[int, int]:
             if ability in groups:
                 groups[ability].append(pin)
     channels = {}
-    first = 0
+    first_channel = 0
     for pins in groups.values():
-        channels.update({pin: channel for channel, pin in enumerate(pins, first)})
-        first += timers_of(len(pins)) * PER_TIMER
+        channels.update({pin: channel for channel, pin in enumerate(pins, first_channel)})
+        first_channel += timers_of(len(pins)) * CHANNELS_PER_TIMER
     return channels
 
 
 def timers_of(pin_count: int) -> int:
     """Return how many timers so many pins of one frequency take."""
-    return -(-pin_count // PER_TIMER)
+    return -(-pin_count // CHANNELS_PER_TIMER)
 
 
 def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:

@@ -9,7 +9,7 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.robots.profile import Robot
 
 
-class Nearest(NamedTuple):
+class NearestRobot(NamedTuple):
     """The shipped robot that is nearest. The devices are names, as programs have them.
 
     `is_same`: the kits are one, so each runs the other's programs.
@@ -17,12 +17,12 @@ class Nearest(NamedTuple):
 
     name: str
     is_same: bool
-    shared: tuple[str, ...]
-    only_there: tuple[str, ...]
-    only_here: tuple[str, ...]
+    shared_devices: tuple[str, ...]
+    devices_only_there: tuple[str, ...]
+    devices_only_here: tuple[str, ...]
 
 
-def nearest_to(robot: Robot) -> Nearest:
+def nearest_to(robot: Robot) -> NearestRobot:
     """Return the nearest of the shipped robots.
 
     That is the one with the most devices in common, then with the fewest others, then on the same
@@ -39,13 +39,13 @@ def nearest_to(robot: Robot) -> Nearest:
             other.board.motors.driver != robot.board.motors.driver,
         )
 
-    best = min(map(robots.load, robots.names()), key=distance)
-    best_devices = _devices(best.kit)
-    return Nearest(
-        best.name,
-        best.kit.fingerprint == robot.kit.fingerprint,
+    nearest = min(map(robots.load, robots.names()), key=distance)
+    best_devices = _devices(nearest.kit)
+    return NearestRobot(
+        nearest.name,
+        nearest.kit.fingerprint == robot.kit.fingerprint,
         _names(robot.kit, own_devices & best_devices),
-        _names(best.kit, best_devices - own_devices),
+        _names(nearest.kit, best_devices - own_devices),
         _names(robot.kit, own_devices - best_devices),
     )
 
@@ -61,5 +61,7 @@ def _devices(kit: Kit) -> set[tuple[bool, Device]]:
 
 def _names(kit: Kit, devices: set[tuple[bool, Device]]) -> tuple[str, ...]:
     """Return their names, in the order of the kit."""
-    chosen = {device.name for _, device in devices}
-    return tuple(device.name for device in (*kit.sensors, *kit.actuators) if device.name in chosen)
+    chosen_names = {device.name for _, device in devices}
+    return tuple(
+        device.name for device in (*kit.sensors, *kit.actuators) if device.name in chosen_names
+    )

@@ -43,20 +43,20 @@ class Avr(NamedTuple):
     bits: Mapping[int, Bit]
     compares: Mapping[int, Compare]
     interrupts: Mapping[int, Interrupt]
-    external: Mapping[int, Interrupt]  # those that a pin has for itself
+    external_interrupts: Mapping[int, Interrupt]  # those that a pin has for itself
 
 
-EXTERNAL = 3  # the group of INT0 to INT7
+EXTERNAL_GROUP = 3  # the group of INT0 to INT7
 
 
 def _bits(*parts: str) -> dict[int, Bit]:
     """Return the pins of `"0 d0 d1"`: the number of the first pin, then the bit of each pin."""
-    result = {}
+    bit_of_pin = {}
     for part in parts:
         first, *bits = part.split()
         for pin, bit in enumerate(bits, int(first)):
-            result[pin] = Bit(bit[0], int(bit[1]))
-    return result
+            bit_of_pin[pin] = Bit(bit[0], int(bit[1]))
+    return bit_of_pin
 
 
 def _pwm_channels(text: str) -> dict[int, Compare]:
@@ -96,7 +96,7 @@ def _changes(bits: Mapping[int, Bit], groups: Mapping[str, int]) -> dict[int, In
 
 def _externals(bits: Mapping[int, Bit], numbers: Mapping[str, int]) -> dict[int, Interrupt]:
     return {
-        pin: Interrupt(f"INT{number}_vect", EXTERNAL, number)
+        pin: Interrupt(f"INT{number}_vect", EXTERNAL_GROUP, number)
         for pin, bit in bits.items()
         if (number := numbers.get(f"{bit.port}{bit.bit}")) is not None
     }

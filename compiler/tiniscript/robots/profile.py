@@ -93,7 +93,7 @@ class Place(NamedTuple):
     turns_with: str = ""
 
 
-SEES = ("light", "distance", "line", "white", "touch")  # a line is black
+SEEN_KINDS = ("light", "distance", "line", "white", "touch")  # a line is black
 
 
 class Body(NamedTuple):

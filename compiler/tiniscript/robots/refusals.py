@@ -15,26 +15,26 @@ from tiniscript.robots.profile import ProfileRefused, Reason
 
 CATALOGUE = "refusals"
 SHOWN_CHARACTERS = 40
-DEVICE = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
+DEVICE_PATH = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
 
 
 def describe(refusal: ProfileRefused, lang: str) -> list[str]:
     """Return a sentence for each reason."""
     sentences = []
     for code, values in _causes(refusal.reasons):
-        words = {key: printable(value) for key, value in values.items()}
+        gap_values = {key: printable(value) for key, value in values.items()}
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
-            words = {
+            gap_values = {
                 key: languages.find_text(CATALOGUE, f"{group}/{word}", lang) or word
-                for key, word in words.items()
+                for key, word in gap_values.items()
             }
-        key = f"{code}/near" if words.get("near") else code
-        text = (
+        key = f"{code}/near" if gap_values.get("near") else code
+        sentence_texts = (
             languages.find_text(CATALOGUE, f"{kind}/{key}", lang)
             for kind in (*refusal.kinds, "profile")
         )
-        sentences.append(next(filter(None, text)).format_map(words))
+        sentences.append(next(filter(None, sentence_texts)).format_map(gap_values))
     return sentences
 
 
@@ -53,8 +53,10 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     causes = []
     for code, values in reasons:
         path = values.get("path", "")
-        is_meant = any(path == item or path.startswith(f"{item}.") for item in meant_paths)
-        is_device = code == "missing" and DEVICE.fullmatch(path) is not None
+        is_meant = any(
+            path == meant_path or path.startswith(f"{meant_path}.") for meant_path in meant_paths
+        )
+        is_device = code == "missing" and DEVICE_PATH.fullmatch(path) is not None
         if code == "missing" and is_meant:
             continue
         if is_name_refused and (is_device or code == "not_in_kit"):

@@ -6,7 +6,7 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, TASKS, WAYS, WORDS
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, TASKS, WORDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes
@@ -15,18 +15,20 @@ LONGEST_WORD = 255  # letters of a word that a reader takes
 def _block_words(*blocks: str) -> frozenset[str]:
     """Return the words of blocks, and those that end them."""
     ends = {BLOCK_ENDS[block] for block in blocks}
-    return frozenset((*blocks, *ends, *(value for value, end in ALIASES.items() if end in ends)))
+    return frozenset((*blocks, *ends, *(alias for alias, end in ALIASES.items() if end in ends)))
 
 
-OF_TASKS_AND_WAYS = _block_words(*TASKS) | WAYS.keys()
+TASK_AND_EXTENT_WORDS = _block_words(*TASKS) | EXTENTS.keys()
 
 # The roles of the instructions that a reader knows, by `codegen/text/memory.py` and in
 # `vm_arduino/src/text/`. No level reads others: their names are taken, and no more.
-READ = frozenset(("move", "wait", "motors", "beep", "show", "stop"))
+READ_ROLES = frozenset(("move", "wait", "motors", "beep", "show", "stop"))
 _INSTRUCTIONS = (word for word in WORDS.values() if word.role.is_instruction)
-_OTHERS = [word for word in _INSTRUCTIONS if word.role.name not in READ]
-OF_NO_LEVEL = frozenset(word.text for word in _OTHERS if not word.stands_for)
-UNREAD = frozenset(word.text for word in _OTHERS)  # also those that `line` writes out
+_UNREAD_INSTRUCTIONS = [word for word in _INSTRUCTIONS if word.role.name not in READ_ROLES]
+NEVER_READ_WORDS = frozenset(word.text for word in _UNREAD_INSTRUCTIONS if not word.stands_for)
+UNREAD_WORDS = frozenset(
+    word.text for word in _UNREAD_INSTRUCTIONS
+)  # also those that `line` writes out
 
 
 class Level(NamedTuple):
@@ -58,9 +60,9 @@ def _program_bytes(board: str) -> int:
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, _block_words("DEF") | OF_TASKS_AND_WAYS | OF_NO_LEVEL),
-        Level("mega", "mega", 4, OF_NO_LEVEL),
-        Level("esp32", "esp32dev", 4, OF_NO_LEVEL),
+        Level("uno", "uno", 2, _block_words("DEF") | TASK_AND_EXTENT_WORDS | NEVER_READ_WORDS),
+        Level("mega", "mega", 4, NEVER_READ_WORDS),
+        Level("esp32", "esp32dev", 4, NEVER_READ_WORDS),
     )
 }
 

@@ -33,18 +33,18 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
     except (ValueError, RecursionError) as error:  # ValueError: also for a very long integer
         message = str(error)
         line = message.rpartition("at line ")[2].partition(",")[0]
-        place = line if line.isdigit() else str(text.count("\n") + 1)
+        line_number = line if line.isdigit() else str(text.count("\n") + 1)
         is_twice = message.startswith(("Cannot ", "Duplicate "))
-        return "key_twice" if is_twice else "not_toml", {"line": place}
+        return "key_twice" if is_twice else "not_toml", {"line": line_number}
 
 
 @contextmanager
 def root_of(text: str, refusal_type: type[ProfileRefused]) -> Iterator[Table]:
     """Yield the table of a whole file. Raises `refusal_type` with all complaints."""
-    result = parse_toml(text)
-    if isinstance(result, tuple):
-        raise refusal_type(result)
-    root = Table(result, "", [])
+    parsed = parse_toml(text)
+    if isinstance(parsed, tuple):
+        raise refusal_type(parsed)
+    root = Table(parsed, "", [])
     yield root
     root.finish()
     if root.reasons:
@@ -58,7 +58,7 @@ class Table:
         self.path = path
         self.reasons = reasons
         self._values = values
-        self._asked: list[str] = []
+        self._known_keys: list[str] = []
 
     def path_of(self, key: str) -> str:
         """Return the path of a key in the file, such as `board.motors`."""
@@ -67,9 +67,9 @@ class Table:
     def complain(self, code: str, key: str, **values: str) -> None:
         self.reasons.append((code, {"path": self.path_of(key), **values}))
 
-    def has(self, key: str) -> bool:
+    def check_for(self, key: str) -> bool:
         """Return whether a key is present, and count it as known."""
-        self._asked.append(key)
+        self._known_keys.append(key)
         return key in self._values
 
     def put(self, key: str, value: object) -> None:
@@ -81,7 +81,7 @@ class Table:
 
     def get(self, key: str, example: str) -> object:
         """Return the value at `key`. If it is missing, complain and suggest `example`, if any."""
-        if self.has(key):
+        if self.check_for(key):
             return self._values[key]
         if example:
             self.complain("missing", key, example=example)
@@ -146,22 +146,22 @@ class Table:
         if not isinstance(value, list) or len(value) != 2:
             self.expect("pair", key, value)
             return 0, 0
-        first, second = (self._thousandths(key, item, LOWEST, HIGHEST) for item in value)
+        first, second = (self._thousandths(key, number, LOWEST, HIGHEST) for number in value)
         return first, second
 
     def pairs(self, key: str, low: int, high: int, example: str) -> list[tuple[int, int]] | None:
         """Return the thousandths of `[[x, y], ...]`, each from `low` to `high`; None: no list."""
         value = self.get(key, example)
         if not isinstance(value, list) or not all(
-            isinstance(item, list) and len(item) == 2 for item in value
+            isinstance(pair, list) and len(pair) == 2 for pair in value
         ):
             self.expect("pairs", key, value)
             return None
         pairs = []
         for number, (x, y) in enumerate(value, start=1):
-            place = f"{key}[{number}]"
-            first = self._thousandths(place, x, low, high)
-            pairs.append((first, self._thousandths(place, y, low, high)))
+            path = f"{key}[{number}]"
+            x_value = self._thousandths(path, x, low, high)
+            pairs.append((x_value, self._thousandths(path, y, low, high)))
         return pairs
 
     def table(self, key: str, example: str = "") -> Table:
@@ -185,12 +185,12 @@ class Table:
             self.expect("tables", key, value)
             return []
         tables = []
-        for number, each in enumerate(value, start=1):
-            place = f"{key}[{number}]"
-            if isinstance(each, dict):
-                tables.append(Table(each, self.path_of(place), self.reasons))
+        for number, entry in enumerate(value, start=1):
+            path = f"{key}[{number}]"
+            if isinstance(entry, dict):
+                tables.append(Table(entry, self.path_of(path), self.reasons))
             else:
-                self.expect("table", place, each)
+                self.expect("table", path, entry)
         return tables
 
     def expect(self, expected_type: str, key: str, value: object) -> None:
@@ -205,9 +205,11 @@ class Table:
     def finish(self) -> None:
         """Complain about every key that was never read."""
         for key in self._values:
-            if key not in self._asked:
-                suggestion = nearest(key, self._asked) or ""
-                self.complain("unknown_key", key, near=suggestion, known=", ".join(self._asked))
+            if key not in self._known_keys:
+                suggestion = nearest(key, self._known_keys) or ""
+                self.complain(
+                    "unknown_key", key, near=suggestion, known=", ".join(self._known_keys)
+                )
 
     def _thousandths(self, key: str, value: object, low: int, high: int) -> int:
         if isinstance(value, DecimalText):

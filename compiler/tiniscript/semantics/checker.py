@@ -20,7 +20,7 @@ from tiniscript.base.limits import (
     VARIABLES,
 )
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import UNIT_OF, VALUE, WAYS, WORDS, Argument, Word
+from tiniscript.base.words import EXTENTS, UNIT_OF, VALUE, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
@@ -199,7 +199,7 @@ class _Checker(Scope):
         if unit_part is not None:
             self.check_unit(node, unit_part)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
-            argument_specs = (WAYS[UNIT_OF[word.text]], *argument_specs[1:])
+            argument_specs = (EXTENTS[UNIT_OF[word.text]], *argument_specs[1:])
         diagnostic_count = len(self.diagnostics)
         values = [
             self.types.value(argument)

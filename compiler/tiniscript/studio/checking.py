@@ -19,10 +19,10 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import MOST_OFFERS, edits_of, edits_offered
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compile_source, fit_to_robot, text_of
+from tiniscript.library.compiling import Compilation, compile_source, fit_to_robot, text_of
 from tiniscript.library.named_robot import robot_of, shipped_name_in
 from tiniscript.library.shows import Show, Shows
-from tiniscript.library.text_fitting import misfits
+from tiniscript.library.text_fitting import find_misfits
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import level_of
 
@@ -80,25 +80,25 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     names_robot = shipped_name_in(data) is not None
     if not compiled.is_right or compiled.program is None:
         return Checked(b"", 0, findings, (), robot=profile.name, names_robot=names_robot)
-    variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
+    variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no_flags))
     places = source_map.map_of_compiled(compiled)
     starts = statement_starts(compiled.code)
-    halts = tuple(statement_of(starts, place.offset) for place in places.places)
-    return Checked(compiled.image, len(compiled.code), findings, places.places, halts,
+    halts = tuple(statement_of(starts, place.offset) for place in places.locations)
+    return Checked(compiled.image, len(compiled.code), findings, places.locations, halts,
                    _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,
                    _remote(compiled, profile.kit))  # fmt: skip
 
 
-def _remote(compiled: Compiled, kit: Kit) -> tuple[str, ...]:
+def _remote(compiled: Compilation, kit: Kit) -> tuple[str, ...]:
     uses = compiled.verdict.uses if compiled.verdict is not None else ()
     read = {number - len(kit.sensors) for what, number in uses if what == "sensor"}
     return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
 
 
-def _show_places(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
+def _show_places(places: source_map.SourceMap) -> tuple[tuple[int, Show], ...]:
     shows = Shows(places)
-    result = ((place.offset, shows.at(place.offset)) for place in places.places)
+    result = ((place.offset, shows.show_at(place.offset)) for place in places.locations)
     return tuple((offset, show) for offset, show in result if show)
 
 
@@ -136,7 +136,7 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
         mistake = next(diagnostic for diagnostic in result.diagnostics if diagnostic.is_mistake)
         return message(mistake, result.source, language)
     level = level_of(profile.board.chip, profile.board.discs is not None)
-    lacking = misfits(result.source, result.program, profile.kit, level)
+    lacking = find_misfits(result.source, result.program, profile.kit, level)
     return message(lacking[0], result.source, language) if lacking else line_of(result.source)
 
 
@@ -152,12 +152,12 @@ def profile_for(data: bytes, robot: str) -> Robot:
 
 
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
-def _compile(data: bytes, robot: str) -> Compiled:
+def _compile(data: bytes, robot: str) -> Compilation:
     profile = profile_for(data, robot)
     return fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
 
 
-def _findings(compiled: Compiled, language: str) -> tuple[Finding, ...]:
+def _findings(compiled: Compilation, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
     named = [k for k, diagnostic in enumerate(compiled.diagnostics) if edits_of(diagnostic)][
         :MOST_OFFERS

@@ -19,7 +19,7 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.files import LOCK_ENDING, contents, replace, settings_folder, try_lock
+from tiniscript.base.files import LOCK_ENDING, read_limited, replace, settings_folder, try_lock
 
 Json = dict[str, Any]
 
@@ -111,7 +111,7 @@ class Keeper:
     def read(self) -> KeptClass | None:
         """Return the class that has not ended, or None. What is no class is put aside."""
         try:
-            result = json.loads(contents(path(), FILE_BYTES))
+            result = json.loads(read_limited(path(), FILE_BYTES))
             if not isinstance(result, dict) or result.get("form") != FORM:
                 raise ValueError
         except FileNotFoundError:

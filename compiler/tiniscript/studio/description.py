@@ -45,10 +45,10 @@ def description() -> dict[str, Any]:
         "robots": [_robot(robots.load(name)) for name in robots.names()],
         "link": {
             "stop_bytes": STOP_BYTES,
-            "cable_answer_ms": opening.CABLE_ANSWER_MS,
-            "radio_answer_ms": opening.ANSWER_MS,
+            "cable_answer_ms": opening.CABLE_ANSWER_TIMEOUT_MS,
+            "radio_answer_ms": opening.ANSWER_TIMEOUT_MS,
             "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
-            "confirm_ms": round(opening.CONFIRM_S * 1000),
+            "confirm_ms": round(opening.CONFIRM_TIMEOUT_S * 1000),
             "name_bytes": NAME_BYTES,
             "most_breakpoints": MOST_BREAKPOINTS,
             "keys_every_ms": REPEAT_MS,

@@ -95,13 +95,13 @@ class HostedRobot:
             client = Client(
                 self.port, VERB, self._profile, language=self._language,
                 is_latched=lambda: self.attending.is_latched,
-                heed=lambda: self.attending.stop_if_wanted(client.line.stop),
+                poll=lambda: self.attending.stop_if_wanted(client.connection.stop),
             )  # fmt: skip
         except RobotError as failure:
             self._end(failure.key, str(failure))
             return
         try:
-            self._link = link = RobotLink(client.line, self._language)
+            self._link = link = RobotLink(client.connection, self._language)
             self._ping_while_attended(client, link)
             if self._meet(client):
                 while not self.was_left:
@@ -138,17 +138,17 @@ class HostedRobot:
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
         """What another command has started is for that command to attend to."""
-        if client.line.held_by:
+        if client.connection.held_by:
             return
-        assert isinstance(client.line, PortConnection)
-        session = client.line.session
+        assert isinstance(client.connection, PortConnection)
+        session = client.connection.session
         session.sends_heartbeat = lambda: (
             self.is_attended or (session.is_running and not link.has_run)
         )
 
     def _meet(self, client: Client) -> bool:
         """Say hello to the robot; return whether it has answered."""
-        line = client.line
+        line = client.connection
         try:
             robot = client.meet(is_patient=lambda: not self.was_left)
         except TiniScriptError as failure:
@@ -169,7 +169,7 @@ class HostedRobot:
         self.attending.tell([*link.news(), {"event": "STOPPING"}])  # no earlier stop confirms this
         link.stop()
         self.is_unconfirmed = True
-        end_s = monotonic() + opening.CONFIRM_S
+        end_s = monotonic() + opening.CONFIRM_TIMEOUT_S
         events: list[str | None] = []
         while monotonic() < end_s and "LOST" not in events:
             news = link.news(LOOK_S)

@@ -267,7 +267,7 @@ class JudgedRun(Simulation):
         while robot.is_running and self._owed_ms >= STEP_MS and robot.now_ms < self._end_ms:
             self._owed_ms -= STEP_MS
             self._trial.step(min(robot.now_ms + STEP_MS, self._end_ms))
-            robot.driving.look(robot.now_ms)
+            robot.driving.pose_at(robot.now_ms)
         if robot.now_ms >= self._end_ms:
             robot.rest()
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
-from tiniscript.library.compiling import Compiled, compile_source, fit_to_robot
-from tiniscript.library.source_map import Map, MapLocation, map_of_compiled
+from tiniscript.library.compiling import Compilation, compile_source, fit_to_robot
+from tiniscript.library.source_map import MapLocation, SourceMap, map_of_compiled
 from tiniscript.robots import load
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -67,7 +67,7 @@ class Ready(NamedTuple):
 
     recording: Recording
     image: bytes
-    places: Map
+    places: SourceMap
     shows: dict[int, int | None]  # the sensor that each SHOW alone shows, by its offset
     reads: tuple[int, ...]  # the offsets of what names a sensor
     robot: Robot
@@ -77,7 +77,7 @@ def ready(recording: Recording) -> Ready:
     """Raises BadRecording where the program is another one for this version of tsc."""
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
-    compiled: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
+    compiled: Compilation = compile_source(data, profile, "", is_strict=True, is_chosen=True)
     compiled = fit_to_robot(compiled, profile)
     if (
         compiled.program is None
@@ -88,11 +88,11 @@ def ready(recording: Recording) -> Ready:
     sensors = _shown_sensors(compiled.program)
     places = map_of_compiled(compiled)
     shows = {place.offset: sensors[part.span.start] for part, place in
-             zip(compiled.places, places.places, strict=True)
+             zip(compiled.locations, places.locations, strict=True)
              if part.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
     lines = compiled.source.text.split("\n")
-    reads = tuple(item.offset for item in places.places if names & _words(lines, item))
+    reads = tuple(item.offset for item in places.locations if names & _words(lines, item))
     return Ready(recording, compiled.image, places, shows, reads, profile)
 
 
@@ -132,7 +132,7 @@ class PlayedRun(Simulation):
         self._seen = 0
         self._at: int | None = None  # what the program does, as far as it names a sensor
         where = recording.world or world or worlds.load(worlds.DEFAULT)
-        settings = Settings(seed=recording.seed, told=told)
+        settings = Settings(seed=recording.seed, given_readings=told)
         marks = (marks or Marks(()))._replace(is_held=False, breakpoints=())
         if not recording.is_virtual:
             marks = marks._replace(breakpoints=(*ready.shows, *ready.reads))
@@ -252,8 +252,10 @@ class PlayedRun(Simulation):
         self, what: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
     ) -> None:
         at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
-        at = virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.at
-        place = self.ready.places.at(at) if at is not None else None
+        at = (
+            virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.offset
+        )
+        place = self.ready.places.location_at(at) if at is not None else None
         line = place.line if place is not None else 0
         self.parting = Parting(what, agreed, line, recorded_row, virtual_row, "", at_ms)
 
@@ -286,11 +288,11 @@ class PlayedRun(Simulation):
             self._listen()
 
     def _tell_shown(self, at: int) -> None:
-        sensor, place = self.ready.shows[at], self.ready.places.at(at)
+        sensor, place = self.ready.shows[at], self.ready.places.location_at(at)
         texts = [row.event for row in self.recording.rows if _is_told(row)]
         message = texts[len(self._places)] if len(self._places) < len(texts) else ""
         if sensor is not None and message.startswith("SHOW"):
-            self.robot.sensing.tell(sensor, _number(message.removeprefix("SHOW ")))
+            self.robot.sensing.set_reading(sensor, _number(message.removeprefix("SHOW ")))
             self._shown = sensor
             if sensor not in self._lost:
                 self._known.add(sensor)
@@ -329,25 +331,25 @@ class PlayedRun(Simulation):
             self._lost.add(number)
             self._known.discard(number)
         elif number != NO_SENSOR:
-            self.robot.sensing.tell(number, value)
+            self.robot.sensing.set_reading(number, value)
             if number not in self._lost:
                 self._known.add(number)
 
     def _listen(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
-            is_read = event.what == "READ"
+            is_read = event.kind == "READ"
             is_shown = is_read and event.values[0] == self._shown
             if is_shown:
                 self._shown = None
             is_unread = is_read and not is_shown and event.values[0] not in self._known
             if is_unread and not self._unread:
                 name = self.robot.profile.kit.readings[event.values[0]].name
-                place = self.ready.places.at(self._at) if self._at is not None else None
+                place = self.ready.places.location_at(self._at) if self._at is not None else None
                 row = Row(event.time_ms - started_ms, event.text)
                 self._unread = (name, row, place.line if place is not None else 0)
                 self._virtual.append(row)
-            elif event.what in TOLD:
+            elif event.kind in TOLD:
                 self._virtual.append(Row(event.time_ms - started_ms, event.text))
 
     def _push_button(self) -> None:

@@ -123,7 +123,7 @@ class Simulation:
 
     def _want(self, is_stepping: bool) -> None:
         bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * bool(is_stepping)
-        self.robot.firmware.want(bits)
+        self.robot.firmware.hold_before(bits)
 
     def _begin_rows(self) -> None:
         self._rows = Rows()
@@ -141,7 +141,7 @@ class Simulation:
                 self._let_in()
             self._computer.wait(1)
             self._is_amid = self.held_at is not None
-            self._score.look(self.robot)
+            self._score.update(self.robot)
         self._take_events()
 
     def _let_in(self) -> None:
@@ -170,7 +170,7 @@ class Simulation:
         events = self.robot.take_events()
         self._events += events
         for event in events:
-            self._rows.add(Row(event.time_ms, event.text, event.at))
+            self._rows.add(Row(event.time_ms, event.text, event.offset))
 
     def rows(self) -> list[Row]:
         """Return the rows of the run since the last time, as its file has them."""
@@ -233,7 +233,7 @@ class Simulation:
         x_cm, y_cm, heading = robot.pose
         touched = robot.driving.touch_point(robot.pose)
         kit = robot.profile.kit
-        readings = [robot.sensing.look(number, robot.pose) for number in range(len(kit.sensors))]
+        readings = [robot.sensing.peek(number, robot.pose) for number in range(len(kit.sensors))]
         return {
             "now_ms": robot.now_ms,
             "began_ms": robot.started_ms,
@@ -249,15 +249,15 @@ class Simulation:
             "rivals": [list(pose) for pose in robot.driving.rivals],
             "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
                           for k in range(len(kit.actuators))],
-            "turned": dict(robot.sensing.turned),
-            "at": robot.at if self.held_at is None else self.held_at,
-            "places": robot.places,
-            "driver": robot.driver,
+            "turned": dict(robot.sensing.turn_of_actuator),
+            "at": robot.offset if self.held_at is None else self.held_at,
+            "places": robot.task_offsets,
+            "driver": robot.driving_task_offset,
             "is_held": self.held_at is not None,
             "variables": [value / ONE for value in robot.firmware.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}
                          for device, value in zip(kit.sensors, readings, strict=True)],
-            "events": [[event.time_ms, event.text, event.at] for event in self.take_events()],
+            "events": [[event.time_ms, event.text, event.offset] for event in self.take_events()],
             "rows": [row.cells for row in self.rows()],
             "is_full": self.is_full,
         }  # fmt: skip

@@ -13,7 +13,7 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_RIVALS, MOST_S
+from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_RIVALS, MOST_SECONDS
 
 KINDS = ("walls", "boxes", "lines", "lamps", "flags", "rings", "rivals")
 DECIMALS = 3  # that a world's file may have
@@ -27,7 +27,7 @@ def limits() -> dict[str, int]:
         "rivals": MOST_RIVALS,
         "points": MOST_POINTS,
         "cm": LARGEST_CM // ONE,
-        "seconds": MOST_S // ONE,
+        "seconds": MOST_SECONDS // ONE,
     }
 
 
@@ -40,7 +40,7 @@ def form_of(world: World) -> Form:
         "width_cm": world.width_cm,
         "height_cm": world.height_cm,
         "has_border": world.has_border,
-        "ambient_percent": round(world.ambient * 100, DECIMALS),
+        "ambient_percent": round(world.ambient_light * 100, DECIMALS),
         "start": {"x_cm": x_cm, "y_cm": y_cm, "heading": heading},
         "walls": [{"points": _pairs(wall)} for wall in world.walls],
         "boxes": [_box(corners) for corners in world.boxes],

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, lexicon_meaning
+from tiniscript.base.words import EXTENTS, FUNCTIONS, UNIT_OF, WORDS, Word, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
@@ -52,7 +52,7 @@ class ExpressionParser:
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(in_brackets=True)
         token = cursor.peek_inner()  # the CM or DEG that may stand after the whole of it
-        if token.kind is not WORD or token.text not in WAYS:
+        if token.kind is not WORD or token.text not in EXTENTS:
             return argument
         cursor.take_inner(WORD)
         return argument._replace(unit=Part(token.text, 0, *token.span))
@@ -283,7 +283,7 @@ class ExpressionParser:
 
     def reject_unit(self, token: Token) -> None:
         """CM or DEG anywhere but after the whole of a value."""
-        if token.kind is WORD and token.text in WAYS:
+        if token.kind is WORD and token.text in EXTENTS:
             self.report_wrong_unit(token.text, token.span)
             raise Failed
 
@@ -291,7 +291,7 @@ class ExpressionParser:
         first_word, second_word = (word for word, unit_of in UNIT_OF.items() if unit_of == unit)
         text_parts = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second_word}(")
         word = second_word if text_parts[1] and not set("\n;") & set(text_parts[2]) else first_word
-        example = f"{word}({WAYS[unit].sample}, 60)"
+        example = f"{word}({EXTENTS[unit].sample}, 60)"
         self.reporter.report(
             codes.UNIT_PLACE,
             span,
@@ -352,7 +352,7 @@ class ExpressionParser:
         """In brackets a comma or their end is expected."""
         token, previous = self.cursor.peek_inner(), self.cursor.last
         self.reject_semicolon(bracket)
-        self.reject_unit(token if previous.text not in WAYS else previous)
+        self.reject_unit(token if previous.text not in EXTENTS else previous)
         self.reject_unknown_character(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text

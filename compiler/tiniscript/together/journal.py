@@ -12,7 +12,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from tiniscript.base.files import contents, replace
+from tiniscript.base.files import read_limited, replace
 from tiniscript.together.form import Refused
 from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.tree import Json, Tree
@@ -43,7 +43,7 @@ class Journal:
         if self.path is None:
             return None
         try:
-            data = contents(self.path, 2 * MOST_BYTES)
+            data = read_limited(self.path, 2 * MOST_BYTES)
             whole = data[: data.rfind(b"\n") + 1]
             rows = [json.loads(row) for row in whole.splitlines()]
             program = program_of(rows[0])

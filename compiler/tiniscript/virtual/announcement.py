@@ -14,7 +14,9 @@ from tiniscript.link.port_names import TCP
 from tiniscript.link.transports.network import MOST_NAME_BYTES, SERVICE, query_service
 from tiniscript.virtual.directory import LOCAL_HOST
 
-ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
+ASK_TIMEOUT_MS = (
+    2500  # timeout for a robot that has the name: for a second it may say nothing twice
+)
 
 
 class NameTaken(Exception):
@@ -24,19 +26,19 @@ class NameTaken(Exception):
 class Announcement:
     """Says where a robot is until `close`; `port` is its name as a port."""
 
-    def __init__(self, name: str, number: int) -> None:
-        """`number` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
+    def __init__(self, name: str, tcp_port: int) -> None:
+        """`tcp_port` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
         if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
             raise NameTaken
         self.port = TCP + name
         self._network = Zeroconf(interfaces=[LOCAL_HOST])
         try:
             info = ServiceInfo(
-                SERVICE, f"{name}.{SERVICE}", number,
-                addresses=[ip_address(LOCAL_HOST).packed], server=f"tini-{number}.local.",
+                SERVICE, f"{name}.{SERVICE}", tcp_port,
+                addresses=[ip_address(LOCAL_HOST).packed], server=f"tini-{tcp_port}.local.",
             )  # fmt: skip
             # two programs of one computer may miss each other's answers while they register
-            if query_service(self._network, info.name, ASK_MS) is not None:
+            if query_service(self._network, info.name, ASK_TIMEOUT_MS) is not None:
                 raise NonUniqueNameException
             self._network.register_service(info)
         except Error:

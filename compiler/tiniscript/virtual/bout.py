@@ -30,15 +30,18 @@ from tiniscript.virtual.geometry import Point, Segment, gap_between, join_points
 from tiniscript.virtual.world import Ring, Rival, World
 
 TICK_MS = 1.0
-KEPT_MS = 20.0  # between two corners of the way
-SWEEPS = 4  # over all contacts, until no two bodies come nearer to each other
+CORNER_INTERVAL_MS = 20.0  # between two corners of the way
+MOST_SWEEPS = 4  # over all contacts, until no two bodies come nearer to each other
 GRIP = 0.7  # how much of a push holds the bodies together where they touch, so that none slides off
-SLIPS = 0.5  # how far a push from the side moves a body, of what it would do from behind
-DECIDES_MS = 10.0  # of a rival: between two looks
-SIGHT_CM, SIGHT = 100.0, math.radians(25)  # how far a rival sees, and to both sides
-BACK_MS, AROUND = 300.0, 150.0  # at an edge: it goes back so long, and turns by so many degrees
-CORNERS = 16  # of what a distance sensor sees of a rival
-NOBODY: tuple[float, float] = (0.0, 0.0)
+SLIP_RATIO = 0.5  # how far a push from the side moves a body, of what it would do from behind
+DECISION_INTERVAL_MS = 10.0  # of a rival: between two looks
+SIGHT_CM, SIGHT_RADIANS = 100.0, math.radians(25)  # how far a rival sees, and to both sides
+BACK_MS, AROUND_DEGREES = (
+    300.0,
+    150.0,
+)  # at an edge: it goes back so long, and turns by so many degrees
+OUTLINE_CORNERS = 16  # of what a distance sensor sees of a rival
+STANDSTILL: tuple[float, float] = (0.0, 0.0)
 
 
 class Mover:
@@ -48,63 +51,71 @@ class Mover:
         self.body = body
         self.hull = Hull(body)
         self.pose = pose
-        self.wanted = NOBODY  # percent of each wheel, as its motors are set
+        self.wanted_speeds = STANDSTILL  # percent of each wheel, as its motors are set
         self.left = self.right = 0.0  # and as it goes
-        self.aside = 0.0  # cm in a second, to its left
+        self.aside_cm_s = 0.0  # cm in a second, to its left
         self._turn = math.radians(body.turn_s)
         self._spine: Segment | None = None
         self._free_cm = 0.0  # no obstacle is nearer
 
     def begin(self) -> None:
-        (self.left, self.right), self.aside = self.wanted, 0.0
+        (self.left, self.right), self.aside_cm_s = self.wanted_speeds, 0.0
 
-    def _parts(self, point: Point, away: Point) -> tuple[float, float, float]:
+    def _push_parts(self, point: Point, direction: Point) -> tuple[float, float, float]:
         """Return how much of a push is along it, aside, and turns it: its lever in cm."""
-        along = math.radians(self.pose.heading)
-        cos, sin = math.cos(along), math.sin(along)
+        heading = math.radians(self.pose.heading)
+        cos, sin = math.cos(heading), math.sin(heading)
         x, y = point.x - self.pose.x_cm, point.y - self.pose.y_cm
-        return away.x * cos + away.y * sin, away.y * cos - away.x * sin, x * away.y - y * away.x
+        return (
+            direction.x * cos + direction.y * sin,
+            direction.y * cos - direction.x * sin,
+            x * direction.y - y * direction.x,
+        )
 
-    def speed_along(self, point: Point, away: Point) -> float:
+    def speed_along(self, point: Point, direction: Point) -> float:
         """Return how fast its `point` goes in a direction, in cm/s."""
-        ahead, aside, lever = self._parts(point, away)
-        full = self.body.speed_cm_s / 100
+        ahead, aside, lever = self._push_parts(point, direction)
+        percent_cm_s = self.body.speed_cm_s / 100
         turning = (self.right - self.left) / 200 * self._turn
-        return (self.left + self.right) / 2 * full * ahead + self.aside * aside + turning * lever
+        return (
+            (self.left + self.right) / 2 * percent_cm_s * ahead
+            + self.aside_cm_s * aside
+            + turning * lever
+        )
 
-    def ease(self, point: Point, away: Point) -> float:
+    def ease(self, point: Point, direction: Point) -> float:
         """Return by how much that grows with a push of one percent of what stalls it."""
-        ahead, aside, lever = self._parts(point, away)
-        full = self.body.speed_cm_s
-        straight = (ahead * ahead + SLIPS * aside * aside) * full
-        return (straight + (self._turn * lever) ** 2 / full) / 100
+        ahead, aside, lever = self._push_parts(point, direction)
+        full_cm_s = self.body.speed_cm_s
+        straight = (ahead * ahead + SLIP_RATIO * aside * aside) * full_cm_s
+        return (straight + (self._turn * lever) ** 2 / full_cm_s) / 100
 
-    def push(self, point: Point, away: Point, percent: float) -> None:
-        ahead, aside, lever = self._parts(point, away)
-        full = self.body.speed_cm_s
-        turning = lever * self._turn / full
+    def push(self, point: Point, direction: Point, percent: float) -> None:
+        ahead, aside, lever = self._push_parts(point, direction)
+        full_cm_s = self.body.speed_cm_s
+        turning = lever * self._turn / full_cm_s
         self.left += percent * (ahead - turning)
         self.right += percent * (ahead + turning)
-        self.aside += percent / 100 * SLIPS * aside * full
+        self.aside_cm_s += percent / 100 * SLIP_RATIO * aside * full_cm_s
 
     def go(self) -> None:
-        before = self.pose
-        if not (self.left or self.right or self.aside):
+        old_pose = self.pose
+        if not (self.left or self.right or self.aside_cm_s):
             return
-        moved = move_pose(self.body, before, self.left, self.right, TICK_MS)
-        along = math.radians(before.heading)
-        slid = self.aside * TICK_MS / 1000
-        self.put(
+        new_pose = move_pose(self.body, old_pose, self.left, self.right, TICK_MS)
+        heading = math.radians(old_pose.heading)
+        slid_cm = self.aside_cm_s * TICK_MS / 1000
+        self.move_to(
             Pose(
-                moved.x_cm - slid * math.sin(along),
-                moved.y_cm + slid * math.cos(along),
-                moved.heading,
+                new_pose.x_cm - slid_cm * math.sin(heading),
+                new_pose.y_cm + slid_cm * math.cos(heading),
+                new_pose.heading,
             )
         )
 
-    def put(self, pose: Pose) -> None:
-        turned = abs(math.radians(pose.heading - self.pose.heading)) * self.hull.reach_cm
-        self._free_cm -= math.dist(pose[:2], self.pose[:2]) + turned
+    def move_to(self, pose: Pose) -> None:
+        turned_cm = abs(math.radians(pose.heading - self.pose.heading)) * self.hull.reach_cm
+        self._free_cm -= math.dist(pose[:2], self.pose[:2]) + turned_cm
         self.pose = pose
         self._spine = None
 
@@ -113,11 +124,11 @@ class Mover:
             self._spine = self.hull.spine(self.pose)
         return self._spine
 
-    def shift(self, away: Point, cm: float) -> None:
+    def shift(self, direction: Point, cm: float) -> None:
         x_cm, y_cm, heading = self.pose
-        self.put(Pose(x_cm + away.x * cm, y_cm + away.y * cm, heading))
+        self.move_to(Pose(x_cm + direction.x * cm, y_cm + direction.y * cm, heading))
 
-    def nearest(self, obstacles: Sequence[Segment]) -> Contact | None:
+    def nearest_contact(self, obstacles: Sequence[Segment]) -> Contact | None:
         """Return the nearest obstacle, or None where none is near."""
         if self._free_cm > TOUCH_CM or not obstacles:
             return None
@@ -145,37 +156,42 @@ class Opponent(Mover):
         super().__init__(rival_body(rival), rival.start)
         self._power = rival.power_percent
         self._rings = rings
-        self._does: list[tuple[float, tuple[float, float]]] = []  # ms, and what its wheels do
+        self._manoeuvres: list[tuple[float, tuple[float, float]]] = []  # ms, and what its wheels do
         self.is_out = False
-        self.stands = False  # for ever: the bout is over
+        self.has_stopped = False  # for ever: the bout is over
 
     def decide(self, target: Segment) -> None:
         power = self._power
-        if self.is_out or self.stands or not power:
-            self.wanted = NOBODY
+        if self.is_out or self.has_stopped or not power:
+            self.wanted_speeds = STANDSTILL
             return
-        if not self._does and self._is_at_edge():
-            around_ms = AROUND / (self.body.turn_s * power / 100) * 1000
-            self._does = [(BACK_MS, (-power, -power)), (around_ms, (-power, power))]
-        if self._does:
-            (left_ms, self.wanted), *later = self._does
-            left_ms -= DECIDES_MS
-            self._does = [(left_ms, self.wanted), *later] if left_ms > 0 else later
+        if not self._manoeuvres and self._is_at_edge():
+            around_ms = AROUND_DEGREES / (self.body.turn_s * power / 100) * 1000
+            self._manoeuvres = [(BACK_MS, (-power, -power)), (around_ms, (-power, power))]
+        if self._manoeuvres:
+            (left_ms, self.wanted_speeds), *later = self._manoeuvres
+            left_ms -= DECISION_INTERVAL_MS
+            self._manoeuvres = [(left_ms, self.wanted_speeds), *later] if left_ms > 0 else later
         elif self._sees(target):
-            self.wanted = (power, power)
+            self.wanted_speeds = (power, power)
         else:
-            self.wanted = (-power / 2, power / 2)
+            self.wanted_speeds = (-power / 2, power / 2)
 
     def _is_at_edge(self) -> bool:
-        along, front = math.radians(self.pose.heading), self.hull.reach_cm
-        x, y = self.pose.x_cm + front * math.cos(along), self.pose.y_cm + front * math.sin(along)
+        heading, front = math.radians(self.pose.heading), self.hull.reach_cm
+        x, y = (
+            self.pose.x_cm + front * math.cos(heading),
+            self.pose.y_cm + front * math.sin(heading),
+        )
         return bool(self._rings) and not any(ring.is_dark(x, y) for ring in self._rings)
 
     def _sees(self, target: Segment) -> bool:
-        apart, _, point = gap_between(Segment(Point(*self.pose[:2]), Point(*self.pose[:2])), target)
-        off = math.atan2(point.y - self.pose.y_cm, point.x - self.pose.x_cm)
-        off = (off - math.radians(self.pose.heading) + math.pi) % (2 * math.pi) - math.pi
-        return apart <= SIGHT_CM and abs(off) <= SIGHT
+        gap_cm, _, point = gap_between(
+            Segment(Point(*self.pose[:2]), Point(*self.pose[:2])), target
+        )
+        angle = math.atan2(point.y - self.pose.y_cm, point.x - self.pose.x_cm)
+        angle = (angle - math.radians(self.pose.heading) + math.pi) % (2 * math.pi) - math.pi
+        return gap_cm <= SIGHT_CM and abs(angle) <= SIGHT_RADIANS
 
 
 class Bout(Driving):
@@ -187,7 +203,7 @@ class Bout(Driving):
         self._outlines: list[Segment] | None = None
         super().__init__(body, world.obstacles(), world.start)
         self._robot = Mover(body, world.start)
-        self._all: list[Mover] = [self._robot, *self._rivals]
+        self._movers: list[Mover] = [self._robot, *self._rivals]
         self._ticks = 0  # since the robot has begun to move
         self._has_begun = False
         self._is_at_wall = False
@@ -197,19 +213,19 @@ class Bout(Driving):
         return [rival.pose for rival in self._rivals]
 
     @property
-    def pushed_out(self) -> int:
+    def pushed_out_count(self) -> int:
         return sum(rival.is_out for rival in self._rivals)
 
     def bodies(self) -> list[tuple[Hull, Pose]]:
         """Return the outlines of all that moves, the robot's first, and where they are."""
-        return [(each.hull, each.pose) for each in self._all]
+        return [(mover.hull, mover.pose) for mover in self._movers]
 
-    def others(self) -> list[Segment]:
+    def other_outlines(self) -> list[Segment]:
         # asked many times in a millisecond
         if self._outlines is None:
             self._outlines = []
             for rival in self._rivals:
-                corners = rival.hull.outline(rival.pose, CORNERS)
+                corners = rival.hull.outline(rival.pose, OUTLINE_CORNERS)
                 self._outlines += join_points([*corners, corners[0]])
         return self._outlines
 
@@ -220,15 +236,15 @@ class Bout(Driving):
 
     def set_motors(self, now_ms: float, left: float, right: float) -> None:
         super().set_motors(now_ms, left, right)
-        self._robot.wanted = (left, right)
+        self._robot.wanted_speeds = (left, right)
         self._has_begun = self._has_begun or bool(left or right)
 
     def rest(self) -> None:
-        for each in self._all:
-            each.wanted = NOBODY
+        for mover in self._movers:
+            mover.wanted_speeds = STANDSTILL
         self._has_begun = False
 
-    def go_on(self, now_ms: float) -> Pose:
+    def advance_to(self, now_ms: float) -> Pose:
         while self._kept_ms + TICK_MS <= now_ms:
             self._kept_ms += TICK_MS
             if self._has_begun:
@@ -236,50 +252,57 @@ class Bout(Driving):
         self._pose = self._robot.pose
         return self._pose
 
-    def look(self, now_ms: float) -> Pose:
-        return self.go_on(now_ms)
+    def pose_at(self, now_ms: float) -> Pose:
+        return self.advance_to(now_ms)
 
     # -- a millisecond ----------------------------------------------------------------------------
 
     def _tick(self) -> None:
-        if self._ticks % DECIDES_MS == 0:
+        if self._ticks % DECISION_INTERVAL_MS == 0:
             for rival in self._rivals:
                 rival.decide(self._robot.spine())
         self._ticks += 1
         self._outlines = None
-        before = [each.pose for each in self._all]
-        for each in self._all:
-            each.begin()
+        old_poses = [mover.pose for mover in self._movers]
+        for mover in self._movers:
+            mover.begin()
         self._push_all()
-        for each in self._all:
-            each.go()
-        self._part_all(before)
-        self._note(before[0])
+        for mover in self._movers:
+            mover.go()
+        self._part_all(old_poses)
+        self._record(old_poses[0])
 
     def _push_all(self) -> None:
         """Have the bodies push each other, so that no two come nearer where they touch."""
-        walls = [(each, each.nearest(self.obstacles)) for each in self._all]
-        pairs = [(one, other, *self._gap(one, other)) for one, other in combinations(self._all, 2)]
-        touching = [pair for pair in pairs if pair[2] < PUSHING_CM]
+        wall_contacts = [(mover, mover.nearest_contact(self.obstacles)) for mover in self._movers]
+        pairs = [
+            (first, second, *self._gap(first, second))
+            for first, second in combinations(self._movers, 2)
+        ]
+        touching_pairs = [pair for pair in pairs if pair[2] < PUSHING_CM]
         # where one contact is all, only its two pushes change each other
-        sweeps = SWEEPS if len(touching) > 1 or any(contact for _, contact in walls) else 2
-        for _ in range(sweeps if touching else 1):
-            for one, other, _, ours, theirs in touching:
-                away = _direction(theirs, ours)
-                radius = other.hull.radius_cm
-                place = Point(theirs.x + away.x * radius, theirs.y + away.y * radius)
-                percent = _push_apart(one, other, place, away, math.inf)
-                _push_apart(one, other, place, Point(-away.y, away.x), GRIP * percent)
-            for each, contact in walls:
+        sweeps = (
+            MOST_SWEEPS
+            if len(touching_pairs) > 1 or any(contact for _, contact in wall_contacts)
+            else 2
+        )
+        for _ in range(sweeps if touching_pairs else 1):
+            for first, second, _, ours, theirs in touching_pairs:
+                direction = _direction(theirs, ours)
+                radius = second.hull.radius_cm
+                point = Point(theirs.x + direction.x * radius, theirs.y + direction.y * radius)
+                percent = _push_apart(first, second, point, direction, math.inf)
+                _push_apart(first, second, point, Point(-direction.y, direction.x), GRIP * percent)
+            for mover, contact in wall_contacts:
                 if contact is None or contact.gap_cm >= PUSHING_CM:
                     continue
-                away = _direction(contact.obstacle_point, contact.body_point)
-                comes = each.speed_along(contact.body_point, away)
-                if comes < 0:
-                    ease = each.ease(contact.body_point, away)
-                    each.push(contact.body_point, away, -comes / ease)
+                direction = _direction(contact.obstacle_point, contact.body_point)
+                closing_cm_s = mover.speed_along(contact.body_point, direction)
+                if closing_cm_s < 0:
+                    ease = mover.ease(contact.body_point, direction)
+                    mover.push(contact.body_point, direction, -closing_cm_s / ease)
 
-    def _part_all(self, before: Sequence[Pose]) -> None:
+    def _part_all(self, old_poses: Sequence[Pose]) -> None:
         """Move bodies apart that have come into each other, or into an obstacle.
 
         Where that cannot be done they stay where they were.
@@ -287,40 +310,40 @@ class Bout(Driving):
         for _ in range(MOST_PUSHES):
             if self._is_parted():
                 return
-        for each, pose in zip(self._all, before, strict=True):
-            each.put(pose)
+        for mover, pose in zip(self._movers, old_poses, strict=True):
+            mover.move_to(pose)
 
     def _is_parted(self) -> bool:
         """Move what overlaps; return whether nothing has."""
         is_parted = True
-        for one, other in combinations(self._all, 2):
-            gap, ours, theirs = self._gap(one, other)
+        for first, second in combinations(self._movers, 2):
+            gap, ours, theirs = self._gap(first, second)
             if gap < -EXACT_CM:
-                away = _direction(theirs, ours)
-                one.shift(away, -gap / 2)
-                other.shift(Point(-away.x, -away.y), -gap / 2)
+                direction = _direction(theirs, ours)
+                first.shift(direction, -gap / 2)
+                second.shift(Point(-direction.x, -direction.y), -gap / 2)
                 is_parted = False
-        for each in self._all:
-            contact = each.nearest(self.obstacles)
+        for mover in self._movers:
+            contact = mover.nearest_contact(self.obstacles)
             if contact is not None and contact.gap_cm < -EXACT_CM:
-                away = _direction(contact.obstacle_point, contact.body_point)
-                each.shift(away, -contact.gap_cm)
+                direction = _direction(contact.obstacle_point, contact.body_point)
+                mover.shift(direction, -contact.gap_cm)
                 is_parted = False
         return is_parted
 
     @staticmethod
-    def _gap(one: Mover, other: Mover) -> tuple[float, Point, Point]:
+    def _gap(first: Mover, second: Mover) -> tuple[float, Point, Point]:
         """Return how far two bodies are apart, and the nearest points of their spines."""
-        apart, ours, theirs = gap_between(one.spine(), other.spine())
-        return apart - one.hull.radius_cm - other.hull.radius_cm, ours, theirs
+        distance_cm, ours, theirs = gap_between(first.spine(), second.spine())
+        return distance_cm - first.hull.radius_cm - second.hull.radius_cm, ours, theirs
 
-    def _note(self, before: Pose) -> None:
+    def _record(self, old_pose: Pose) -> None:
         """Take down the way, what it bumps into, and who has left the ring."""
         pose = self._robot.pose
-        self.driven_cm += math.dist(pose[:2], before[:2])
-        if self._ticks % KEPT_MS == 0:
+        self.driven_cm += math.dist(pose[:2], old_pose[:2])
+        if self._ticks % CORNER_INTERVAL_MS == 0:
             self._keep_corner(pose)
-        contact = self._robot.nearest(self.obstacles)
+        contact = self._robot.nearest_contact(self.obstacles)
         is_at_wall = contact is not None and contact.gap_cm < TOUCH_CM
         self.bumps += is_at_wall and not self._is_at_wall
         self._is_at_wall = is_at_wall
@@ -329,7 +352,7 @@ class Bout(Driving):
         if not self._is_inside(pose):
             self.has_fallen = True
             for rival in self._rivals:
-                rival.stands = True
+                rival.has_stopped = True
             return
         for rival in self._rivals:
             rival.is_out = rival.is_out or not self._is_inside(rival.pose)
@@ -338,24 +361,34 @@ class Bout(Driving):
         return any(ring.holds(*pose[:2]) for ring in self._rings)
 
 
-def _push_apart(one: Mover, other: Mover, place: Point, away: Point, most: float) -> float:
-    """Push two bodies at a place, so that they come no nearer along `away`; return how much.
+def _push_apart(
+    first: Mover, second: Mover, point: Point, direction: Point, most_percent: float
+) -> float:
+    """Push two bodies at a place, so that they come no nearer along `direction`; return how much.
 
-    With a `most`, so that they slide neither way.
+    With a `most_percent`, so that they slide neither way.
     """
-    back = Point(-away.x, -away.y)
-    comes = one.speed_along(place, away) + other.speed_along(place, back)
-    percent = -comes / (one.ease(place, away) + other.ease(place, back))
-    percent = max(0.0, percent) if most == math.inf else max(-most, min(most, percent))
-    one.push(place, away, percent)
-    other.push(place, back, percent)
+    opposite = Point(-direction.x, -direction.y)
+    closing_cm_s = first.speed_along(point, direction) + second.speed_along(point, opposite)
+    percent = -closing_cm_s / (first.ease(point, direction) + second.ease(point, opposite))
+    percent = (
+        max(0.0, percent)
+        if most_percent == math.inf
+        else max(-most_percent, min(most_percent, percent))
+    )
+    first.push(point, direction, percent)
+    second.push(point, opposite, percent)
     return percent
 
 
 def _direction(start: Point, end: Point) -> Point:
     """Return the direction from a point to another, of length 1."""
-    apart = math.dist(start, end)
-    return Point((end.x - start.x) / apart, (end.y - start.y) / apart) if apart else Point(1.0, 0.0)
+    distance_cm = math.dist(start, end)
+    return (
+        Point((end.x - start.x) / distance_cm, (end.y - start.y) / distance_cm)
+        if distance_cm
+        else Point(1.0, 0.0)
+    )
 
 
 def driving_in(body: Body, world: World) -> Driving:

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 
 T = TypeVar("T")
 
-ANSWER_MS = 60_000  # for a robot to answer
+ANSWER_TIMEOUT_MS = 60_000  # for a robot to answer
 
 
 class Computer:
@@ -30,23 +30,23 @@ class Computer:
         the session hears and says as much as if nothing had been held.
         """
         for _ in range(milliseconds):
-            watched = self.robot.firmware
-            if self._until_ms is not None and watched.held_at is None:
+            firmware = self.robot.firmware
+            if self._until_ms is not None and firmware.held_at is None:
                 now_ms, data = self._until_ms, b""
             else:
-                self._hear()
+                self._receive()
                 now_ms = self.robot.now_ms + 1
                 data = self.session.poll(now_ms)
             self._sent += self.robot.step(now_ms, data)
-            self._until_ms = now_ms if watched.held_at is not None else None
+            self._until_ms = now_ms if firmware.held_at is not None else None
             if self._until_ms is None:
-                self._hear()
+                self._receive()
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         sent, self._sent = bytes(self._sent), bytearray()
         self.session.receive(sent, self.robot.now_ms)
 
-    def until(self, request: PendingRequest[T], limit_ms: int = ANSWER_MS) -> Reply[T]:
+    def wait_for(self, request: PendingRequest[T], limit_ms: int = ANSWER_TIMEOUT_MS) -> Reply[T]:
         """Let time go on until a request has its outcome."""
         end_ms = self.robot.now_ms + limit_ms
         while request.outcome is None:

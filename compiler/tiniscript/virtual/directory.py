@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.base import files
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.link.port_names import canonical_port
 from tiniscript.link.sharing import peers
 from tiniscript.link.sharing.registry import is_taken
@@ -36,12 +36,12 @@ class RunningRobot(NamedTuple):
     verb: str = "robot"
 
 
-def announce(running: RunningRobot) -> Path | None:
+def announce(running_robot: RunningRobot) -> Path | None:
     """Let others find a robot. Return the file, or None where it cannot be written."""
-    path = _path(running.address)
+    path = _path(running_robot.address)
     with contextlib.suppress(OSError):  # there may be no folder yet
-        files.remove_abandoned(path.parent, [item.name for item in path.parent.iterdir()])
-    return path if files.keep(path, json.dumps(running._asdict()).encode()) else None
+        files.remove_abandoned(path.parent, [entry.name for entry in path.parent.iterdir()])
+    return path if files.keep(path, json.dumps(running_robot._asdict()).encode()) else None
 
 
 def withdraw(path: Path | None) -> None:
@@ -52,7 +52,7 @@ def withdraw(path: Path | None) -> None:
 
 def running_robots() -> list[RunningRobot]:
     """Return the running robots. Opens none of them: that would count as a client."""
-    result: list[RunningRobot] = []
+    found_robots: list[RunningRobot] = []
     paths: list[Path] = []
     with contextlib.suppress(OSError):
         paths = sorted(_folder().glob("*.json"))
@@ -60,10 +60,10 @@ def running_robots() -> list[RunningRobot]:
         robot = _read(path)
         if robot is not None and _is_listening(robot.address):
             if not peers.is_of_another(_number_of(robot.address)):
-                result.append(robot)
+                found_robots.append(robot)
         else:
             withdraw(path)
-    return result
+    return found_robots
 
 
 def is_of_another(port: str) -> bool:
@@ -78,13 +78,13 @@ def is_of_another(port: str) -> bool:
 
 def unclaimed_robots() -> list[RunningRobot]:
     """Return the robots to which any command may upload a program."""
-    return [item for item in running_robots() if item.verb == "robot"]
+    return [robot for robot in running_robots() if robot.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
     """Return whether a port belongs to a running virtual robot."""
-    known = {port, canonical_port(port)}
-    return any(known & {item.address, item.terminal} for item in running_robots())
+    names = {port, canonical_port(port)}
+    return any(names & {robot.address, robot.terminal} for robot in running_robots())
 
 
 def is_gone(port: str) -> bool:
@@ -95,11 +95,11 @@ def is_gone(port: str) -> bool:
 
 def _read(path: Path) -> RunningRobot | None:
     try:
-        fields = json.loads(contents(path, FILE_BYTES))
+        fields = json.loads(read_limited(path, FILE_BYTES))
         robot = RunningRobot(*(fields[key] for key in RunningRobot._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
-    if not all(isinstance(item, str) and item.isprintable() for item in robot):
+    if not all(isinstance(field, str) and field.isprintable() for field in robot):
         return None
     return robot if robot.address == f"{PREFIX}{path.stem}" else None
 

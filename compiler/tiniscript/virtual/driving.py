@@ -17,7 +17,7 @@ from tiniscript.virtual.geometry import Point, Segment, distance, gap_between
 
 TOUCH_CM = 0.3  # a smaller distance is contact
 STEP_MS = 10.0  # time step of a robot in contact
-STRIDE_MS = 100.0  # time between two kept poses
+KEEP_INTERVAL_MS = 100.0  # time between two kept poses
 NEAR_CM = 20.0  # obstacles further away than this are checked later
 MOST_CORNERS = 20_000  # corners of the path; beyond that every other one is dropped
 PUSHING_CM = 0.05  # a smaller one, and the obstacle pushes back
@@ -50,8 +50,8 @@ class Hull:
         self.reach_cm = max(front, -back)  # distance of the farthest point from the wheels
 
     def spine(self, pose: Pose) -> Segment:
-        along = math.radians(pose.heading)
-        cos, sin = math.cos(along), math.sin(along)
+        heading = math.radians(pose.heading)
+        cos, sin = math.cos(heading), math.sin(heading)
         return Segment(
             Point(pose.x_cm + self.back_cm * cos, pose.y_cm + self.back_cm * sin),
             Point(pose.x_cm + self.front_cm * cos, pose.y_cm + self.front_cm * sin),
@@ -62,16 +62,19 @@ class Hull:
         spine = self.spine(pose)
         middle_x, middle_y = (spine.a.x + spine.b.x) / 2, (spine.a.y + spine.b.y) / 2
         reach = (self.front_cm - self.back_cm) / 2 + self.radius_cm
-        best: Contact | None = None
+        nearest: Contact | None = None
         for obstacle in obstacles:
             # far away is known more quickly
-            if best is not None and distance(obstacle, middle_x, middle_y) >= best.gap_cm + reach:
+            if (
+                nearest is not None
+                and distance(obstacle, middle_x, middle_y) >= nearest.gap_cm + reach
+            ):
                 continue
-            apart, body_point, obstacle_point = gap_between(spine, obstacle)
-            gap = apart - self.radius_cm
-            if best is None or gap < best.gap_cm:
-                best = Contact(gap, body_point, obstacle_point)
-        return best
+            distance_cm, body_point, obstacle_point = gap_between(spine, obstacle)
+            gap_cm = distance_cm - self.radius_cm
+            if nearest is None or gap_cm < nearest.gap_cm:
+                nearest = Contact(gap_cm, body_point, obstacle_point)
+        return nearest
 
     def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
         """Return points around the robot, for a picture."""
@@ -90,7 +93,7 @@ class Hull:
 class Drive(NamedTuple):
     """Points of a path, joined by straight lines, and the least free distance beyond its end."""
 
-    way: list[Pose]
+    path: list[Pose]
     free_cm: float
 
 
@@ -107,8 +110,8 @@ class Driving:
         self.has_fallen = False  # out of a ring
         self.driven_cm = 0.0
         self._pose = start
-        self._near: Sequence[Segment] = obstacles  # all that may come near,
-        self._near_from: Pose | None = None  # to a robot that is here
+        self._near_obstacles: Sequence[Segment] = obstacles  # all that may come near,
+        self._near_pose: Pose | None = None  # to a robot that is here
         self._kept_ms = 0.0  # when it was there
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
         self._is_touching = self.touch_point(start) is not None
@@ -119,11 +122,11 @@ class Driving:
         return []
 
     @property
-    def pushed_out(self) -> int:
+    def pushed_out_count(self) -> int:
         """Return how many of them have left the ring."""
         return 0
 
-    def others(self) -> list[Segment]:
+    def other_outlines(self) -> list[Segment]:
         """Return their outlines: what a sensor sees besides what stands."""
         return []
 
@@ -142,54 +145,54 @@ class Driving:
 
     def _contact(self, pose: Pose) -> Contact | None:
         """Return the nearest obstacle, or None where each is further away than NEAR_CM."""
-        centre = self._near_from
+        centre = self._near_pose
         if centre is None or math.dist(centre[:2], pose[:2]) > NEAR_CM:
             least_cm = self.hull.reach_cm + 2 * NEAR_CM
-            self._near = [
+            self._near_obstacles = [
                 obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < least_cm
             ]
-            self._near_from = pose
-        contact = self.hull.contact(pose, self._near)
+            self._near_pose = pose
+        contact = self.hull.contact(pose, self._near_obstacles)
         return None if contact is None or contact.gap_cm > NEAR_CM else contact
 
     def set_motors(self, now_ms: float, left: float, right: float) -> None:
-        self.go_on(now_ms)
+        self.advance_to(now_ms)
         self.left, self.right = left, right
 
-    def go_on(self, now_ms: float) -> Pose:
+    def advance_to(self, now_ms: float) -> Pose:
         """Return the pose at `now_ms`, and continue the path from there."""
-        while self._kept_ms + STRIDE_MS <= now_ms:
-            self._keep(STRIDE_MS)
+        while self._kept_ms + KEEP_INTERVAL_MS <= now_ms:
+            self._advance(KEEP_INTERVAL_MS)
         if self._kept_ms < now_ms:
-            self._keep(now_ms - self._kept_ms)
+            self._advance(now_ms - self._kept_ms)
         return self._pose
 
-    def look(self, now_ms: float) -> Pose:
+    def pose_at(self, now_ms: float) -> Pose:
         """Return the pose at `now_ms`. This does not change the later path."""
-        while self._kept_ms + STRIDE_MS <= now_ms:
-            self._keep(STRIDE_MS)
-        return self._drive_free(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
+        while self._kept_ms + KEEP_INTERVAL_MS <= now_ms:
+            self._advance(KEEP_INTERVAL_MS)
+        return self._drive_free(self._pose, self._free_cm, now_ms - self._kept_ms).path[-1]
 
-    def _keep(self, duration_ms: float) -> None:
+    def _advance(self, duration_ms: float) -> None:
         drive = self._drive_free(self._pose, self._free_cm, duration_ms)
         self._kept_ms += duration_ms
-        before = self._pose
-        self._pose, self._free_cm = drive.way[-1], drive.free_cm
+        last_pose = self._pose
+        self._pose, self._free_cm = drive.path[-1], drive.free_cm
         if not self.left and not self.right:
             return
-        for pose in drive.way:
-            self.driven_cm += math.dist(pose[:2], before[:2])
-            before = pose
+        for pose in drive.path:
+            self.driven_cm += math.dist(pose[:2], last_pose[:2])
+            last_pose = pose
             self._keep_corner(pose)
         is_touching = self._free_cm < TOUCH_CM and self.touch_point(self._pose) is not None
         self.bumps += is_touching and not self._is_touching
         self._is_touching = is_touching
 
     def _keep_corner(self, pose: Pose) -> None:
-        last = self.corners[-1]
-        if len(self.corners) > 1 and self._is_straight(self.corners[-2], last, pose):
+        last_corner = self.corners[-1]
+        if len(self.corners) > 1 and self._is_straight(self.corners[-2], last_corner, pose):
             self.corners[-1] = pose
-        elif pose[:2] != last[:2]:
+        elif pose[:2] != last_corner[:2]:
             self.corners.append(pose)
         if len(self.corners) > MOST_CORNERS:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
@@ -206,31 +209,31 @@ class Driving:
         if (not self.left and not self.right) or duration_ms <= 0:
             return Drive([pose], free_cm)
         speed = self._fastest_cm_ms()
-        way: list[Pose] = []
+        path: list[Pose] = []
         left_ms = duration_ms
-        is_known = False  # how much is free, exactly
+        is_gap_known = False  # how much is free, exactly
         while left_ms > 0:
-            if free_cm < speed * left_ms and not is_known:
+            if free_cm < speed * left_ms and not is_gap_known:
                 contact = self._contact(pose)
                 free_cm = NEAR_CM if contact is None else max(0.0, contact.gap_cm)
             step_ms = min(left_ms, max(free_cm / speed, STEP_MS))
             if free_cm >= speed * step_ms:
-                way += points(self.body, pose, self.left, self.right, step_ms)
+                path += points(self.body, pose, self.left, self.right, step_ms)
                 free_cm -= speed * step_ms
-                is_known = False
+                is_gap_known = False
             else:
-                expected = move_pose(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
-                pushed, free_cm = self._slide_along(pose, expected)
-                way.append(pushed)
-                is_known = True
-            pose = way[-1]
+                wanted_pose = move_pose(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                pushed_pose, free_cm = self._slide_along(pose, wanted_pose)
+                path.append(pushed_pose)
+                is_gap_known = True
+            pose = path[-1]
             left_ms -= step_ms
-        return Drive(way, free_cm)
+        return Drive(path, free_cm)
 
     def _fastest_cm_ms(self) -> float:
         """Return how fast the fastest point of the body can be."""
-        full = self.body.speed_cm_s / 100 / 1000
-        ahead = abs(self.left + self.right) / 2 * full
+        percent_cm_ms = self.body.speed_cm_s / 100 / 1000
+        ahead = abs(self.left + self.right) / 2 * percent_cm_ms
         turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
 
@@ -244,11 +247,11 @@ class Driving:
         contact = self._contact(pose)
         if contact is None or contact.gap_cm > PUSHING_CM:
             return left, right
-        along = math.radians(pose.heading)
-        cos, sin = math.cos(along), math.sin(along)
-        apart = math.dist(contact.body_point, contact.obstacle_point) or 1.0
+        heading = math.radians(pose.heading)
+        cos, sin = math.cos(heading), math.sin(heading)
+        distance_cm = math.dist(contact.body_point, contact.obstacle_point) or 1.0
         away_x, away_y = (
-            (ours - theirs) / apart
+            (ours - theirs) / distance_cm
             for ours, theirs in zip(contact.body_point, contact.obstacle_point, strict=True)
         )
         ahead = away_x * cos + away_y * sin  # the part of the push that is along the robot,
@@ -258,13 +261,13 @@ class Driving:
         ) * sin
         lever = lever_cm * math.radians(self.body.turn_s) / self.body.speed_cm_s
         turning = aside * lever  # and the one that turns it
-        comes = (left + right) / 2 * ahead + (right - left) / 2 * turning
-        if comes >= 0:
+        closing_speed = (left + right) / 2 * ahead + (right - left) / 2 * turning
+        if closing_speed >= 0:
             return left, right
-        push = comes / (ahead * ahead + turning * turning)
+        push = closing_speed / (ahead * ahead + turning * turning)
         return left - push * (ahead - turning), right - push * (ahead + turning)
 
-    def _slide_along(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
+    def _slide_along(self, old_pose: Pose, pose: Pose) -> tuple[Pose, float]:
         """Return where a robot ends up on its way to `pose`, and the free distance there.
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.
@@ -275,13 +278,13 @@ class Driving:
                 return pose, NEAR_CM
             if contact.gap_cm > -EXACT_CM:
                 return pose, max(0.0, contact.gap_cm)
-            apart = math.dist(contact.body_point, contact.obstacle_point)
-            if apart < self.hull.radius_cm / 2:  # deeper than a step leads: it was forced in
+            distance_cm = math.dist(contact.body_point, contact.obstacle_point)
+            if distance_cm < self.hull.radius_cm / 2:  # deeper than a step leads: it was forced in
                 break
-            scale = -contact.gap_cm / apart
+            scale = -contact.gap_cm / distance_cm
             pose = Pose(
                 pose.x_cm + (contact.body_point.x - contact.obstacle_point.x) * scale,
                 pose.y_cm + (contact.body_point.y - contact.obstacle_point.y) * scale,
                 pose.heading,
             )
-        return before, 0.0
+        return old_pose, 0.0

@@ -28,35 +28,35 @@ def join_points(points: list[Point]) -> list[Segment]:
     return [Segment(a, b) for a, b in pairwise(points)]
 
 
-def nearest(segment: Segment, x: float, y: float) -> Point:
+def nearest_point(segment: Segment, x: float, y: float) -> Point:
     """Return the point of a segment that is nearest to a place."""
     (ax, ay), (bx, by) = segment
     dx, dy = bx - ax, by - ay
     length = dx * dx + dy * dy
     if not length:
         return segment.a
-    along = ((x - ax) * dx + (y - ay) * dy) / length
-    along = 0.0 if along < 0 else 1.0 if along > 1 else along
-    return Point(ax + along * dx, ay + along * dy)
+    fraction = ((x - ax) * dx + (y - ay) * dy) / length
+    fraction = 0.0 if fraction < 0 else 1.0 if fraction > 1 else fraction
+    return Point(ax + fraction * dx, ay + fraction * dy)
 
 
 def distance(segment: Segment, x: float, y: float) -> float:
     (ax, ay), (bx, by) = segment
     dx, dy = bx - ax, by - ay
     length = dx * dx + dy * dy
-    along = ((x - ax) * dx + (y - ay) * dy) / length if length else 0.0
-    if along > 1:
+    fraction = ((x - ax) * dx + (y - ay) * dy) / length if length else 0.0
+    if fraction > 1:
         return math.hypot(bx - x, by - y)
     return (
         math.hypot(ax - x, ay - y)
-        if along < 0
-        else math.hypot(ax + along * dx - x, ay + along * dy - y)
+        if fraction < 0
+        else math.hypot(ax + fraction * dx - x, ay + fraction * dy - y)
     )
 
 
-def crosses(one: Segment, other: Segment) -> bool:
+def crosses(segment: Segment, other: Segment) -> bool:
     """Whether two segments have a point in common, where neither only touches the other's end."""
-    (ax, ay), (bx, by) = one
+    (ax, ay), (bx, by) = segment
     (cx, cy), (dx, dy) = other
     # on which side of one line the ends of the other are
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
@@ -65,24 +65,24 @@ def crosses(one: Segment, other: Segment) -> bool:
     return (vx * (ay - cy) - vy * (ax - cx)) * (vx * (by - cy) - vy * (bx - cx)) < 0
 
 
-def gap_between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
+def gap_between(segment: Segment, other: Segment) -> tuple[float, Point, Point]:
     """Return how far two segments are apart, and the two points that are nearest.
 
     Where they cross, the distance is 0 and the points are any.
     """
-    if crosses(one, other):
-        return 0.0, one.a, one.a
-    ends = (
-        (distance(other, *one.a), 0),
-        (distance(other, *one.b), 1),
-        (distance(one, *other.a), 2),
-        (distance(one, *other.b), 3),
+    if crosses(segment, other):
+        return 0.0, segment.a, segment.a
+    end_gaps = (
+        (distance(other, *segment.a), 0),
+        (distance(other, *segment.b), 1),
+        (distance(segment, *other.a), 2),
+        (distance(segment, *other.b), 3),
     )
-    apart, which = min(ends)
-    if which < 2:
-        return apart, one[which], nearest(other, *one[which])
-    end = other[which - 2]
-    return apart, nearest(one, *end), end
+    gap, end_number = min(end_gaps)
+    if end_number < 2:
+        return gap, segment[end_number], nearest_point(other, *segment[end_number])
+    end = other[end_number - 2]
+    return gap, nearest_point(segment, *end), end
 
 
 def nearest_seen(
@@ -95,7 +95,7 @@ def nearest_seen(
     """
     right_cos, right_sin = math.cos(heading - half_angle), math.sin(heading - half_angle)
     left_cos, left_sin = math.cos(heading + half_angle), math.sin(heading + half_angle)
-    best: float | None = None
+    nearest_distance: float | None = None
     for (ax, ay), (bx, by) in segments:
         ax, ay, bx, by = ax - eye.x, ay - eye.y, bx - eye.x, by - eye.y
         # on which side of each border of the cone each end is; 0 or more is inside
@@ -104,16 +104,16 @@ def nearest_seen(
         if (right_a < 0 and right_b < 0) or (left_a < 0 and left_b < 0):
             continue
         low, high = 0.0, 1.0  # the part of the segment inside
-        for at_a, at_b in ((right_a, right_b), (left_a, left_b)):
-            if at_a < 0:
-                low = max(low, at_a / (at_a - at_b))
-            elif at_b < 0:
-                high = min(high, at_a / (at_a - at_b))
+        for side_a, side_b in ((right_a, right_b), (left_a, left_b)):
+            if side_a < 0:
+                low = max(low, side_a / (side_a - side_b))
+            elif side_b < 0:
+                high = min(high, side_a / (side_a - side_b))
         if low > high:
             continue
         dx, dy = bx - ax, by - ay
-        first, last = Point(ax + low * dx, ay + low * dy), Point(ax + high * dx, ay + high * dy)
-        result = distance(Segment(first, last), 0.0, 0.0)
-        if best is None or result < best:
-            best = result
-    return best
+        start, end = Point(ax + low * dx, ay + low * dy), Point(ax + high * dx, ay + high * dy)
+        segment_distance = distance(Segment(start, end), 0.0, 0.0)
+        if nearest_distance is None or segment_distance < nearest_distance:
+            nearest_distance = segment_distance
+    return nearest_distance

@@ -21,7 +21,7 @@ PATH_MEGA = Path(__file__).with_name("robot_mega.wasm")
 PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 
 POWER_ON, RESET_BUTTON = 1, 2  # why it begins
-NOWHERE = (1 << 32) - 1
+NO_OFFSET = (1 << 32) - 1
 
 
 class NoWebAssembly(Exception):
@@ -55,17 +55,17 @@ _CLOCK = 1 << 32
 _NOTE_NUMBERS = 5  # numbers of 32 bits
 
 
-class Circumstances(NamedTuple):
+class FirmwareSettings(NamedTuple):
     """The settings with which a firmware is switched on.
 
-    `words` are those of the kit, as its reader of text keeps them, and `hashes` those of its
-    devices; `edge_cm` and `edge_degrees` are what the firmware knows of discs, `has_two` says
-    whether they have two channels; `byte_us` is how long a byte takes on the line, both ways
-    (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
-    `language` is the number of that of its answers to text.
+    `kit_words` are those of the kit, as its reader of text keeps them, and `hashes` those of its
+    devices; `edge_cm` and `edge_degrees` are what the firmware knows of discs, `has_two_channels`
+    says whether they have two channels; `byte_us` is how long a byte takes on the line, both ways
+    (0: none); `eeprom_us` how long one takes in the memory that keeps programs. `language` is the
+    number of that of its answers to text.
     """
 
-    words: bytes
+    kit_words: bytes
     hashes: tuple[int, ...]
     kit: int
     sensors: int
@@ -77,7 +77,7 @@ class Circumstances(NamedTuple):
     turn: int
     edge_cm: int
     edge_degrees: int
-    has_two: bool
+    has_two_channels: bool
     byte_us: int
     eeprom_us: int
     language: int
@@ -90,7 +90,11 @@ class Firmware:
     """
 
     def __init__(
-        self, board: Board, what: Circumstances, memory: bytes | None = None, path: Path = PATH
+        self,
+        board: Board,
+        settings: FirmwareSettings,
+        memory: bytes | None = None,
+        path: Path = PATH,
     ) -> None:
         """Raises NoWebAssembly."""
         try:
@@ -98,35 +102,35 @@ class Firmware:
                 from tiniscript.vm.page_wasm import Instance
             else:
                 from tiniscript.vm.wasm_store import Instance
-        except (ImportError, OSError, RuntimeError) as why:
-            raise NoWebAssembly(str(why)) from None
-        looks = WeakMethod(self._look)  # `wasm_store` says why
+        except (ImportError, OSError, RuntimeError) as error:
+            raise NoWebAssembly(str(error)) from None
+        weak_handler = WeakMethod(self._handle_notes)  # `wasm_store` says why
 
-        def look_now() -> None:
-            look = looks()
-            assert look is not None, "switched off"
-            look()
+        def on_look() -> None:
+            handler = weak_handler()
+            assert handler is not None, "switched off"
+            handler()
 
-        self._instance = Instance(path, {"look": look_now})
+        self._instance = Instance(path, {"look": on_look})
         self.call = self._instance.call
         self._numbers = self._instance.numbers
         self._inbox, self._outbox = self.call("inbox"), self.call("outbox")
-        self._room = self.call("box_bytes")
+        self._box_bytes = self.call("box_bytes")
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
         self._waiting = bytearray()  # bytes after those in the inbox
-        self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
-        self._reading = self.call("reading") // 4
+        self._notes_index, self._note_count_index = self.call("notes") // 4, self.call("noted") // 4
+        self._reading_index = self.call("reading") // 4
         self.is_watched = False  # its program may be held
-        self._told = [(getattr(board, name), count) for name, count in _NOTE_KINDS]
-        whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
-        self._instance.write(whole, self._eeprom)
-        hashes = pack(f"<{len(what.hashes)}H", *what.hashes)
+        self._handlers = [(getattr(board, name), count) for name, count in _NOTE_KINDS]
+        full_memory = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
+        self._instance.write(full_memory, self._eeprom)
+        hashes = pack(f"<{len(settings.hashes)}H", *settings.hashes)
         self._instance.write(hashes, self.call("hashes"))
-        if len(what.words) <= self.call("word_bytes"):  # else it knows none of them
-            self._instance.write(what.words, self.call("words"))
-        self.call("begin", *map(int, what[2:]))
-        self._look()
+        if len(settings.kit_words) <= self.call("word_bytes"):  # else it knows none of them
+            self._instance.write(settings.kit_words, self.call("words"))
+        self.call("begin", *map(int, settings[2:]))
+        self._handle_notes()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:
         """Run until `until_us`, with `data` as received bytes. Return the bytes sent meanwhile.
@@ -137,16 +141,16 @@ class Firmware:
         sent = bytearray()
         while True:
             if self._waiting and not self.call("unheard"):
-                part = bytes(self._waiting[: self._room])
-                del self._waiting[: self._room]
-                self._instance.write(part, self._inbox)
-                self.call("put", len(part))
+                chunk = bytes(self._waiting[: self._box_bytes])
+                del self._waiting[: self._box_bytes]
+                self._instance.write(chunk, self._inbox)
+                self.call("put", len(chunk))
             has_more = bool(self._waiting)
             count = self.call("run", until_us, int(has_more))
-            self._look()
+            self._handle_notes()
             if count:
                 sent += self._instance.read(self._outbox, self._outbox + count)
-            if self.is_watched or has_more or count == self._room:  # it may have ended earlier
+            if self.is_watched or has_more or count == self._box_bytes:  # it may have ended earlier
                 if self.call("now_us") < until_us and self.held_at is None:
                     continue
             return bytes(sent)
@@ -156,10 +160,10 @@ class Firmware:
     def mark(self, marks: bytes) -> None:
         """Set the marks of the offsets of a program's code from 0 on: bits for each."""
         size = self.call("marks_bytes")
-        whole = marks[:size] + bytes(size - len(marks[:size]))
-        self._instance.write(whole, self.call("marks"))
+        all_marks = marks[:size] + bytes(size - len(marks[:size]))
+        self._instance.write(all_marks, self.call("marks"))
 
-    def want(self, bits: int) -> None:
+    def hold_before(self, bits: int) -> None:
         """Hold a program from now on in front of what has a mark with one of these bits."""
         self.is_watched = self.is_watched or bits != 0
         self.call("want", bits)
@@ -169,8 +173,8 @@ class Firmware:
         """Return the offset in front of which the program is held, or None."""
         if not self.is_watched:
             return None
-        result = self.call("held_at") % _CLOCK
-        return None if result == NOWHERE else result
+        offset = self.call("held_at") % _CLOCK
+        return None if offset == NO_OFFSET else offset
 
     @property
     def now_us(self) -> int:
@@ -179,7 +183,7 @@ class Firmware:
     def go_on(self) -> None:
         """Let the held program go on, in the tick in which it was held."""
         self.call("go_on")
-        self._look()
+        self._handle_notes()
 
     def tasks(self) -> list[int]:
         """Return where the program's tasks are that have not ended; none of one without tasks."""
@@ -193,7 +197,7 @@ class Firmware:
         return [int(number) for number in self._numbers[start : start + count]]
 
     @property
-    def unheard(self) -> int:
+    def unread_bytes(self) -> int:
         return len(self._waiting) + self.call("unheard")
 
     def memory(self) -> bytes:
@@ -202,27 +206,27 @@ class Firmware:
 
     def close(self) -> None:
         """Switch it off, and free its memory. It cannot run again."""
-        self._told = []
+        self._handlers = []
         self._instance.close()
 
     def press(self) -> None:
         """The start button goes down."""
         self.call("press")
-        self._look()
+        self._handle_notes()
 
     def let_go(self) -> None:
         """The start button comes up."""
         self.call("let_go")
-        self._look()
+        self._handle_notes()
 
-    def _look(self) -> None:
+    def _handle_notes(self) -> None:
         """Tell the board what the firmware has noted."""
         numbers = self._numbers
-        count = numbers[self._noted]
-        numbers[self._noted] = 0
-        for k in range(self._notes, self._notes + count * _NOTE_NUMBERS, _NOTE_NUMBERS):
-            now_ms, what, *values = numbers[k : k + _NOTE_NUMBERS]
-            tell, takes = self._told[what - 1]
-            result = tell(now_ms % _CLOCK, *values[:takes])
-            if what in _ASKING_KINDS:
-                numbers[self._reading] = result
+        count = numbers[self._note_count_index]
+        numbers[self._note_count_index] = 0
+        for k in range(self._notes_index, self._notes_index + count * _NOTE_NUMBERS, _NOTE_NUMBERS):
+            now_ms, kind, *values = numbers[k : k + _NOTE_NUMBERS]
+            handler, value_count = self._handlers[kind - 1]
+            result = handler(now_ms % _CLOCK, *values[:value_count])
+            if kind in _ASKING_KINDS:
+                numbers[self._reading_index] = result

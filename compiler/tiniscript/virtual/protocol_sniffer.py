@@ -44,13 +44,15 @@ def sniff_robot_client(data: bytes) -> bool | None:
 
 
 def _sniff_text(data: bytes) -> bool | None:
-    line, *after = _LINE_END.split(data.lstrip(b"\r\n"), 1)  # servers of HTTP skip empty lines
+    line, *later_lines = _LINE_END.split(
+        data.lstrip(b"\r\n"), 1
+    )  # servers of HTTP skip empty lines
     if _REQUEST.match(line) or _HTTP_METHOD_AND_TARGET.match(line):
         return False
     method = _METHOD.match(line)
     if line and (method is None or line[method.end() : method.end() + 1] not in b" \t"):
         return True  # `F(`: no method
     target = line[method.end() :].lstrip(b" \t") if method else b""
-    if target[:1] == b"=" or after:
+    if target[:1] == b"=" or later_lines:
         return True  # `X = 5`: no target; and a line that has ended, and is no request
     return None if len(data) <= MOST_LINE_BYTES else False

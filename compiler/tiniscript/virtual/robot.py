@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tiniscript.base.trace import Event, TracedRobot
 from tiniscript.link.names import fault_name, saved_name
-from tiniscript.robots.driver import AT_STOP, HOLD
+from tiniscript.robots.driver import AT_STOP, HOLD_CHOICE
 from tiniscript.robots.drivers import discs_of
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
@@ -20,15 +20,15 @@ from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot, language_number
 from tiniscript.virtual.bout import driving_in
 from tiniscript.virtual.module import (
-    NOWHERE,
+    NO_OFFSET,
     PATH,
     PATH_DISCS,
     PATH_ESP32,
     PATH_MEGA,
     POWER_ON,
     RESET_BUTTON,
-    Circumstances,
     Firmware,
+    FirmwareSettings,
 )
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.wheels import Roughness, Wheels
@@ -47,8 +47,8 @@ class Settings(NamedTuple):
     `seed` starts the random numbers. `noise` is a fraction: 0.05 is 5 %. `motors` are percent of
     each motor's nominal speed. `baud` of 0: a byte takes no time; None: as in the profile.
     `eeprom_us` is the time to save one byte; None: as the chip takes.
-    `told` are readings of single sensors. `rough` is what discs and their wheels do to a robot that
-    has them.
+    `given_readings` are readings of single sensors. `roughness` is what discs and their wheels do
+    to a robot that has them.
     """
 
     seed: int = 1
@@ -56,8 +56,8 @@ class Settings(NamedTuple):
     motors: tuple[float, float] = (100.0, 100.0)
     baud: int | None = None
     eeprom_us: int | None = None
-    told: Mapping[int, Sequence[int]] = {}
-    rough: Roughness = Roughness()
+    given_readings: Mapping[int, Sequence[int]] = {}
+    roughness: Roughness = Roughness()
 
 
 PLAIN_SETTINGS = Settings()
@@ -86,31 +86,42 @@ class VirtualRobot:
         self.world = world
         self.settings = settings
         self.now_ms = 0
-        self.chance = Random(settings.seed)
+        self.random_source = Random(settings.seed)
         self.driving = driving_in(profile.body, world)
         discs = profile.board.discs
         self.wheels: Wheels | None = None
         if discs:
-            self.wheels = Wheels(profile.body, discs, discs_of(discs).has_two, settings.rough,
-                                 settings.seed, self.driving.set_motors)  # fmt: skip
+            self.wheels = Wheels(
+                profile.body,
+                discs,
+                discs_of(discs).has_two_channels,
+                settings.roughness,
+                settings.seed,
+                self.driving.set_motors,
+            )
         if self.driving.is_blocked():
-            place = f"x_cm = {world.start.x_cm:g}, y_cm = {world.start.y_cm:g}"
-            raise WorldRefused(("start_blocked", {"path": "start", "place": place}))
+            start_text = f"x_cm = {world.start.x_cm:g}, y_cm = {world.start.y_cm:g}"
+            raise WorldRefused(("start_blocked", {"path": "start", "place": start_text}))
         self.sensing = Sensing(
-            profile, world, settings.noise, self.chance, settings.told, self.driving.others
+            profile,
+            world,
+            settings.noise,
+            self.random_source,
+            settings.given_readings,
+            self.driving.other_outlines,
         )
         self.is_running = False
         self.started_ms: int | None = None  # when its first program began
         self.ended_ms: int | None = None  # when its newest program ended
         self.is_at_rest = False
-        self._told = 0  # number of events from before the robot was at rest
+        self._event_count_at_rest = 0  # number of events from before the robot was at rest
         self.is_lit = False  # the light is on: the button would start a program
         self.fault = ""  # the fault that has ended the last program
         self.actuators: dict[int, int] = {}  # the current value of each
         self._traced = TracedRobot(profile.kit, self._sensor_reading)
-        self._ended = ""  # how the program has ended, as far as it is known
-        self._remote = 0  # what the firmware has heard, of the reading that it takes
-        self._began_ms = 0  # when it was switched on
+        self._end_event = ""  # how the program has ended, as far as it is known
+        self._remote_reading = 0  # what the firmware has heard, of the reading that it takes
+        self._power_on_ms = 0  # when it was switched on
         self._firmware = self._power_up(POWER_ON, memory)
 
     # -- what happens to it -----------------------------------------------------------------------
@@ -120,13 +131,13 @@ class VirtualRobot:
 
         Where the program is held, time goes on no further.
         """
-        sent = self._firmware.run((now_ms - self._began_ms) * 1000, data)
+        sent = self._firmware.run((now_ms - self._power_on_ms) * 1000, data)
         self.now_ms = now_ms
         if self._firmware.is_watched:
-            self.now_ms = min(now_ms, self._began_ms + self._firmware.now_us // 1000)
+            self.now_ms = min(now_ms, self._power_on_ms + self._firmware.now_us // 1000)
         self._settle()
         if self.is_at_rest:
-            del self._traced.events[self._told :]
+            del self._traced.events[self._event_count_at_rest :]
         del self._traced.events[:-MOST_EVENTS]
         return sent
 
@@ -152,7 +163,7 @@ class VirtualRobot:
         self._halt("STOP")
         self.driving.rest()
         self.is_at_rest = True
-        self._told = len(self._traced.events)
+        self._event_count_at_rest = len(self._traced.events)
 
     def switch_off(self) -> None:
         """Switch it off. Its clock must not go on until it is switched on again."""
@@ -160,7 +171,7 @@ class VirtualRobot:
         self.actuators.clear()
 
     def _power_up(self, reset: int, memory: bytes | None) -> Firmware:
-        self._began_ms = self.now_ms
+        self._power_on_ms = self.now_ms
         kit, board = self.profile.kit, self.profile.board
         baud = board.baud if self.settings.baud is None else self.settings.baud
         is_esp32 = board.chip in ESP32S
@@ -174,20 +185,20 @@ class VirtualRobot:
             edge_cm, edge_degrees = discs_of(discs).edges(discs, wheel_base_cm)
         return Firmware(
             self,
-            Circumstances(
-                words=kit_words(kit),
+            FirmwareSettings(
+                kit_words=kit_words(kit),
                 hashes=kit.hashes,
                 kit=kit.fingerprint,
                 sensors=len(kit.sensors),
                 actuators=len(kit.actuators),
                 reset=reset,
-                seed=self.chance.getrandbits(32),
+                seed=self.random_source.getrandbits(32),
                 max_run_ms=board.max_run_seconds * 1000,
                 speed=kit.speed,
                 turn=kit.turn,
                 edge_cm=edge_cm,
                 edge_degrees=edge_degrees,
-                has_two=discs is not None and discs_of(discs).has_two,
+                has_two_channels=discs is not None and discs_of(discs).has_two_channels,
                 byte_us=round(BITS_PER_BYTE * 1_000_000 / baud) if baud else 0,
                 eeprom_us=eeprom_us,
                 language=language_number(board.language),
@@ -203,19 +214,19 @@ class VirtualRobot:
 
         These are a run's events, START, STOP, RELEASE of an actuator, and OFF.
         """
-        events, self._traced.events, self._told = self._traced.events, [], 0
+        events, self._traced.events, self._event_count_at_rest = self._traced.events, [], 0
         return events
 
     @property
     def pose(self) -> Pose:
         if self.wheels:
             self.wheels.go_on(self.now_ms)
-        return self.driving.look(self.now_ms)
+        return self.driving.pose_at(self.now_ms)
 
     @property
-    def unheard(self) -> int:
+    def unread_bytes(self) -> int:
         """Return how many received bytes the firmware has not read yet."""
-        return self._firmware.unheard
+        return self._firmware.unread_bytes
 
     @property
     def memory(self) -> bytes:
@@ -240,7 +251,7 @@ class VirtualRobot:
     def read(self, now_ms: int, sensor: int, remote: int) -> int:
         """Return a reading; `remote` is what the firmware has heard from a remote control."""
         self._advance_to(now_ms)
-        self._remote = remote
+        self._remote_reading = remote
         return self._traced.read(sensor) or 0
 
     def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None:
@@ -250,7 +261,7 @@ class VirtualRobot:
     def show(self, now_ms: int, value: int, is_yes_no: int, at: int) -> None:
         self._advance_to(now_ms)
         self._traced.show(value, bool(is_yes_no))
-        self._traced.events[-1] = self._traced.events[-1]._replace(at=at)
+        self._traced.events[-1] = self._traced.events[-1]._replace(offset=at)
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
         self._advance_to(now_ms)
@@ -267,9 +278,9 @@ class VirtualRobot:
                 if value:
                     self._traced.set(number, 0)
                     self.actuators[number] = 0
-            elif board.actuators[number].settings.get(AT_STOP) != HOLD:
+            elif board.actuators[number].settings.get(AT_STOP) != HOLD_CHOICE:
                 name = kit.actuators[number].name
-                self._traced.say("RELEASE", (number,), f"RELEASE {name}")
+                self._traced.record("RELEASE", (number,), f"RELEASE {name}")
                 del self.actuators[number]
 
     def stop(self, now_ms: int) -> None:
@@ -277,7 +288,7 @@ class VirtualRobot:
         if self.is_running:
             self.is_running = False
             self.ended_ms = self.now_ms
-            self._ended = "STOP"
+            self._end_event = "STOP"
 
     def release(self, now_ms: int) -> None:
         self._settle()  # two programs may follow each other in one step
@@ -289,85 +300,87 @@ class VirtualRobot:
             self.started_ms = self.now_ms
         self.ended_ms = None
         self.fault = ""
-        self._say("START")
+        self._record("START")
 
     def light(self, now_ms: int, is_on: int) -> None:
         self.is_lit = bool(is_on)
 
     def finished(self, now_ms: int) -> None:
-        self._ended = "DONE"
+        self._end_event = "DONE"
 
     def faulted(self, now_ms: int) -> None:
-        self._ended = "FAULT"
+        self._end_event = "FAULT"
 
     # ---------------------------------------------------------------------------------------------
 
     def _advance_to(self, now_ms: int) -> None:
-        self.now_ms = self._began_ms + now_ms
+        self.now_ms = self._power_on_ms + now_ms
         self._traced.now_ms = self.now_ms
 
     def _set_motors(self, now_ms: int, left: float, right: float) -> None:
         self._advance_to(now_ms)
         if self.is_at_rest:
             return
-        items = []
+        speeds = []
         for power, percent in zip((left, right), self.settings.motors, strict=True):
-            off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
-            items.append(power * percent / 100 * (1 + off))
+            deviation = (
+                self.random_source.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
+            )
+            speeds.append(power * percent / 100 * (1 + deviation))
         if self.wheels:
-            self.wheels.set(self.now_ms, *items)
+            self.wheels.set(self.now_ms, *speeds)
         else:
-            self.driving.set_motors(self.now_ms, *items)
+            self.driving.set_motors(self.now_ms, *speeds)
 
-    def _halt(self, said: str) -> None:
-        """Its motors have no power from now on, and a program that runs has ended, as is `said`.
-        Its time need not go on."""
+    def _halt(self, event_name: str) -> None:
+        """Its motors have no power from now on, and a program that runs has ended, as is
+        `event_name`. Its time need not go on."""
         if self.wheels:
             self.wheels.go_on(self.now_ms)
             self.wheels.brake()
         self.driving.set_motors(self.now_ms, 0, 0)
         self._traced.now_ms = self.now_ms
         if self.is_running:
-            self._say(said)
+            self._record(event_name)
             self.ended_ms = self.now_ms
         self.is_running = False
 
     def _sensor_reading(self, sensor: int) -> int:
         if self.wheels:
             self.wheels.go_on(self.now_ms)
-        return self.sensing.read(sensor, self.driving.go_on(self.now_ms), self._remote)
+        return self.sensing.read(sensor, self.driving.advance_to(self.now_ms), self._remote_reading)
 
     def _settle(self) -> None:
         """Report how a program has ended: only now is it known whether it ended by itself."""
-        if not self._ended:
+        if not self._end_event:
             return
-        what, self._ended = self._ended, ""
-        if what == "FAULT":
+        event_text, self._end_event = self._end_event, ""
+        if event_text == "FAULT":
             number = self._firmware.call("fault")
             self.fault = fault_name(number)
-            what = f"FAULT {self.fault}"
-        self._say(what)
+            event_text = f"FAULT {self.fault}"
+        self._record(event_text)
 
-    def _say(self, text: str) -> None:
-        self._traced.say(text.partition(" ")[0], (), text)
+    def _record(self, text: str) -> None:
+        self._traced.record(text.partition(" ")[0], (), text)
 
     @property
-    def at(self) -> int | None:
+    def offset(self) -> int | None:
         """Return where the instruction that runs begins, or None while no program runs."""
-        result = self._firmware.call("at") % (1 << 32)
-        return None if result == NOWHERE else result
+        code_offset = self._firmware.call("at") % (1 << 32)
+        return None if code_offset == NO_OFFSET else code_offset
 
     @property
-    def places(self) -> list[int]:
+    def task_offsets(self) -> list[int]:
         """Return the offsets of what the program does now, one for each of its tasks."""
-        result = self._firmware.tasks()
-        return result or ([] if self.at is None else [self.at])
+        offsets = self._firmware.tasks()
+        return offsets or ([] if self.offset is None else [self.offset])
 
     @property
-    def driver(self) -> int | None:
+    def driving_task_offset(self) -> int | None:
         """Return where the task is that has the motors, while they are on; None of no tasks."""
-        result = self._firmware.call("driver")
-        return None if result == NOWHERE else result
+        code_offset = self._firmware.call("driver")
+        return None if code_offset == NO_OFFSET else code_offset
 
     @property
     def firmware(self) -> Firmware:

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
 FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # a rival as a flag; each second left
-LOOK_PAUSE_MS = 5  # between two looks
+LOOK_INTERVAL_MS = 5  # between two looks
 
 
 class Score:
@@ -23,53 +23,57 @@ class Score:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._taken = self._pushed = self._bumps = self._ms = 0
+        self._flag_count = self._pushed_count = self._bump_count = self._run_ms = 0
         self._has_fallen = False
 
     @property
-    def is_whole(self) -> bool:
+    def is_complete(self) -> bool:
         world = self._world
-        return self._taken == len(world.flags) and self._pushed == self._rivals
+        return self._flag_count == len(world.flags) and self._pushed_count == self._rival_count
 
     @property
-    def _rivals(self) -> int:
+    def _rival_count(self) -> int:
         """Return how many are to be pushed out: none where there is nothing to fall from."""
         return len(self._world.rivals) if self._world.rings else 0
 
-    def look(self, robot: VirtualRobot) -> None:
+    def update(self, robot: VirtualRobot) -> None:
         """See where the robot is now. What it does with all done, or fallen, counts no more."""
-        if self.is_whole or self._has_fallen or robot.now_ms % LOOK_PAUSE_MS:
+        if self.is_complete or self._has_fallen or robot.now_ms % LOOK_INTERVAL_MS:
             return
         if robot.started_ms is None:
             return
-        self._bumps = robot.driving.bumps
-        self._ms = (robot.now_ms if robot.is_running else robot.ended_ms or 0) - robot.started_ms
+        self._bump_count = robot.driving.bumps
+        self._run_ms = (
+            robot.now_ms if robot.is_running else robot.ended_ms or 0
+        ) - robot.started_ms
         x_cm, y_cm, _ = robot.pose
         self._has_fallen = robot.driving.has_fallen
-        self._pushed = robot.driving.pushed_out
-        if self._taken == len(self._world.flags):
+        self._pushed_count = robot.driving.pushed_out_count
+        if self._flag_count == len(self._world.flags):
             return
-        flag = self._world.flags[self._taken]
-        stands = not (robot.driving.left or robot.driving.right)
+        flag = self._world.flags[self._flag_count]
+        is_standing = not (robot.driving.left or robot.driving.right)
         if math.hypot(x_cm - flag.place.x, y_cm - flag.place.y) <= flag.reach_cm:
-            self._taken += stands or not flag.needs_rest
+            self._flag_count += is_standing or not flag.needs_rest
 
     def state(self) -> dict[str, Any] | None:
         """Return what is to be shown, or None where there is nothing to do."""
         world = self._world
-        if not world.flags and not self._rivals:
+        if not world.flags and not self._rival_count:
             return None
-        left_s = world.seconds - self._ms / 1000
+        left_s = world.seconds - self._run_ms / 1000
         is_in_time = not world.seconds or left_s >= 0
-        points = FLAG_POINTS * (self._taken + self._pushed) - BUMP_POINTS * self._bumps
-        if self.is_whole:
+        points = (
+            FLAG_POINTS * (self._flag_count + self._pushed_count) - BUMP_POINTS * self._bump_count
+        )
+        if self.is_complete:
             points += SECOND_POINTS * max(0, math.floor(left_s))
         return {
-            "taken": self._taken,
+            "taken": self._flag_count,
             "of": len(world.flags),
-            "pushed": self._pushed,
-            "rivals": self._rivals,
+            "pushed": self._pushed_count,
+            "rivals": self._rival_count,
             "has_fallen": self._has_fallen,
             "points": max(0, points),
-            "stars": self.is_whole * (1 + (not self._bumps) + is_in_time),
+            "stars": self.is_complete * (1 + (not self._bump_count) + is_in_time),
         }

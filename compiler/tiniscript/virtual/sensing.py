@@ -39,13 +39,13 @@ class Sensing:
         robot: Robot,
         world: World,
         noise: float = 0.0,
-        chance: Random | None = None,
-        told: Mapping[int, Sequence[int]] | None = None,
-        others: Callable[[], Sequence[Segment]] = tuple,
+        random_source: Random | None = None,
+        given_readings: Mapping[int, Sequence[int]] | None = None,
+        other_outlines: Callable[[], Sequence[Segment]] = tuple,
     ) -> None:
         self.robot = robot
         self.world = world
-        self._others = others  # outlines of what moves besides the robot
+        self._other_outlines = other_outlines  # outlines of what moves besides the robot
         self.noise = noise
         self.obstacles = world.obstacles()
         self.lines = [
@@ -54,76 +54,82 @@ class Sensing:
             for segment in join_points(list(line.points))
         ]
         self.hull = Hull(robot.body)
-        self._chance = chance or Random(1)
+        self._random_source = random_source or Random(1)
         # how far what carries a sensor has turned to the left, by the name of the actuator
-        self.turned: dict[str, float] = {}
-        self._told = {number: list(values) for number, values in (told or {}).items()}
-        self._near: tuple[Pose, list[Segment]] | None = None  # what a robot might touch there
+        self.turn_of_actuator: dict[str, float] = {}
+        self._given_readings = {
+            number: list(values) for number, values in (given_readings or {}).items()
+        }
+        self._near_obstacles: tuple[Pose, list[Segment]] | None = (
+            None  # what a robot might touch there
+        )
 
     def read(self, number: int, pose: Pose, remote: int = 0) -> int:
         """Return the reading of a sensor at `pose`, or what a remote control says there."""
-        message = self._told.get(number)
-        if message:
-            return message.pop(0) if len(message) > 1 else message[0]
+        readings = self._given_readings.get(number)
+        if readings:
+            return readings.pop(0) if len(readings) > 1 else readings[0]
         if number >= len(self.robot.kit.sensors):
             return remote
         return self._sense(number, pose, self.noise)
 
-    def tell(self, number: int, reading: int) -> None:
+    def set_reading(self, number: int, reading: int) -> None:
         """Have a sensor read that from now on, as far as it can; in thousandths, or 0 and 1."""
-        self._told[number] = [_in_range(self.robot.kit.readings[number], reading)]
+        self._given_readings[number] = [_clamp_to_range(self.robot.kit.readings[number], reading)]
 
     def turn(self, actuator: int, value: int) -> None:
         """Turn the sensors that an actuator carries. They stay so when it gets no more pulses."""
         device = self.robot.kit.actuators[actuator]
         if any(place.turns_with == device.name for place in self.robot.body.places.values()):
-            self.turned[device.name] = (value - (device.low + device.high) / 2) / ONE
+            self.turn_of_actuator[device.name] = (value - (device.low + device.high) / 2) / ONE
 
-    def look(self, number: int, pose: Pose) -> int:
+    def peek(self, number: int, pose: Pose) -> int:
         """Return the reading without noise. This does not change later readings."""
-        message = self._told.get(number)
-        return message[0] if message else self._sense(number, pose, 0.0)
+        readings = self._given_readings.get(number)
+        return readings[0] if readings else self._sense(number, pose, 0.0)
 
     def _sense(self, number: int, pose: Pose, noise: float) -> int:
         device = self.robot.kit.sensors[number]
         place = self.robot.body.places.get(device.name)
         if place is None:
             return _idle_reading(device)
-        return _in_range(device, self._noisy_reading(device, place, pose, noise))
+        return _clamp_to_range(device, self._noisy_reading(device, place, pose, noise))
 
     def _noisy_reading(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
         """Return a reading in thousandths, which may be out of range."""
         eye, heading = _sensor_pose(place, pose)
-        heading += math.radians(self.turned.get(place.turns_with, 0.0))
-        span = device.high - device.low
-        off = self._chance.gauss(0.0, noise) if noise else 0.0
+        heading += math.radians(self.turn_of_actuator.get(place.turns_with, 0.0))
+        value_range = device.high - device.low
+        deviation = self._random_source.gauss(0.0, noise) if noise else 0.0
         if place.sees == "distance":
-            return round(self._distance_cm(eye, heading) * (1 + off), 1) * ONE
+            return round(self._distance_cm(eye, heading) * (1 + deviation), 1) * ONE
         if place.sees == "light":
-            value = device.low + (self._light(eye, heading) + off) * span
-            return round(value / ONE) * ONE if span > MOST_FINE_STEPS * ONE else value
+            value = device.low + (self._light(eye, heading) + deviation) * value_range
+            return round(value / ONE) * ONE if value_range > MOST_FINE_STEPS * ONE else value
         if place.sees == "touch":
-            is_there = self._is_touched(place, pose)
+            is_detected = self._is_touched(place, pose)
         else:
-            is_there = self._is_black(eye) == (place.sees == "line")
-        return float(device.high if is_there else device.low)
+            is_detected = self._is_black(eye) == (place.sees == "line")
+        return float(device.high if is_detected else device.low)
 
     def _distance_cm(self, eye: Point, heading: float) -> float:
-        nearest = nearest_seen([*self.obstacles, *self._others()], eye, heading, CONE_RADIANS)
+        nearest = nearest_seen(
+            [*self.obstacles, *self._other_outlines()], eye, heading, CONE_RADIANS
+        )
         return FARTHEST_CM if nearest is None else min(max(nearest, NEAREST_CM), FARTHEST_CM)
 
     def _light(self, eye: Point, heading: float) -> float:
         """Return 0 to 1: lamps by their distance and angle, none through an obstacle."""
-        level = self.world.ambient
-        obstacles = [*self.obstacles, *self._others()] if self.world.lamps else []
+        level = self.world.ambient_light
+        obstacles = [*self.obstacles, *self._other_outlines()] if self.world.lamps else []
         for lamp in self.world.lamps:
             ray = Segment(eye, lamp.place)
             if any(crosses(ray, obstacle) for obstacle in obstacles):
                 continue
-            away = math.dist(eye, lamp.place)
+            distance_cm = math.dist(eye, lamp.place)
             angle = math.atan2(lamp.place.y - eye.y, lamp.place.x - eye.x) - heading
-            facing = max(0.0, math.cos(angle)) if away else 1.0
-            level += facing / (1 + (away / lamp.reach_cm) ** 2)
+            facing = max(0.0, math.cos(angle)) if distance_cm else 1.0
+            level += facing / (1 + (distance_cm / lamp.reach_cm) ** 2)
         return min(1.0, level)
 
     def _is_black(self, eye: Point) -> bool:
@@ -141,32 +147,34 @@ class Sensing:
     def _is_touched(self, place: Place, pose: Pose) -> bool:
         """Return whether the body touches something on the side where a bumper sits."""
         # most often everything is far away: that is quickly known, and asked many times in a tick
-        if self._near is None or self._near[0] != pose:
+        if self._near_obstacles is None or self._near_obstacles[0] != pose:
             reach_cm = self.hull.reach_cm + TOUCH_CM
-            near = [
+            near_obstacles = [
                 obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < reach_cm
             ]
-            self._near = pose, near
-        near = [*self._near[1], *self._others()]
-        contact = self.hull.contact(pose, near) if near else None
+            self._near_obstacles = pose, near_obstacles
+        near_obstacles = [*self._near_obstacles[1], *self._other_outlines()]
+        contact = self.hull.contact(pose, near_obstacles) if near_obstacles else None
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
         (_, _, heading), point = pose, contact.obstacle_point
-        sits = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
-        side = math.atan2(point.y - contact.body_point.y, point.x - contact.body_point.x)
-        off = (side - sits - math.radians(heading) + math.pi) % (2 * math.pi) - math.pi
-        return abs(off) <= BUMPER_RADIANS
+        bumper_angle = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
+        contact_angle = math.atan2(point.y - contact.body_point.y, point.x - contact.body_point.x)
+        angle = (contact_angle - bumper_angle - math.radians(heading) + math.pi) % (
+            2 * math.pi
+        ) - math.pi
+        return abs(angle) <= BUMPER_RADIANS
 
 
 def _sensor_pose(place: Place, pose: Pose) -> tuple[Point, float]:
     """Return where a sensor is on the floor, and where it looks."""
-    along = math.radians(pose.heading)
-    cos, sin = math.cos(along), math.sin(along)
+    heading = math.radians(pose.heading)
+    cos, sin = math.cos(heading), math.sin(heading)
     eye = Point(
         pose.x_cm + place.x_cm * cos - place.y_cm * sin,
         pose.y_cm + place.x_cm * sin + place.y_cm * cos,
     )
-    return eye, along + math.radians(place.heading)
+    return eye, heading + math.radians(place.heading)
 
 
 def _idle_reading(device: Device) -> int:
@@ -178,5 +186,5 @@ def _idle_reading(device: Device) -> int:
     return round((device.low + device.high) / 2)
 
 
-def _in_range(device: Device, value: float) -> int:
+def _clamp_to_range(device: Device, value: float) -> int:
     return min(max(round(value), device.low), device.high)

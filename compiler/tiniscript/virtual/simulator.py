@@ -17,34 +17,34 @@ from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.transports import BadLine, Transports
 
 HEARTBEAT_MS = 300  # of the robot's time
-SILENT_S = 1.0
+SILENCE_S = 1.0
 MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 
 
 class Heartbeat:
     def __init__(self) -> None:
         self._frame = b""  # the last one
-        self._open = b""  # what has begun
-        self._heard_s = 0.0
+        self._unfinished = b""  # what has begun
+        self._received_s = 0.0
         self._heartbeat_ms = 0
 
     def on_bytes(self, data: bytes, wall_s: float) -> None:
         """Take bytes that the computer has sent."""
-        self._heard_s = wall_s
-        *whole, self._open = (self._open + data).split(b"\0")
-        self._open = self._open[:MOST_FRAME_BYTES]
-        for item in whole:
-            if item and len(item) < MOST_FRAME_BYTES:
-                self._frame = b"\0" + item + b"\0"  # it is repeated
+        self._received_s = wall_s
+        *frames, self._unfinished = (self._unfinished + data).split(b"\0")
+        self._unfinished = self._unfinished[:MOST_FRAME_BYTES]
+        for frame in frames:
+            if frame and len(frame) < MOST_FRAME_BYTES:
+                self._frame = b"\0" + frame + b"\0"  # it is repeated
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
-        self._frame = self._open = b""
+        self._frame = self._unfinished = b""
 
-    def due(self, now_ms: int, wall_s: float) -> bytes:
+    def bytes_due(self, now_ms: int, wall_s: float) -> bytes:
         """Return the bytes to repeat at the robot's time `now_ms`, usually none."""
-        is_silent = wall_s - self._heard_s > SILENT_S
-        if self._open or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
+        is_silent = wall_s - self._received_s > SILENCE_S
+        if self._unfinished or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
             return b""
         self._heartbeat_ms = now_ms
         return self._frame
@@ -57,7 +57,7 @@ IDLE_S = 0.25  # and otherwise
 TRAFFIC_S = 0.05  # after a byte, more bytes are expected for this time
 STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
 TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
-FULL_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
+MOST_WAITING_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
 PUSH_MS = 60  # how long a push holds the button down
 HOLD_MS = 2300  # and a long one, which confirms a claim
 
@@ -75,24 +75,27 @@ class Simulator:
         self.transports = transports
         self.hurry = hurry
         self.end_ms: int | None = None  # of the robot's time: then it is over
-        self.lasts_ms: int | None = None  # or so long after its first program has begun
-        chance = Random(robot.settings.seed ^ 0x5A5A)
-        self.there, self.back = BadLine(faults, chance), BadLine(faults, chance)
+        self.duration_ms: int | None = None  # or so long after its first program has begun
+        random_source = Random(robot.settings.seed ^ 0x5A5A)
+        self.to_robot, self.from_robot = (
+            BadLine(faults, random_source),
+            BadLine(faults, random_source),
+        )
         self._heartbeat = Heartbeat()
         self._wall_s = self._traffic_s = monotonic()
         self._owed_ms = 0.0  # of the robot's time, less than one
         self._visits = 0
-        self._last = b""  # byte of the client
-        self._let_go_ms: int | None = None
-        self._wanted_ms = 0  # how long a push lasts that has to wait
+        self._last_byte = b""  # byte of the client
+        self._release_ms: int | None = None
+        self._waiting_push_ms = 0  # how long a push lasts that has to wait
         self._up_until_ms = 0  # a button that was let go stays up so long
 
     @property
     def over_ms(self) -> int | None:
         """When the robot's time is over, if that is known."""
         started_ms = self.robot.started_ms
-        if self.lasts_ms is not None and started_ms is not None:
-            return started_ms + self.lasts_ms
+        if self.duration_ms is not None and started_ms is not None:
+            return started_ms + self.duration_ms
         return self.end_ms
 
     @property
@@ -100,50 +103,50 @@ class Simulator:
         over_ms = self.over_ms
         return over_ms is not None and self.robot.now_ms >= over_ms
 
-    def push(self, lasts_ms: int = PUSH_MS) -> None:
+    def push(self, duration_ms: int = PUSH_MS) -> None:
         """Push the start button and let it go; where it is down or just was, a moment later."""
         now_ms = self.robot.now_ms
-        must_wait = self._let_go_ms is not None or now_ms < self._up_until_ms
-        self._wanted_ms = lasts_ms if must_wait else 0
+        must_wait = self._release_ms is not None or now_ms < self._up_until_ms
+        self._waiting_push_ms = duration_ms if must_wait else 0
         if not must_wait:
             self.robot.press()
-            self._let_go_ms = now_ms + lasts_ms
-            self._up_until_ms = now_ms + lasts_ms + PUSH_MS
+            self._release_ms = now_ms + duration_ms
+            self._up_until_ms = now_ms + duration_ms + PUSH_MS
 
     @property
-    def waiting(self) -> int:
+    def waiting_bytes(self) -> int:
         """How many bytes the robot has still to hear."""
-        return self.robot.unheard + self.there.waiting
+        return self.robot.unread_bytes + self.to_robot.byte_count
 
     def turn(self, limit_s: float = IDLE_S) -> None:
         """Wait for bytes, at most `limit_s`; then advance the robot to the present."""
-        is_full = self.waiting >= FULL_BYTES
+        is_full = self.waiting_bytes >= MOST_WAITING_BYTES
         self.transports.wait(min(limit_s, self._pause_s()), is_full)
         wall_s = monotonic()
-        passed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
+        elapsed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
         self._wall_s = wall_s
         data = b"" if is_full else self.transports.receive()
-        if self.transports.visits != self._visits:
-            self._visits = self.transports.visits
+        if self.transports.visit_count != self._visits:
+            self._visits = self.transports.visit_count
             self._heartbeat.forget()
-            if self._last not in b"\0\r\n":  # ends what the one before has begun
-                self.there.put(b"\0", self.robot.now_ms)
-            self._last = b""
-            self.back.clear()
+            if self._last_byte not in b"\0\r\n":  # ends what the one before has begun
+                self.to_robot.put(b"\0", self.robot.now_ms)
+            self._last_byte = b""
+            self.from_robot.clear()
         if self.transports.take_stop() and self.robot.is_running:
-            self.there.put(bytes(STOP_BYTES), self.robot.now_ms)
+            self.to_robot.put(bytes(STOP_BYTES), self.robot.now_ms)
         if data:
             self._traffic_s = wall_s
             self._heartbeat.on_bytes(data, wall_s)
-            self._last = data[-1:]
-            self.there.put(data, self.robot.now_ms)
-        self._go_on(passed_s)
+            self._last_byte = data[-1:]
+            self.to_robot.put(data, self.robot.now_ms)
+        self._go_on(elapsed_s)
         self.transports.send(b"")
 
     def _pause_s(self) -> float:
         if self._is_hurrying():
             return 0.0 if not self.hurry else BUSY_S
-        if self._wall_s - self._traffic_s < TRAFFIC_S or self.robot.unheard:
+        if self._wall_s - self._traffic_s < TRAFFIC_S or self.robot.unread_bytes:
             return BUSY_S
         if self.robot.is_running or self.transports.is_connected or self._is_pushing:
             return NEAR_S
@@ -151,59 +154,61 @@ class Simulator:
 
     @property
     def _is_pushing(self) -> bool:
-        return self._wanted_ms != 0 or self._let_go_ms is not None
+        return self._waiting_push_ms != 0 or self._release_ms is not None
 
     def _is_hurrying(self) -> bool:
         return self.robot.is_running and self.hurry != 1 and not self.is_over
 
-    def _go_on(self, passed_s: float) -> None:
-        self._owed_ms += passed_s * 1000 * (self.hurry if self._is_hurrying() and self.hurry else 1)
-        until_s = self._wall_s + TURN_S
+    def _go_on(self, elapsed_s: float) -> None:
+        self._owed_ms += (
+            elapsed_s * 1000 * (self.hurry if self._is_hurrying() and self.hurry else 1)
+        )
+        end_s = self._wall_s + TURN_S
         while True:
             is_hurrying = self._is_hurrying()
             step_ms = STRIDE_MS if is_hurrying else int(self._owed_ms)
             if is_hurrying and self.hurry:
                 step_ms = min(step_ms, int(self._owed_ms))
-            step_ms = self._until_over(step_ms)
+            step_ms = self._limit_step(step_ms)
             if step_ms < 1:
                 break
             self._step(step_ms, is_hurrying)
             self._owed_ms = max(0.0, self._owed_ms - step_ms)
-            if monotonic() > until_s:
+            if monotonic() > end_s:
                 self._owed_ms = min(self._owed_ms, MOST_DELAY_S * 1000)
                 break
             if not is_hurrying:
                 break
 
-    def _until_over(self, step_ms: int) -> int:
+    def _limit_step(self, step_ms: int) -> int:
         """Return how far a step may go: a program ends with the robot's time, to the ms."""
-        if self.lasts_ms is not None and self.is_over and self.robot.is_running:
+        if self.duration_ms is not None and self.is_over and self.robot.is_running:
             self.robot.rest()
         over_ms = self.over_ms
-        if self.lasts_ms is not None and self.robot.started_ms is None:
-            return min(step_ms, STRIDE_MS, self.lasts_ms)  # a program may begin in this step
+        if self.duration_ms is not None and self.robot.started_ms is None:
+            return min(step_ms, STRIDE_MS, self.duration_ms)  # a program may begin in this step
         if over_ms is None or self.is_over:
             return step_ms
         return min(step_ms, over_ms - self.robot.now_ms)
 
     def _step(self, step_ms: int, is_hurrying: bool) -> None:
         now_ms = self.robot.now_ms
-        if self._let_go_ms is not None and now_ms >= self._let_go_ms:
-            self._let_go_ms = None
+        if self._release_ms is not None and now_ms >= self._release_ms:
+            self._release_ms = None
             self.robot.let_go()
-        elif self._wanted_ms:
-            self.push(self._wanted_ms)
-        data = self.there.take(now_ms)
+        elif self._waiting_push_ms:
+            self.push(self._waiting_push_ms)
+        data = self.to_robot.take(now_ms)
         if is_hurrying and self.transports.is_connected and not data:
-            data = self._heartbeat.due(now_ms, self._wall_s)
+            data = self._heartbeat.bytes_due(now_ms, self._wall_s)
         sent = self.robot.step(now_ms + step_ms, data)
         if sent:
             self._traffic_s = self._wall_s
-            self.back.put(sent, self.robot.now_ms)
-        self.transports.send(self.back.take(self.robot.now_ms))
+            self.from_robot.put(sent, self.robot.now_ms)
+        self.transports.send(self.from_robot.take(self.robot.now_ms))
 
 
-JOIN_S = 5.0
+JOIN_TIMEOUT_S = 5.0
 
 
 class SimulatorThread:
@@ -224,7 +229,9 @@ class SimulatorThread:
         self._is_pushed = self._is_over = False
         self._bug: BaseException | None = None
         names = robot.profile.name, robot.world.name
-        self._note = directory.announce(directory.RunningRobot(self.port, *names, "", "", verb))
+        self._note_path = directory.announce(
+            directory.RunningRobot(self.port, *names, "", "", verb)
+        )
         self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
 
     def push(self) -> None:
@@ -236,9 +243,9 @@ class SimulatorThread:
 
     def close(self) -> None:
         """Switch it off. Raises what the thread has raised."""
-        directory.withdraw(self._note)
+        directory.withdraw(self._note_path)
         self._is_over = True
-        self._thread.join(JOIN_S)
+        self._thread.join(JOIN_TIMEOUT_S)
         self.transports.close()
         if self._bug is not None:
             raise self._bug

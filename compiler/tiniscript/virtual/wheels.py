@@ -32,44 +32,54 @@ class Roughness(NamedTuple):
 
 
 class Wheel:
-    def __init__(self, body: Body, wiring: Wiring, rough: Roughness, chance: Random) -> None:
-        self._chance = chance
-        self._rough = rough
-        self._full = body.speed_cm_s / 100 / 1000  # cm in a millisecond, of a percent
-        count = 2 * wiring.settings["holes"]
-        self.edge_cm = math.pi * wiring.settings["wheel_cm"] / 1000 / count
-        self._off = [chance.uniform(-rough.jitter, rough.jitter) for _ in range(count)]
-        self.turned_cm = chance.uniform(0, self.edge_cm * count)  # as it stands when switched on
-        self._lag_ms = LAG_MS * chance.uniform(*LAG_RANGE)
-        self._slips_to_cm = 0.0
+    def __init__(
+        self, body: Body, wiring: Wiring, roughness: Roughness, random_source: Random
+    ) -> None:
+        self._random_source = random_source
+        self._roughness = roughness
+        self._percent_cm = body.speed_cm_s / 100 / 1000  # cm in a millisecond, of a percent
+        edge_count = 2 * wiring.settings["holes"]
+        self.edge_cm = math.pi * wiring.settings["wheel_cm"] / 1000 / edge_count
+        self._edge_offsets = [
+            random_source.uniform(-roughness.jitter, roughness.jitter) for _ in range(edge_count)
+        ]
+        self.turned_cm = random_source.uniform(
+            0, self.edge_cm * edge_count
+        )  # as it stands when switched on
+        self._lag_ms = LAG_MS * random_source.uniform(*LAG_RANGE)
+        self._slip_start_cm = 0.0
         self._slip = 0.0
-        self._place = self._edges()
-        self.wanted = self.speed = 0.0  # percent
-        self.counted = 0
-        self.is_seen = True  # its sensor tells something
+        self._edge_number = self._edges()
+        self.wanted_speed = self.speed = 0.0  # percent
+        self.counted_edges = 0
+        self.has_working_sensor = True  # its sensor tells something
 
     def _edges(self) -> int:
         """Return how many edges have passed since the disc was at its first one."""
-        place = self.turned_cm / self.edge_cm
-        nearest = round(place)
-        return nearest if place >= nearest + self._off[nearest % len(self._off)] else nearest - 1
+        edge_position = self.turned_cm / self.edge_cm
+        nearest = round(edge_position)
+        return (
+            nearest
+            if edge_position >= nearest + self._edge_offsets[nearest % len(self._edge_offsets)]
+            else nearest - 1
+        )
 
-    def step(self, has_two: bool) -> float:
+    def step(self, has_two_channels: bool) -> float:
         """Go on for a millisecond. Return its speed over the floor, in percent."""
-        if not self.speed and not self.wanted:
+        if not self.speed and not self.wanted_speed:
             return 0.0
-        self.speed += (self.wanted - self.speed) / self._lag_ms
-        if not self.wanted and abs(self.speed) < 1:
+        self.speed += (self.wanted_speed - self.speed) / self._lag_ms
+        if not self.wanted_speed and abs(self.speed) < 1:
             self.speed = 0.0
-        self.turned_cm += self.speed * self._full
-        if abs(self.turned_cm - self._slips_to_cm) > SLIP_CM:
-            self._slips_to_cm = self.turned_cm
-            self._slip = self._chance.uniform(0, 2 * self._rough.slip)
-        place = self._edges()
-        passed = place - self._place
-        self._place = place
-        if self.is_seen:
-            self.counted += passed if has_two else abs(passed)
+        self.turned_cm += self.speed * self._percent_cm
+        if abs(self.turned_cm - self._slip_start_cm) > SLIP_CM:
+            self._slip_start_cm = self.turned_cm
+            self._slip = self._random_source.uniform(0, 2 * self._roughness.slip)
+        edge_number = self._edges()
+        passed_edges = edge_number - self._edge_number
+        self._edge_number = edge_number
+        if self.has_working_sensor:
+            self.counted_edges += passed_edges if has_two_channels else abs(passed_edges)
         return self.speed * (1 - self._slip)
 
 
@@ -77,41 +87,44 @@ class Wheels:
     """Both wheels; `drive` is told each change of their speed over the floor."""
 
     def __init__(
-        self, body: Body, discs: Wiring, has_two: bool, rough: Roughness, seed: int,
+        self, body: Body, discs: Wiring, has_two_channels: bool, roughness: Roughness, seed: int,
         drive: Callable[[float, float, float], None],
     ) -> None:  # fmt: skip
-        chance = Random(seed)
-        self.both = tuple(Wheel(body, discs, rough, chance) for _ in range(2))
-        self._has_two = has_two
+        random_source = Random(seed)
+        self.wheels = tuple(Wheel(body, discs, roughness, random_source) for _ in range(2))
+        self._has_two_channels = has_two_channels
         self._drive = drive
         self._now_ms = 0
-        self._driven = (0.0, 0.0)
+        self._floor_speeds = (0.0, 0.0)
 
     def set(self, now_ms: int, left: float, right: float) -> None:
         """Set the speeds that the motors give them, in percent."""
         self.go_on(now_ms)
-        self.both[0].wanted, self.both[1].wanted = left, right
+        self.wheels[0].wanted_speed, self.wheels[1].wanted_speed = left, right
 
     def go_on(self, now_ms: int) -> None:
-        if not any(wheel.speed or wheel.wanted for wheel in self.both):
+        if not any(wheel.speed or wheel.wanted_speed for wheel in self.wheels):
             self._now_ms = max(self._now_ms, now_ms)
         while self._now_ms < now_ms:
-            left, right = (wheel.step(self._has_two) for wheel in self.both)
-            before = self._driven
+            left, right = (wheel.step(self._has_two_channels) for wheel in self.wheels)
+            last_speeds = self._floor_speeds
             is_still = not left and not right
-            if is_still or max(abs(left - before[0]), abs(right - before[1])) > STEADY_PERCENT:
-                self._driven = (left, right)
+            if (
+                is_still
+                or max(abs(left - last_speeds[0]), abs(right - last_speeds[1])) > STEADY_PERCENT
+            ):
+                self._floor_speeds = (left, right)
                 self._drive(self._now_ms, left, right)
             self._now_ms += 1
 
     def edges(self, now_ms: int) -> int:
         """Return both counts as the board says them: the left one in the lower 16 bits."""
         self.go_on(now_ms)
-        left, right = (wheel.counted % CLOCK for wheel in self.both)
+        left, right = (wheel.counted_edges % CLOCK for wheel in self.wheels)
         return (right * CLOCK + left + ANSWER_FLAG) % (2 * ANSWER_FLAG) - ANSWER_FLAG
 
     def brake(self) -> None:
         """They stand at once, as where somebody lifts the robot or switches it off."""
-        for wheel in self.both:
-            wheel.speed = wheel.wanted = 0.0
-        self._driven = (0.0, 0.0)
+        for wheel in self.wheels:
+            wheel.speed = wheel.wanted_speed = 0.0
+        self._floor_speeds = (0.0, 0.0)

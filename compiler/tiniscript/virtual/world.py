@@ -83,7 +83,7 @@ class Rival(NamedTuple):
 class World(NamedTuple):
     """A world. `walls` are rows of points, `boxes` corners; the robot begins at `start`.
 
-    `ambient` is the light without lamps, 0 to 1. `labels` has the name in each language.
+    `ambient_light` is the light without lamps, 0 to 1. `labels` has the name in each language.
     `flags` are to be taken in their order, and `rivals` pushed out of the `rings`, within
     `seconds`, if that is not 0.
     """
@@ -98,7 +98,7 @@ class World(NamedTuple):
     boxes: tuple[tuple[Point, ...], ...]
     lines: tuple[Line, ...]
     lamps: tuple[Lamp, ...]
-    ambient: float
+    ambient_light: float
     flags: tuple[Flag, ...] = ()
     seconds: float = 0
     rings: tuple[Ring, ...] = ()

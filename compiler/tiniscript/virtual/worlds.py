@@ -21,15 +21,15 @@ from tiniscript.virtual.world import Flag, Lamp, Line, Ring, Rival, World, World
 LARGEST_CM = 2000 * ONE
 MOST_PARTS = 100  # walls, and as many boxes, lines, lamps, flags and rings
 MOST_RIVALS = 3
-MOST_S = 600 * ONE  # for its flags
+MOST_SECONDS = 600 * ONE  # for its flags
 MOST_POINTS = 200  # of a wall or a line
-LABEL_CHARACTERS = 60
+MOST_LABEL_CHARACTERS = 60
 T = TypeVar("T")
 
 
-def read(text: str, name: str, refused: type[ProfileRefused] = WorldRefused) -> World:
-    """Return the world that a text describes, under `name`. Raises `refused`."""
-    with root_of(text, refused) as root:
+def read(text: str, name: str, refusal_type: type[ProfileRefused] = WorldRefused) -> World:
+    """Return the world that a text describes, under `name`. Raises `refusal_type`."""
+    with root_of(text, refusal_type) as root:
         world = _read(root, printable_value(name))
     reasons: list[Reason] = []
     x_cm, y_cm, _ = world.start
@@ -38,23 +38,23 @@ def read(text: str, name: str, refused: type[ProfileRefused] = WorldRefused) -> 
             values = {"path": f"start.{key}", "found": f"{at_cm:g}", "most": f"{most_cm:g}"}
             reasons.append(("start_outside", {**values, "line": str(_line_of(text, "start", key))}))
     if reasons:
-        raise refused(*reasons)
+        raise refusal_type(*reasons)
     return world
 
 
 def _line_of(text: str, table: str, key: str) -> int:
     """Return the line of a key in a table of a TOML text, or that of the table."""
-    place, is_inside = 1, False
+    table_line, is_inside = 1, False
     for number, line in enumerate(text.splitlines(), 1):
         row = line.replace(" ", "").replace("\t", "")
         if row.startswith("["):
             is_inside = row.startswith(f"[{table}]")
         if row.startswith((f"[{table}]", f"{table}=")):
-            place = number
+            table_line = number
         is_key = row.startswith((f"{key}=", f'"{key}"=', f"'{key}'="))
         if row.startswith(f"{table}.{key}=") or (is_inside and is_key):
             return number
-    return place
+    return table_line
 
 
 def _read(root: Table, name: str) -> World:
@@ -71,7 +71,7 @@ def _read(root: Table, name: str) -> World:
     ambient = _number(light, "ambient_percent", 0, 100 * ONE, default=10) / 100
     light.finish()
     task = root.table("task")
-    seconds = _number(task, "seconds", 0, MOST_S)
+    seconds = _number(task, "seconds", 0, MOST_SECONDS)
     task.finish()
     return World(
         name,
@@ -98,11 +98,11 @@ def _parts(
     tables = root.tables(key)
     if len(tables) > most:
         root.complain("too_many_parts", key, found=str(len(tables)), most=str(most))
-    matches = []
+    parts = []
     for table in tables[:most]:
-        matches.append(read(table))
+        parts.append(read(table))
         table.finish()
-    return tuple(matches)
+    return tuple(parts)
 
 
 def _number(
@@ -136,8 +136,8 @@ def _box(table: Table) -> tuple[Point, ...]:
         _number(table, key, ONE // 10, LARGEST_CM, f"{key} = 20")
         for key in ("length_cm", "width_cm")
     )
-    turned = math.radians(_number(table, "heading", -360 * ONE, 360 * ONE))
-    cos, sin = math.cos(turned), math.sin(turned)
+    angle = math.radians(_number(table, "heading", -360 * ONE, 360 * ONE))
+    cos, sin = math.cos(angle), math.sin(angle)
     corners = ((1, 1), (-1, 1), (-1, -1), (1, -1))
     return tuple(
         Point(
@@ -177,13 +177,13 @@ def _rival(table: Table) -> Rival:
 
 def _labels(table: Table, name: str) -> dict[str, str]:
     """Return the world's name by language, or `name` in each where it has none."""
-    text: ByLanguage[str] = ByLanguage()
+    label_of_language: ByLanguage[str] = ByLanguage()
     for language in languages():
-        label = table.label(language, LABEL_CHARACTERS)
+        label = table.label(language, MOST_LABEL_CHARACTERS)
         if label is not None:
-            text[language] = label
+            label_of_language[language] = label
     table.finish()
-    return text or ByLanguage.fromkeys(languages(), name)
+    return label_of_language or ByLanguage.fromkeys(languages(), name)
 
 
 DEFAULT = "obstacles"
@@ -192,8 +192,8 @@ FOLDER = Path(__file__).with_name("worlds")
 
 def names() -> list[str]:
     """Return the names of the shipped worlds, the default first."""
-    matches = [path.stem for path in FOLDER.glob("*.toml")]
-    return sorted(matches, key=lambda name: (name != DEFAULT, name))
+    world_names = [path.stem for path in FOLDER.glob("*.toml")]
+    return sorted(world_names, key=lambda name: (name != DEFAULT, name))
 
 
 def load(name_or_path: str) -> World:

@@ -42,8 +42,8 @@ class Robot(Protocol):
     def read(self, sensor: int) -> int | None:
         """Return a reading, or None if it is not ready: the machine asks again."""
 
-    def go_ms(self, way: int, power: int, turns: bool) -> int:
-        """Return how long it drives or `turns` for that way at 0 to 100 %. Raises Fault."""
+    def go_ms(self, extent: int, power: int, is_turn: bool) -> int:
+        """Return how long it drives or `is_turn` for that way at 0 to 100 %. Raises Fault."""
 
     def beep(self, hertz: int, duration_ms: int) -> None:
         """Start a sound; it ends by itself."""

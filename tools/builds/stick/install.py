@@ -17,9 +17,9 @@ from pathlib import Path
 STICK = Path(__file__).resolve().parent
 IS_WINDOWS = os.name == "nt"
 LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
-TEAMS = {"spanish": "es", "portuguese": "pt"}  # as Windows says it
+LANGUAGE_CODES = {"spanish": "es", "portuguese": "pt"}  # as Windows says it
 PAGES = ("index.html", "index.es.html", "index.pt.html")
-SAID = {
+TEXTS = {
     "old": ("This Python is {version}; tsc needs 3.10 or newer.",
             "Este Python es {version}; tsc necesita 3.10 o posterior.",
             "Este Python é {version}; tsc precisa de 3.10 ou mais novo."),
@@ -41,8 +41,8 @@ SAID = {
 }  # fmt: skip
 
 
-def main(words: list[str]) -> int:
-    folder = Path(words[0]).absolute() if words else Path.home() / "TiniScript"
+def main(arguments: list[str]) -> int:
+    folder = Path(arguments[0]).absolute() if arguments else Path.home() / "TiniScript"
     version = ".".join(map(str, sys.version_info[:2]))
     if sys.version_info < (3, 10):  # noqa: UP036 - whoever has an older one reads this
         return _fail("old", version=version)
@@ -55,11 +55,11 @@ def main(words: list[str]) -> int:
     pip_command += ["--quiet", "--no-index", "--find-links", str(STICK / "wheels")]
     pip_command += ["--upgrade"]
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PIP_")}
-    first = subprocess.run(
+    first_try = subprocess.run(
         [*pip_command, "tiniscript[radio,virtual]"], env=variables, capture_output=True
     )
     if (
-        first.returncode
+        first_try.returncode
         and subprocess.run([*pip_command, "tiniscript[virtual]"], env=variables).returncode
     ):
         return _fail("failed", system=sys.platform, version=version)
@@ -83,17 +83,17 @@ def _language() -> int:
     import locale
 
     names = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
-    result = (next(filter(None, names), None) or locale.getlocale()[0] or "").lower()
-    code = TEAMS.get(result.partition("_")[0], result[:2])
+    locale_name = (next(filter(None, names), None) or locale.getlocale()[0] or "").lower()
+    code = LANGUAGE_CODES.get(locale_name.partition("_")[0], locale_name[:2])
     return LANGUAGES.index(code) if code in LANGUAGES else 0
 
 
-def _say(key: str, **gaps: object) -> None:
-    print(SAID[key][_language()].format(**gaps), flush=True)
+def _say(key: str, **values: object) -> None:
+    print(TEXTS[key][_language()].format(**values), flush=True)
 
 
-def _fail(key: str, **gaps: object) -> int:
-    print(SAID[key][_language()].format(**gaps), file=sys.stderr)
+def _fail(key: str, **values: object) -> int:
+    print(TEXTS[key][_language()].format(**values), file=sys.stderr)
     return 2
 
 

@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.write_output(options.output, header.encode()):
         return 0
-    next_command = _next(options.robot, Path(options.output), robot.board.chip, language)
+    next_command = _next_step(options.robot, Path(options.output), robot.board.chip, language)
     say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
         chip=robot.board.chip, now=next_command)  # fmt: skip
     return 0
@@ -42,24 +42,24 @@ def _compare(robot: Robot, language: str) -> None:
         say_aside("board_same_kit", language, kit=nearest.name)
         return
     names_by_place = {
-        "shared": nearest.shared,
-        "there": nearest.only_there,
-        "here": nearest.only_here,
+        "shared": nearest.shared_devices,
+        "there": nearest.devices_only_there,
+        "here": nearest.devices_only_here,
     }
     values = {key: ", ".join(names) or "–" for key, names in names_by_place.items()}
     say_aside("board_nearest_kit", language, kit=nearest.name, **values)
 
 
-def _next(robot: str, output: Path, chip: str, language: str) -> str:
+def _next_step(robot: str, output: Path, chip: str, language: str) -> str:
     """Return the next step with a header: the build finds it in only one place."""
     path = output.absolute()
     folder = path.parents[3] if len(path.parents) > 3 else path.parent
     if path == folder / HEADER_PATH and (folder / "platformio.ini").is_file():
-        build = f"pio run -d {_name(_relative_to_cwd(folder))} -e {chip}"
+        build = f"pio run -d {_quote(_relative_to_cwd(folder))} -e {chip}"
         return text("board_here", language).format(build=build)
     build = f"pio run -d {SKETCH_FOLDER} -e {chip}"
     return text("board_elsewhere", language).format(
-        robot=_name(Path(robot)), home=(SKETCH_FOLDER / HEADER_PATH).as_posix(), build=build
+        robot=_quote(Path(robot)), home=(SKETCH_FOLDER / HEADER_PATH).as_posix(), build=build
     )
 
 
@@ -70,7 +70,7 @@ def _relative_to_cwd(folder: Path) -> Path:
         return folder
 
 
-def _name(path: Path) -> str:
+def _quote(path: Path) -> str:
     """Return a path quoted for a command."""
-    result = inputs.printable_name(str(path))
-    return f'"{result}"' if " " in result else result
+    shown_path = inputs.printable_name(str(path))
+    return f'"{shown_path}"' if " " in shown_path else shown_path

@@ -11,7 +11,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.diagnostics.rendering import as_json, message
-from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compilation
 from tiniscript.robots.profile import Robot
 
 
@@ -54,34 +54,34 @@ def run(options: Namespace, language: str) -> int:
 
 def _repair(
     options: Namespace, program_input: Input, robot: Robot, language: str
-) -> tuple[Compiled, bool]:
+) -> tuple[Compilation, bool]:
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
     from tiniscript.cli.repairing import print_difference, repair
 
-    result = repair(program_input, robot)
+    repaired = repair(program_input, robot)
     name = inputs.printable_name(program_input.name)
-    is_talkative = not options.json
+    prints_text = not options.json
     if options.diff:
-        if is_talkative and result.repair_count:
-            print_difference(program_input.data, result.data, program_input.name)
-        key = "would_repair" if result.repair_count else "nothing_repaired"
-        if is_talkative and (result.repair_count or not result.compilation.is_right):
-            key += "_one" if result.repair_count == 1 else ""
-            say_aside(key, language, file=name, n=result.repair_count)
-        return result.compilation, result.compilation.is_right and not result.repair_count
+        if prints_text and repaired.repair_count:
+            print_difference(program_input.data, repaired.data, program_input.name)
+        key = "would_repair" if repaired.repair_count else "nothing_repaired"
+        if prints_text and (repaired.repair_count or not repaired.compilation.is_right):
+            key += "_one" if repaired.repair_count == 1 else ""
+            say_aside(key, language, file=name, n=repaired.repair_count)
+        return repaired.compilation, repaired.compilation.is_right and not repaired.repair_count
     if program_input.path is None:
-        if is_talkative:
-            outputs.write_output(None, result.data)
-    elif result.repair_count:
-        outputs.write(program_input.path, result.data, "unwritable_source")
-    if is_talkative and result.repair_count and program_input.path is not None:
-        print_difference(program_input.data, result.data, program_input.name)
-        key = "repaired_one" if result.repair_count == 1 else "repaired"
-        say_aside(key, language, file=name, n=result.repair_count)
-    if is_talkative and not result.compilation.is_right:
-        key = "not_repaired" if result.repair_count else "nothing_repaired"
+        if prints_text:
+            outputs.write_output(None, repaired.data)
+    elif repaired.repair_count:
+        outputs.write(program_input.path, repaired.data, "unwritable_source")
+    if prints_text and repaired.repair_count and program_input.path is not None:
+        print_difference(program_input.data, repaired.data, program_input.name)
+        key = "repaired_one" if repaired.repair_count == 1 else "repaired"
+        say_aside(key, language, file=name, n=repaired.repair_count)
+    if prints_text and not repaired.compilation.is_right:
+        key = "not_repaired" if repaired.repair_count else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compilation = compiling.for_level(result.compilation, robot, options.text_level)
+    compilation = compiling.for_level(repaired.compilation, robot, options.text_level)
     return compilation, compilation.is_right
 
 

@@ -19,14 +19,14 @@ from tiniscript.link.requests import Reply
 def run(options: Namespace, language: str) -> int:
     with connect(options, language) as connection:
         connection.meet()
-        _refuse_at_once(connection)
+        _check_claimable(connection)
         key_kind = KEY_TEACHER if options.teacher else KEY_OWNER
         _claim(connection, key_kind)
     return 0
 
 
 def _claim(connection: Connection, key_kind: int) -> None:
-    request = connection.line.begin(lambda session: session.claim(key_kind))
+    request = connection.connection.begin(lambda session: session.claim(key_kind))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
     sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
@@ -36,16 +36,16 @@ def _claim(connection: Connection, key_kind: int) -> None:
     if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
         key = "claim_saving"
     elif reply.status:
-        raise connection.failure(reply)
+        raise connection.error_for_reply(reply)
     else:
         key = "claimed" if key_kind == KEY_OWNER else "claimed_teacher"
     connection.say(key)
 
 
-def _refuse_at_once(connection: Connection) -> None:
+def _check_claimable(connection: Connection) -> None:
     """Say what no button changes. Raises CommandError."""
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
     if ownership_of(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
-        raise connection.failure(Reply(NOT_OWNER))
+        raise connection.error_for_reply(Reply(NOT_OWNER))

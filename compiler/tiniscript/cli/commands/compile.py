@@ -22,7 +22,7 @@ from tiniscript.semantics.ir import Program
 def run(options: Namespace, language: str) -> int:
     program_input = inputs.program(options)
     if options.text:
-        return _line(options, program_input, language)
+        return _compile_line(options, program_input, language)
     if options.text_level is not None:
         raise CommandError(2, "level_needs_text", level=options.text_level)
     target = _target(program_input, options.output)
@@ -33,12 +33,12 @@ def run(options: Namespace, language: str) -> int:
     outputs.print_diagnostics(compilation, language)
     if not compilation.is_right:
         return 1
-    places = source_map.map_of_compiled(compilation)
+    program_map = source_map.map_of_compiled(compilation)
     outputs.write_output(target, compilation.image)
     if options.map is not None:
-        data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
+        data = (source_map.as_json(program_map) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_at --map")
-    source_map.remember(compilation.image, places)
+    source_map.remember(compilation.image, program_map)
     will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compilation.diagnostics)
     sentence = text("compiled", language).format(
         source=inputs.printable_name(program_input.name),
@@ -47,13 +47,13 @@ def run(options: Namespace, language: str) -> int:
         code=len(compilation.code),
         stack=compilation.verdict.stack_values if compilation.verdict else 0,
         stacks=STACK_VALUES,
-        runs="" if will_fault else _run_time_text(compilation.lowered, robot.kit, language),
+        runs="" if will_fault else _run_time_text(compilation.lowered_program, robot.kit, language),
     )
     print(sentence, file=sys.stderr if target is None else sys.stdout)
     return 0
 
 
-def _line(options: Namespace, program_input: inputs.Input, language: str) -> int:
+def _compile_line(options: Namespace, program_input: inputs.Input, language: str) -> int:
     """Write the program as one line of text."""
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")

@@ -16,10 +16,10 @@ from tiniscript.cli.texts.options import (
     LESSON_ACTIONS,
     VERB,
     Kind,
-    choosers_of,
     command_of,
     first_word,
     options_of,
+    selecting_options_of,
 )
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.cli.texts.verbs import verb_sentence as summary_of
@@ -82,50 +82,56 @@ def run(options: Namespace, language: str) -> int:
     if not options.words:
         sys.stdout.write(SCRIPTS[options.shell].replace("LANGUAGE", language))
         return 0
-    *before, last = options.words
-    last = last[1:]
-    if last == "=":  # bash makes three words of --robot=liner
-        last = ""
-    kind, rows = _completions([word for word in before if word != "="], last, language)
+    *words_before, last_word = options.words
+    last_word = last_word[1:]
+    if last_word == "=":  # bash makes three words of --robot=liner
+        last_word = ""
+    kind, completions = _completions(
+        [word for word in words_before if word != "="], last_word, language
+    )
     print("files" if kind in FILE_KINDS else "words")
-    for word, summary in rows:
-        if word.startswith(last):
+    for word, summary in completions:
+        if word.startswith(last_word):
             print(f"{word}\t{summary}")
     return 0
 
 
-def _completions(before: list[str], last: str, language: str) -> tuple[str, list[tuple[str, str]]]:
+def _completions(
+    words_before: list[str], last_word: str, language: str
+) -> tuple[str, list[tuple[str, str]]]:
     """Return the kind of what the last word may be, and the words of that kind."""
-    verb, before = _verb(before)
+    verb, words_before = _split_verb(words_before)
     if verb not in ("tsc", *VERBS):
         return "", []
-    command, _ = command_of(verb, before)
-    options = [*options_of(command), *choosers_of(command)]
+    command, _ = command_of(verb, words_before)
+    options = [*options_of(command), *selecting_options_of(command)]
     flags = {
         flag: option
         for option in options
         if not option.is_argument
         for flag in option.flags.split()
     }
-    name, equals, _ = last.partition("=")
-    option = flags.get(name if equals else before[-1] if before else "")
+    name, separator, _ = last_word.partition("=")
+    option = flags.get(name if separator else words_before[-1] if words_before else "")
     kind = option.kind if option is not None else None
-    if kind is None and not last.startswith("-"):
+    if kind is None and not last_word.startswith("-"):
         arguments = [option.kind for option in options if option.is_argument]
         kind = VERB if verb == "tsc" else arguments[0] if arguments else None
     if kind is None:
         return "", [(flag, _first_clause(option.help(language))) for flag, option in flags.items()]
-    begin = f"{name}=" if equals else ""
-    return kind.name, [(begin + word, summary) for word, summary in _values_of_kind(kind, language)]
+    prefix = f"{name}=" if separator else ""
+    return kind.name, [
+        (prefix + word, summary) for word, summary in _values_of_kind(kind, language)
+    ]
 
 
-def _verb(before: list[str]) -> tuple[str, list[str]]:
+def _split_verb(words: list[str]) -> tuple[str, list[str]]:
     """Return the verb, or `tsc` where there is none, and the words after it."""
-    at = first_word("tsc", before)
-    if at is None:
-        return "tsc", before
-    word = before[at]
-    return ("help" if word not in VERBS and is_help(word) else word), before[at + 1 :]
+    word_index = first_word("tsc", words)
+    if word_index is None:
+        return "tsc", words
+    word = words[word_index]
+    return ("help" if word not in VERBS and is_help(word) else word), words[word_index + 1 :]
 
 
 def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
@@ -133,7 +139,7 @@ def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
-        return [(item.port, item.description) for item in ports.list_ports()]
+        return [(listed_port.port, listed_port.description) for listed_port in ports.list_ports()]
     names_of_kind = {
         "robot": robots.names(),
         "world": worlds.names(),

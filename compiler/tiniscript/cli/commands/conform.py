@@ -34,9 +34,9 @@ from tiniscript.link import ports
 from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import Wire
 
-PATIENCE_S = 10
+TIMEOUT_S = 10
 MOST_ROWS = 20
-CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
+CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # for one try of an answer
 # An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
 BOOT_WAIT_MS = 1700
 CASES_BUILDER = "tools.builds.conformance"  # which no package brings
@@ -44,15 +44,15 @@ ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
 def run(options: Namespace, language: str) -> int:
-    timeout_s = whole_number("--timeout", options.timeout, PATIENCE_S, 1, 3600, language)
+    timeout_s = whole_number("--timeout", options.timeout, TIMEOUT_S, 1, 3600, language)
     if options.machine is None and options.port is None:
         raise CommandError(2, "conform_which")
     try:
         if options.machine is None:
-            return _port(options, language)
+            return _check_port(options, language)
         if options.port is not None or options.baud is not None:
             raise CommandError(2, "conform_both")
-        return _machine(options, timeout_s, language)
+        return _check_machine(options, timeout_s, language)
     except NotMade:
         raise CommandError(2, "conform_not_made", how=build_command()) from None
 
@@ -65,28 +65,30 @@ def build_command() -> str:
     return " ".join(map(install_advice.quote, words))
 
 
-def _machine(options: Namespace, timeout_s: int, language: str) -> int:
+def _check_machine(options: Namespace, timeout_s: int, language: str) -> int:
     cases = [case for case in machine_cases() if (options.only or "") in case.name]
     if not cases:
         raise CommandError(2, "conform_no_case", found=printable_name(options.only))
     process = MachineProcess(options.machine, timeout_s)
     try:
-        result = list(verdicts(cases, process.ask))
-    except CannotStart as why:
+        machine_verdicts = list(verdicts(cases, process.ask))
+    except CannotStart as error:
         command = printable_name(options.machine) or "''"
         raise CommandError(
-            2, "conform_no_start", command=command, why=printable_name(str(why))
+            2, "conform_no_start", command=command, why=printable_name(str(error))
         ) from None
     finally:
         process.close()
     facts = {"version": str(MACHINE_VERSION), "isa": ISA}
-    return report(result, len(cases), facts, "conform_machine_end", timeout_s, options, language)
+    return report(
+        machine_verdicts, len(cases), facts, "conform_machine_end", timeout_s, options, language
+    )
 
 
-def _port(options: Namespace, language: str) -> int:
+def _check_port(options: Namespace, language: str) -> int:
     if options.timeout is not None:
         raise CommandError(2, "conform_timeout")
-    port = inputs.port(options.port)
+    port = inputs.check_port(options.port)
     baud = baud_of(options, robots.load(robots.DEFAULT), language)
     checks = port_checks.all_checks(link_test_suite())
     checks = [check for check in checks if (options.only or "") in check.name]
@@ -96,7 +98,7 @@ def _port(options: Namespace, language: str) -> int:
         wire = Wire(ports.open_port(ports.resolve(port), baud))
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")
-    robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
+    robot = WireRobot(wire, nonce, RADIO_TIMEOUT_MS if is_radio else CABLE_TIMEOUT_MS)
     verdicts: list[Verdict] = []
     try:
         wire.receive(0 if is_radio else BOOT_WAIT_MS)
@@ -106,10 +108,10 @@ def _port(options: Namespace, language: str) -> int:
         verdicts.extend(port_checks.verdicts(robot, checks))
     except Silent:
         raise CommandError(3, "conform_silent", port=printable_name(port)) from None
-    except OSError as why:
+    except OSError as error:
         values = {
             "port": printable_name(port),
-            "why": printable_name(str(why)),
+            "why": printable_name(str(error)),
             "n": str(len(verdicts)),
         }
         raise CommandError(3, "conform_gone", **values) from None
@@ -123,9 +125,9 @@ def _port(options: Namespace, language: str) -> int:
 
 def report(
     verdicts: Iterable[Verdict],
-    count: int,
+    case_count: int,
     facts: dict[str, str],
-    end: str,
+    end_key: str,
     timeout_s: int,
     options: Namespace,
     language: str,
@@ -134,25 +136,30 @@ def report(
     verdicts = list(verdicts)
     lacking_count = sum(verdict.what == LACKS for verdict in verdicts)
     verdicts = [verdict for verdict in verdicts if verdict.what != LACKS]
-    count -= lacking_count
+    case_count -= lacking_count
     differing_verdicts = [verdict for verdict in verdicts if verdict.what != AGREES]
     agreeing_count = len(verdicts) - len(differing_verdicts)
     if options.json:
         rows = [verdict._asdict() for verdict in differing_verdicts]
-        sums = {**facts, "cases": count, "agree": agreeing_count, "differ": len(differing_verdicts)}
-        sums |= {"left_out": lacking_count} if lacking_count else {}
-        sums["found"] = rows
-        print(json.dumps(sums, indent=2, ensure_ascii=False))
+        summary = {
+            **facts,
+            "cases": case_count,
+            "agree": agreeing_count,
+            "differ": len(differing_verdicts),
+        }
+        summary |= {"left_out": lacking_count} if lacking_count else {}
+        summary["found"] = rows
+        print(json.dumps(summary, indent=2, ensure_ascii=False))
         return int(bool(differing_verdicts))
     for verdict in differing_verdicts[:MOST_ROWS]:
         print("\n".join(_rows(verdict, timeout_s, language)))
     if len(differing_verdicts) > MOST_ROWS:
         say("conform_others", language, n=len(differing_verdicts) - MOST_ROWS)
-    if len(verdicts) < count:
+    if len(verdicts) < case_count:
         say("conform_given_up", language)
     if lacking_count:
         say("conform_left_out", language, n=lacking_count)
-    say(end, language, good=agreeing_count, all=count, **facts)
+    say(end_key, language, good=agreeing_count, all=case_count, **facts)
     return int(bool(differing_verdicts))
 
 
@@ -163,11 +170,12 @@ def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
         sentence = text(key, language)
         rows.append(sentence.format(detail=printable_name(verdict.detail), seconds=timeout_s))
     if verdict.line:
-        nothing = text("conform_nothing", language)
-        row_got, wanted_row = (
-            nothing if row is None else printable_name(row) for row in (verdict.got, verdict.want)
+        nothing_text = text("conform_nothing", language)
+        got_text, wanted_text = (
+            nothing_text if row is None else printable_name(row)
+            for row in (verdict.got, verdict.want)
         )
         rows.append(
-            text("conform_line", language).format(line=verdict.line, got=row_got, want=wanted_row)
+            text("conform_line", language).format(line=verdict.line, got=got_text, want=wanted_text)
         )
     return rows

@@ -22,7 +22,7 @@ from tiniscript.cli.robot.description import (
     trips_as_data,
     trips_in_words,
 )
-from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expected_of
+from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expectations_of
 from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result, select_port
 from tiniscript.cli.robot.port_rows import lines as lines_of_ports
@@ -49,31 +49,31 @@ FORM_STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "p
 
 def run(options: Namespace, language: str) -> int:
     count = whole_number("--count", options.count, PING_COUNT, 1, 10_000, language)
-    expected = expected_of(options, language, count)
+    expectations = expectations_of(options, language, count)
     if select_port(options):
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
-        work = partial(_examine_member, expected)
+        work = partial(_examine_member, expectations)
         return run_together(options, inputs.robot(options, language), language, work)
     robot_facts: dict[str, str] = {}  # by a robot, of itself
     answers: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
-    expected = expected._replace(note=robot_facts.update, hear=answers.append)
-    diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
-    robot = _description(diagnosis.port or "", answers[-1], language) if answers else None
-    if robot is not None:
-        opening.remember(robot.port, robot.device_info.name)
-        remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
+    expectations = expectations._replace(on_facts=robot_facts.update, on_answers=answers.append)
+    diagnosis = diagnosis_of(options, _port(options), expectations, language, watch_s * 1000)
+    description = _description(diagnosis.port or "", answers[-1], language) if answers else None
+    if description is not None:
+        opening.remember(description.port, description.device_info.name)
+        remember_profile(options, inputs.robot(options, language), description.device_info.kit)
     rows = list_rows(language)
     if options.json:
         fields = {**_fields(diagnosis, language), "ports": rows, "robot": None}
-        if robot is not None:
-            fields["robot"] = {**robot.fields(), **trips_as_data([*answers[-1].trips_ms])}
+        if description is not None:
+            fields["robot"] = {**description.fields(), **trips_as_data([*answers[-1].trips_ms])}
         print(json.dumps(fields, indent=2))
     else:
         lines = _lines(diagnosis, language)
-        if robot is not None:
-            lines += ["", robot.text()]
+        if description is not None:
+            lines += ["", description.text()]
             if answers[-1].trips_ms:
                 lines.append(trips_in_words([*answers[-1].trips_ms], language))
         lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
@@ -93,24 +93,29 @@ def _port(options: Namespace) -> str | None:
         if port is not None:
             raise CommandError(2, "virtual_and_port")
         port = running_address(options)
-    return None if port is None else inputs.port(port)
+    return None if port is None else inputs.check_port(port)
 
 
-def _examine_member(expected: Expectations, connection: Connection, member: Member) -> Result:
+def _examine_member(expectations: Expectations, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
     member.meet(connection)
     language = connection.language
     findings, answers = examination_of(
-        connection, expected, lambda what: member.tell(f"doing_{what}", n=expected.pings)
+        connection,
+        expectations,
+        lambda what: member.tell(f"doing_{what}", n=expectations.ping_count),
     )
     wrong_findings = [finding for finding in findings if finding.is_wrong]
     rows, fields = [sentences_of(finding, language).finding for finding in wrong_findings], {}
     if answers is not None:
-        robot, trips_ms = _description(connection.port, answers, language), [*answers.trips_ms]
-        rows.append(robot.line())
+        description, trips_ms = (
+            _description(connection.port, answers, language),
+            [*answers.trips_ms],
+        )
+        rows.append(description.line())
         if trips_ms:
             rows.append(trips_in_words(trips_ms, language))
-        fields = {**robot.fields(), **trips_as_data(trips_ms)}
+        fields = {**description.fields(), **trips_as_data(trips_ms)}
     fields["findings"] = [as_data(finding, language) for finding in findings]
     return Result(not wrong_findings, "; ".join(rows), fields)
 
@@ -127,7 +132,7 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
     rows = []
     for number, finding in enumerate(diagnosis.findings, 1):
         values = report.values_of(finding) if is_private else None
-        meaning, evidence, then = sentences_of(finding, language, values)
+        meaning, evidence, advice = sentences_of(finding, language, values)
         certainty_key = "doctor_sure" if finding.is_sure else "doctor_probably"
         if finding.verdict == OPEN:
             certainty_key = "doctor_note"
@@ -136,7 +141,7 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
                 number=str(number), what=meaning, how=text(certainty_key, language)
             ),
             text("doctor_seen", language).format(seen=evidence),
-            text("doctor_next", language).format(next=then),
+            text("doctor_next", language).format(next=advice),
         ]
     return rows
 

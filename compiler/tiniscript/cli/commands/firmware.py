@@ -16,7 +16,7 @@ from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import StepProgress, WriteResult
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
-from tiniscript.flash.ready import Ready
+from tiniscript.flash.ready import ReadyFile
 from tiniscript.link import ports
 from tiniscript.link.port_names import is_address
 from tiniscript.robots.ports import ESP32S
@@ -41,7 +41,7 @@ def run(options: Namespace, language: str) -> int:
         say_aside("flash_breakpoints", language)
     if options.build:
         firmware = firmware_build.firmware(robot, options, language, options.breakpoints)
-        print(firmware_build.row(robot, firmware, language))
+        print(firmware_build.firmware_row(robot, firmware, language))
         return 0
     command = avrdude.find_avrdude()
     if command is None:
@@ -49,7 +49,7 @@ def run(options: Namespace, language: str) -> int:
     port = _port(options)
     firmware = firmware_build.firmware(robot, options, language, options.breakpoints)
     _write(command, bootloaders, port, firmware, language)
-    size = f"{firmware.bytes:,}"
+    size = f"{firmware.flash_bytes:,}"
     values = {"robot": robot.name, "board": firmware.board, "bytes": size}
     print(text("flash_done", language).format(**values), flush=True)
     _introduce(port, robot, firmware.board, language)
@@ -79,10 +79,10 @@ def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Boo
         raise bad_choice("--chip", list(BOARDS), options.chip, language)
     robot = inputs.robot(options, language)
     board, bootloaders = BOARDS[options.chip or robot.board.chip]
-    fitting_robots = firmware_build.on_boards(options.robot, language, [board])
+    fitting_robots = firmware_build.robots_on_boards(options.robot, language, [board])
     if not fitting_robots:
         fitting_boards = ", ".join(
-            board.board.chip for board in firmware_build.on_boards(options.robot, language)
+            board.board.chip for board in firmware_build.robots_on_boards(options.robot, language)
         )
         raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fitting_boards)
     return fitting_robots[0], bootloaders
@@ -92,7 +92,7 @@ def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: it may be that of a radio."""
     if options.port is None:
         raise CommandError(2, "flash_no_port")
-    port = inputs.port(options.port)
+    port = inputs.check_port(options.port)
     if is_address(port):
         raise CommandError(2, "flash_address", port=printable_name(port))
     with convert_port_error(port):
@@ -104,43 +104,43 @@ def _write(
     command: list[str],
     bootloaders: tuple[Bootloader, ...],
     port: str,
-    firmware: Ready,
+    firmware: ReadyFile,
     language: str,
 ) -> None:
     """Write a firmware with the first bootloader that answers. Raises CommandError."""
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
             say_aside("flash_older", language)
-        result = _write_firmware(command, bootloader, port, firmware, language)
-        if result.outcome != avrdude.NOBODY:
+        write_result = _write_firmware(command, bootloader, port, firmware, language)
+        if write_result.outcome != avrdude.NOBODY:
             break
-    if result.outcome != avrdude.DONE:
+    if write_result.outcome != avrdude.DONE:
         values = {
             "port": printable_name(port),
             "board": firmware.board,
-            "why": printable_name(result.output),
+            "why": printable_name(write_result.output),
         }
-        raise CommandError(3, f"flash_{result.outcome}", **values)
+        raise CommandError(3, f"flash_{write_result.outcome}", **values)
 
 
 def _write_firmware(
-    command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
+    command: list[str], bootloader: Bootloader, port: str, firmware: ReadyFile, language: str
 ) -> WriteResult:
     progress = Progress(language, 100)
     has_begun = False
 
-    def look(step: StepProgress | None) -> None:
+    def on_step(step: StepProgress | None) -> None:
         nonlocal has_begun
         if step is not None:
             has_begun = True
-            silence.cancel()
+            notice.cancel()
             label = "flash_writing" if step.phase == avrdude.WRITING else "flash_reading"
             progress.label = text(label, language)
             progress.draw(step.percent)
 
     try:
-        with show_wait("flash_waits", language, port) as silence:
-            return avrdude.write(command, bootloader, port, firmware.path, look)
+        with show_wait("flash_waits", language, port) as notice:
+            return avrdude.write(command, bootloader, port, firmware.path, on_step)
     except KeyboardInterrupt:
         if not has_begun:
             raise
@@ -149,14 +149,14 @@ def _write_firmware(
         progress.end()
 
 
-def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
+def _introduce(port: str, robot: Robot, chip: str, language: str) -> None:
     """Send HELLO to the robot, and print its answer."""
     try:
         options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
         with Connection(options, robot, language) as connection:
-            connection.meet(board)
+            connection.meet(chip)
             print(describe_robot(connection).text())
-    except CommandError as failure:
-        if failure.exit_code != 3:
+    except CommandError as error:
+        if error.exit_code != 3:
             raise
         raise CommandError(3, "flash_silent", port=printable_name(port)) from None

@@ -18,15 +18,15 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(
             2, "needs_text", file=inputs.printable_name(program_input.name), verb="fmt"
         )
-    parsed_program = compiling.parse_input(program_input, inputs.robot(options, language).kit)
-    if not parsed_program.is_right:
-        outputs.print_diagnostics(parsed_program, language)
+    compilation = compiling.parse_input(program_input, inputs.robot(options, language).kit)
+    if not compilation.is_right:
+        outputs.print_diagnostics(compilation, language)
         return 1
-    laid_out = format_source(parsed_program.source)
-    if len(laid_out.encode()) > LARGEST_SOURCE_BYTES:
+    formatted_text = format_source(compilation.source)
+    if len(formatted_text.encode()) > LARGEST_SOURCE_BYTES:
         raise CommandError(2, "fmt_too_large", file=inputs.printable_name(program_input.name))
     name = inputs.printable_name(program_input.name)
-    is_formatted = laid_out.encode() == program_input.data
+    is_formatted = formatted_text.encode() == program_input.data
     if options.check:
         key = "is_formatted" if is_formatted else "would_format"
         print(
@@ -34,8 +34,8 @@ def run(options: Namespace, language: str) -> int:
         )
         return 0 if is_formatted else 1
     if program_input.path is None:
-        outputs.write_output(None, laid_out.encode())
+        outputs.write_output(None, formatted_text.encode())
     elif not is_formatted:
-        outputs.write(program_input.path, laid_out.encode(), "unwritable_source")
+        outputs.write(program_input.path, formatted_text.encode(), "unwritable_source")
         say("formatted", language, file=name)
     return 0

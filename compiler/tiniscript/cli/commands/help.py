@@ -20,14 +20,15 @@ def run(options: Namespace, language: str) -> int:
     elif any(topic in verb_text("all", language).split() for language in languages()):
         show(full_help, language)
     elif command := next(
-        (item for item in COMMANDS if command_words(item) == topic), FORMER_COMMANDS.get(topic)
+        (candidate for candidate in COMMANDS if command_words(candidate) == topic),
+        FORMER_COMMANDS.get(topic),
     ):
         show(partial(help_of, command), language)
     else:
-        result = [] if guess_verb(topic) else verbs_for(topic)
-        if not result and " " in topic:
+        matching_commands = [] if guess_verb(topic) else verbs_for(topic)
+        if not matching_commands and " " in topic:
             raise CommandError(2, "none_does", found=printable_name(topic))
-        if not result:
+        if not matching_commands:
             refuse(topic, [], language)
-        show(partial(list_commands, result), language)
+        show(partial(list_commands, matching_commands), language)
     return 0

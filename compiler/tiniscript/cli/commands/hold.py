@@ -20,13 +20,16 @@ from tiniscript.link.requests import OK
 def run(options: Namespace, language: str) -> int:
     try:
         with connect(options, language) as connection:
-            if connection.line.held_by:
-                values = {"port": printable_name(connection.port), "verb": connection.line.held_by}
+            if connection.connection.held_by:
+                values = {
+                    "port": printable_name(connection.port),
+                    "verb": connection.connection.held_by,
+                }
                 raise CommandError(3, "held_already", **values)
             if connection.server is None:
                 raise CommandError(3, "cannot_share", port=printable_name(connection.port))
             connection.meet()
-            _Log(connection, options.json).keep()
+            _Log(connection, options.json).print_events()
     except KeyboardInterrupt:  # the usual way to end it
         print(file=sys.stderr)
     return 0
@@ -42,7 +45,7 @@ class _Log:
         self.bookkeeping = Bookkeeping()
         self.search: PendingRequest[HelloReply] | None = None  # for a robot that was lost
 
-    def keep(self) -> None:
+    def print_events(self) -> None:
         """Print events until the port is gone."""
         self._say(
             "LINKED",
@@ -51,9 +54,9 @@ class _Log:
             port=printable_name(self.connection.port),
         )
         while True:
-            result = self.connection.event()
-            if result is not None:
-                self._print_event(*result)
+            timed_event = self.connection.event()
+            if timed_event is not None:
+                self._print_event(*timed_event)
             if self.search is not None and self.search.outcome is not None:
                 self._look_again()
 
@@ -65,7 +68,7 @@ class _Log:
         elif event.name == "LOST":
             self._say(event.name, "link_searching", port=printable_name(self.connection.port))
             self.search = self.connection.search()
-        elif not self.bookkeeping.hides(event):
+        elif not self.bookkeeping.filter_event(event):
             self.printer.tell(time_ms, event)
 
     def _look_again(self) -> None:

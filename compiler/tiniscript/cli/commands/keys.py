@@ -20,14 +20,14 @@ from tiniscript.link.messages import KEYS
 
 
 def run(options: Namespace, language: str) -> int:
-    ways = options.list or None, options.export, options.bring, options.forget, options.accept
-    if sum(way is not None for way in ways) > 1:
+    actions = options.list or None, options.export, options.bring, options.forget, options.accept
+    if sum(action is not None for action in actions) > 1:
         raise CommandError(2, "one_way")
     key_file = KeyFile()
     try:
         robot_keys = key_file.all()
-    except BadKeys as why:
-        raise _key_file_error(key_file, "own_keys_bad", why) from None
+    except BadKeys as error:
+        raise _key_file_error(key_file, "own_keys_bad", error) from None
     if keys.is_shared(key_file.path):
         warning = CommandError(0, "keys_shared", file=printable_name(str(key_file.path)))
         print(warning.sentence(language), file=sys.stderr)
@@ -57,7 +57,7 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
 
 def _import(key_file: KeyFile, name: str, language: str) -> None:
     try:
-        imported_keys = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
+        imported_keys = keys.decode_keys(files.read_limited(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
         raise CommandError(2, "bad_keys", file=printable_name(name)) from None
     try:
@@ -66,8 +66,8 @@ def _import(key_file: KeyFile, name: str, language: str) -> None:
         raise CommandError(
             2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
         ) from None
-    except BadKeys as why:
-        raise _key_file_error(key_file, "own_keys_full", why) from None
+    except BadKeys as error:
+        raise _key_file_error(key_file, "own_keys_full", error) from None
     say(
         "keys_imported",
         language,
@@ -77,31 +77,31 @@ def _import(key_file: KeyFile, name: str, language: str) -> None:
     )
 
 
-def _forget(key_file: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
-    forgotten_keys = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
-    forgotten_keys = forgotten_keys or [key for key in robot_keys if robot == key.name]
+def _forget(key_file: KeyFile, robot_keys: list[RobotKey], robot_name: str, language: str) -> None:
+    forgotten_keys = [key for key in robot_keys if robot_name.lower() == f"{key.id:08x}"]
+    forgotten_keys = forgotten_keys or [key for key in robot_keys if robot_name == key.name]
     if len({key.id for key in forgotten_keys}) != 1:
-        raise CommandError(2, "no_such_key", robot=printable_name(robot))
+        raise CommandError(2, "no_such_key", robot=printable_name(robot_name))
     try:
         key_file.forget(forgotten_keys[0].id)
-    except BadKeys as why:
-        raise _key_file_error(key_file, "own_keys_full", why) from None
-    say("keys_forgotten", language, robot=printable_name(robot))
+    except BadKeys as error:
+        raise _key_file_error(key_file, "own_keys_full", error) from None
+    say("keys_forgotten", language, robot=printable_name(robot_name))
 
 
-def _accept(key_file: KeyFile, robot: str, language: str) -> None:
-    if not re.fullmatch("[0-9a-fA-F]{8}", robot):
-        raise CommandError(2, "no_id", robot=printable_name(robot))
+def _accept(key_file: KeyFile, robot_id: str, language: str) -> None:
+    if not re.fullmatch("[0-9a-fA-F]{8}", robot_id):
+        raise CommandError(2, "no_id", robot=printable_name(robot_id))
     try:
-        key_file.accept(int(robot, 16))
-    except BadKeys as why:
-        raise _key_file_error(key_file, "own_keys_full", why) from None
-    say("robot_accepted", language, robot=robot.lower())
+        key_file.accept(int(robot_id, 16))
+    except BadKeys as error:
+        raise _key_file_error(key_file, "own_keys_full", error) from None
+    say("robot_accepted", language, robot=robot_id.lower())
 
 
-def _key_file_error(key_file: KeyFile, key: str, why: BadKeys) -> CommandError:
+def _key_file_error(key_file: KeyFile, key: str, error: BadKeys) -> CommandError:
     return CommandError(
-        2, key, file=printable_name(str(key_file.path)), why=f": {why.why}" if why.why else ""
+        2, key, file=printable_name(str(key_file.path)), why=f": {error.why}" if error.why else ""
     )
 
 

@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(
             2, "lesson_action", known=actions_text, found=inputs.printable_name(action) or "''"
         )
-    _refuse_others(options, action)
+    _check_options(options, action)
     if action == LIST:
         return _list(language)
     if options.number is None:
@@ -40,16 +40,16 @@ def run(options: Namespace, language: str) -> int:
         if action == "show":
             return _show(folder, options.teacher, language)
         return _sheet(folder, lesson, options, language)
-    except LessonRefused as refused:
+    except LessonRefused as error:
         full_reasons, file = ("no_such_lesson", "no_page"), inputs.printable_name(options.number)
-        raise inputs.refusal(refused, language, "lesson_refused", full_reasons, file=file) from None
+        raise inputs.refusal(error, language, "lesson_refused", full_reasons, file=file) from None
 
 
-def _refuse_others(options: Namespace, action: str) -> None:
+def _check_options(options: Namespace, action: str) -> None:
     """Refuse what only goes with another action."""
     for option in options_of("lesson"):
-        is_others = any(option.name in item for item in ACTIONS.values())
-        if is_others and option.name not in ACTIONS.get(action, ()):
+        belongs_to_action = any(option.name in names for names in ACTIONS.values())
+        if belongs_to_action and option.name not in ACTIONS.get(action, ()):
             if getattr(options, option.name):
                 label = option.flags if not option.is_argument else options.program
                 raise CommandError(

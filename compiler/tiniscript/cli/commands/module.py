@@ -8,11 +8,11 @@ from argparse import Namespace
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
-from tiniscript.cli.terminal.progress import Doing
+from tiniscript.cli.terminal.progress import StatusLine
 from tiniscript.cli.texts import text
-from tiniscript.cli.texts.causes import rows
+from tiniscript.cli.texts.causes import finding_lines
 from tiniscript.doctor.diagnosis import open_failure
-from tiniscript.doctor.findings import Finding, sure
+from tiniscript.doctor.findings import Finding, sure_finding
 from tiniscript.doctor.system import System
 from tiniscript.link import ports
 from tiniscript.link.errors import PortError
@@ -33,19 +33,19 @@ from tiniscript.link.wire import Wire
 
 
 def run(options: Namespace, language: str) -> int:
-    expected = _wanted_settings(options)
+    wanted_settings = _wanted_settings(options)
     port = _port(options)
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
-    except PortError as failure:
+    except PortError as error:
         return _print_finding(
-            open_failure(System(), port, failure)._replace(part_name="module"), language
+            open_failure(System(), port, error)._replace(part_name="module"), language
         )
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
-        return _SetUp(wire, options, expected, language, steps).run()
+        return _SetUp(wire, options, wanted_settings, language, steps).run()
     except OSError:
-        exit_code = _print_finding(sure("port_gone")._replace(part_name="module"), language)
+        exit_code = _print_finding(sure_finding("port_gone")._replace(part_name="module"), language)
         print(_speed_after_abort(steps, language))
         return exit_code
     except KeyboardInterrupt:
@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _print_finding(finding: Finding, language: str) -> int:
     """Print what was found; return the exit code."""
-    print("\n".join(rows([finding], language)), flush=True)
+    print("\n".join(finding_lines([finding], language)), flush=True)
     return 3 if finding.is_wrong else 0
 
 
@@ -78,18 +78,18 @@ def _wanted_settings(options: Namespace) -> WantedSettings:
         name = set_up.name_for(int(options.id, 16))
     baud = None
     if options.baud is not None:
-        baud_of_text = {str(item): item for item in BAUDS}
+        baud_of_text = {str(speed): speed for speed in BAUDS}
         if options.baud not in baud_of_text:
             raise CommandError(
                 2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
                 found=printable_name(options.baud) or "''",
             )  # fmt: skip
         baud = baud_of_text[options.baud]
-    result = WantedSettings(name, options.pin, baud)
-    misfits = [set_up.misfit(result, dialect) for dialect in DIALECTS]
+    wanted_settings = WantedSettings(name, options.pin, baud)
+    misfits = [set_up.misfit(wanted_settings, dialect) for dialect in DIALECTS]
     if all(misfits):
-        _refuse(result, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
-    return result
+        _refuse(wanted_settings, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
+    return wanted_settings
 
 
 def _refuse(wanted_settings: WantedSettings, dialect: Dialect, setting: str) -> None:
@@ -107,7 +107,7 @@ def _refuse(wanted_settings: WantedSettings, dialect: Dialect, setting: str) -> 
 def _port(options: Namespace) -> str:
     if options.port is None:
         raise CommandError(2, "module_no_port")
-    port = inputs.port(options.port)
+    port = inputs.check_port(options.port)
     if ports.is_radio(port):
         raise CommandError(2, "module_by_radio", port=printable_name(port))
     return port
@@ -127,26 +127,26 @@ class _SetUp:
         self.port = printable_name(options.port)
 
     def run(self) -> int:
-        status_line = Doing()
+        status_line = StatusLine()
         module = find_module(
             self.wire,
             look=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
         )
         status_line.end()
         if module is None:
-            return _print_finding(sure("module_silent"), self.language)
+            return _print_finding(sure_finding("module_silent"), self.language)
         misfit = set_up.misfit(self.wanted_settings, module.dialect)
         if misfit:
             _refuse(self.wanted_settings, module.dialect, misfit)
         plan = set_up.steps(self.wanted_settings, module.dialect)
-        settings_now = self._values(module)
-        self._introduce(module, settings_now)
+        current_settings = self._read_settings(module)
+        self._introduce(module, current_settings)
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun_steps += [step for step in plan if step.what == BAUD]
             outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
-            self._show(plan)
+            self._print_plan(plan)
         is_done = all(outcome.how in GOOD_OUTCOMES for outcome in outcomes)
         if not plan:
             pin = "123456"[: module.dialect.pin_digits]
@@ -159,7 +159,7 @@ class _SetUp:
     def _text(self, key: str, **values: str) -> str:
         return text(key, self.language).format(**values)
 
-    def _values(self, module: Module) -> dict[str, str]:
+    def _read_settings(self, module: Module) -> dict[str, str]:
         """Return what the module tells of what it keeps. Its PIN is not asked."""
         dialect = module.dialect
         questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
@@ -169,34 +169,37 @@ class _SetUp:
             if question
         }
         if BAUD in values:
-            text = values[BAUD].split(",")[0]
+            baud_text = values[BAUD].split(",")[0]
             values[BAUD] = next(
-                (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
+                (str(baud) for baud, value in dialect.bauds.items() if value == baud_text), ""
             )
         return {setting: printable_name(value) for setting, value in values.items() if value}
 
-    def _introduce(self, module: Module, settings_now: dict[str, str]) -> None:
+    def _introduce(self, module: Module, current_settings: dict[str, str]) -> None:
         version = printable_name(module.version) or self._text("module_no_version")
         print(
             self._text("module_found", module=module.dialect.name, port=self.port,
                        version=version, baud=str(module.baud))
         )  # fmt: skip
-        if settings_now:
+        if current_settings:
             values = (
-                self._text(f"module_what_{item}", value=settings_now[item]) for item in settings_now
+                self._text(f"module_what_{setting}", value=current_settings[setting])
+                for setting in current_settings
             )
             print(self._text("module_now", values=", ".join(values)), flush=True)
 
-    def _show(self, plan: list[Step]) -> None:
+    def _print_plan(self, plan: list[Step]) -> None:
         for step in plan:
             description = self._text(f"module_what_{step.what}", value=step.value)
             commands = self._text("module_plan_or").join(step.commands)
             print(f"{description}: " + self._text("module_plan", commands=commands))
 
     def _print_outcome(self, outcome: Outcome) -> None:
-        step, outcome_name, text = outcome
+        step, outcome_name, reply_text = outcome
         name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and outcome_name == DONE:
-            outcome_name = "done_baud" if text == step.value else "done_later"
-        text = printable_name(text) or self._text("module_no_word")
-        _print_finding(sure(f"module_{outcome_name}", name=name, said=text), self.language)
+            outcome_name = "done_baud" if reply_text == step.value else "done_later"
+        reply_text = printable_name(reply_text) or self._text("module_no_word")
+        _print_finding(
+            sure_finding(f"module_{outcome_name}", name=name, said=reply_text), self.language
+        )

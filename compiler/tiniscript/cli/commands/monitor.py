@@ -7,11 +7,11 @@ from argparse import Namespace
 from time import monotonic
 
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.paths import ROWS
+from tiniscript.cli.paths import ROWS_HEADER
 from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
-from tiniscript.cli.terminal.plot import Board
+from tiniscript.cli.terminal.plot import PlotScreen
 from tiniscript.cli.texts import text
 
 
@@ -23,22 +23,22 @@ def run(options: Namespace, language: str) -> int:
         with connect(options, language) as connection:
             connection.meet()
             if options.csv is not None:  # without a robot the old file stays
-                rows = Rows(options.csv, ROWS)
-            add = rows.add if rows is not None else None
+                rows = Rows(options.csv, ROWS_HEADER)
+            add_row = rows.add if rows is not None else None
             print(connection.text("watching"), file=sys.stderr)
             if options.plot and sys.stderr.isatty():
-                with Board(text("plot_waiting", language)) as board:
+                with PlotScreen(text("plot_waiting", language)) as plot_screen:
                     printer = EventPrinter(
                         language,
                         options.json,
                         has_times=True,
-                        rows=add,
-                        print_line=board.say,
-                        print_error=board.warn,
+                        add_row=add_row,
+                        print_line=plot_screen.say,
+                        print_error=plot_screen.warn,
                     )
-                    _watch(connection, printer, seconds, board)
+                    _watch(connection, printer, seconds, plot_screen)
             else:
-                printer = EventPrinter(language, options.json, has_times=True, rows=add)
+                printer = EventPrinter(language, options.json, has_times=True, add_row=add_row)
                 _watch(connection, printer, seconds)
     except KeyboardInterrupt:  # the usual way to end it
         print(file=sys.stderr)
@@ -49,12 +49,15 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _watch(
-    connection: Connection, printer: EventPrinter, seconds: int, board: Board | None = None
+    connection: Connection,
+    printer: EventPrinter,
+    seconds: int,
+    plot_screen: PlotScreen | None = None,
 ) -> None:
-    for item in connection.watch(monotonic() + seconds if seconds else None):
-        if board is not None:
-            board.draw_plot(int(monotonic() * 1000))
-        if item is not None:
-            if board is not None:
-                board.take(*item, printer.name_of)
-            printer.tell(*item)
+    for timed_event in connection.watch(monotonic() + seconds if seconds else None):
+        if plot_screen is not None:
+            plot_screen.draw_plot(int(monotonic() * 1000))
+        if timed_event is not None:
+            if plot_screen is not None:
+                plot_screen.take(*timed_event, printer.name_of)
+            printer.tell(*timed_event)

@@ -21,6 +21,6 @@ def run(options: Namespace, language: str) -> int:
         reply = connection.request(lambda session: session.name(data), ACCEPTING_STATUSES)
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
-            raise connection.failure(reply)
+            raise connection.error_for_reply(reply)
         connection.say("named", name=printable_name(name))
     return 0

@@ -26,7 +26,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKING_VERB
 from tiniscript.robots.profile import Robot
 
-OPEN_LIMIT_S = 12.0
+OPEN_TIMEOUT_S = 12.0
 
 
 def run(options: Namespace, language: str) -> int:
@@ -60,25 +60,25 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
         with closing(
-            open_client(port, robot, LOOKING_VERB, baud, language, OPEN_LIMIT_S)
+            open_client(port, robot, LOOKING_VERB, baud, language, OPEN_TIMEOUT_S)
         ) as client:
             reply = client.hello()
-            device_info, has_bytes = client.line.robot, client.line.heard
-            foreign_board = stranger(client.line)
-    except CommandError as failure:
-        return {"answer": None, "said": failure.plain(language)}
-    except RobotError as gone:
-        return {"answer": None, "said": str(gone)}
+            device_info, has_bytes = client.connection.robot, client.connection.heard
+            foreign_board = stranger(client.connection)
+    except CommandError as error:
+        return {"answer": None, "said": error.plain_sentence(language)}
+    except RobotError as error:
+        return {"answer": None, "said": str(error)}
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
-        called = (
+        robot_name = (
             printable_name(device_info.name)
             or shipped_name_of_kit(device_info.kit)
             or f"{device_info.id:08x}"
         )
         owner = ownership_of(device_info)
         sentence = text("port_whose", language).format(
-            said=text("port_robot", language).format(name=called),
+            said=text("port_robot", language).format(name=robot_name),
             whose=text(f"whose_{owner}", language),
         )
         return {

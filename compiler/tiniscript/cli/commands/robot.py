@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 MOST_MEMORY_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
 SAVE_INTERVAL_S = 1.0  # between two looks at what the robot keeps
-QUIT = "qQ\x04"
+QUIT_KEYS = "qQ\x04"
 
 
 def run(options: Namespace, language: str) -> int:
@@ -58,25 +58,25 @@ def run(options: Namespace, language: str) -> int:
         size = str(len(robot.memory))
         raise CommandError(2, "bad_memory", file=printable_name(options.memory), bytes=size)
     if options.name is not None:
-        _name(robot, options.name)
+        _set_name(robot, options.name)
     transports = _transports(port, options.pty)
-    note, announcement = None, None
+    note_path, announcement = None, None
     try:
         if options.announce:
             name = options.name or f"{profile.name}-{transports.port}"
             announcement = _announcement(name, transports.port)
-        running = directory.RunningRobot(
+        running_robot = directory.RunningRobot(
             transports.address, robot.profile.name, robot.world.name, options.name or "",
             transports.terminal,
         )  # fmt: skip
-        note = directory.announce(running)
+        note_path = directory.announce(running_robot)
         simulator = Simulator(robot, transports, hurry, faults)
         simulator.end_ms = end_ms
         stage = _Stage(simulator, options, language)
-        stage.announced = announcement.port if announcement is not None else ""
+        stage.announced_port = announcement.port if announcement is not None else ""
         stage.show(pushes, end_ms)
     finally:
-        directory.withdraw(note)
+        directory.withdraw(note_path)
         if announcement is not None:
             announcement.close()
         transports.close()
@@ -92,11 +92,11 @@ class _Stage:
         self.language = language
         self.screen: Screen | None = None
         self.picture: WorldPicture | None = None
-        self.announced = ""  # the port by which it is found
+        self.announced_port = ""  # the port by which it is found
         self.began_ms = 0  # when the program began whose lines are printed
         self._bookkeeping = Bookkeeping()
-        self._kept = simulator.robot.memory
-        self._look_s = monotonic()
+        self._saved_memory = simulator.robot.memory
+        self._last_save_s = monotonic()
         self._frame_s = 0.0
 
     def show(self, pushes: list[tuple[int, int]], end_ms: int | None) -> None:
@@ -112,7 +112,7 @@ class _Stage:
                     self.simulator.turn(self._limit_s(pushes, end_ms))
                     self._print_events(robot.take_events())
                     self._save(is_due=False)
-                    if not self._handle_keys(keys.read_pressed()):
+                    if not self._handle_keys(keys.read_keys()):
                         break
         except KeyboardInterrupt:
             pass
@@ -133,8 +133,8 @@ class _Stage:
         print(transports.address, flush=True)
         if transports.terminal:
             print(transports.terminal, flush=True)
-        if self.announced:
-            print(printable_name(self.announced), flush=True)
+        if self.announced_port:
+            print(printable_name(self.announced_port), flush=True)
         language = self.language
         name = printable_name(self.options.name or "") or robot.profile.labels[language]["robot"]
         say_aside("robot_here", language, robot=name, world=robot.world.labels[language])
@@ -149,26 +149,26 @@ class _Stage:
 
     def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
-        limits = [FRAME_S if self.screen else IDLE_S]
+        limits_s = [FRAME_S if self.screen else IDLE_S]
         for due_ms in (
             *(time_ms for time_ms, _ in pushes[:1]),
             *([end_ms] if end_ms is not None else []),
         ):
-            limits.append(max(0.001, (due_ms - self.simulator.robot.now_ms) / 1000))
-        return min(limits)
+            limits_s.append(max(0.001, (due_ms - self.simulator.robot.now_ms) / 1000))
+        return min(limits_s)
 
     def _print_events(self, events: list[Event]) -> None:
-        is_plain = self.screen is None or not sys.stdout.isatty()
+        prints_lines = self.screen is None or not sys.stdout.isatty()
         for event in events:
-            if self._bookkeeping.hides_trace(event.what, event.values):
+            if self._bookkeeping.filter_trace_event(event.kind, event.values):
                 continue
-            if event.what == "START":
+            if event.kind == "START":
                 self.began_ms = event.time_ms
             if self.picture is not None:
                 self.picture.take(event)
-            if is_plain:
+            if prints_lines:
                 print(f"{event.time_ms - self.began_ms} {event.text}")
-        if events and is_plain:
+        if events and prints_lines:
             sys.stdout.flush()
         self._draw()
 
@@ -181,7 +181,7 @@ class _Stage:
     def _handle_keys(self, keys: str) -> bool:
         """Handle keys; return whether to go on."""
         for key in keys:
-            if key in QUIT:
+            if key in QUIT_KEYS:
                 return False
             if key in "bB ":
                 self.simulator.push()
@@ -196,14 +196,14 @@ class _Stage:
     def _save(self, is_due: bool) -> None:
         """Write the robot's EEPROM to its file, if it has changed."""
         if self.options.memory is None or not (
-            is_due or monotonic() > self._look_s + SAVE_INTERVAL_S
+            is_due or monotonic() > self._last_save_s + SAVE_INTERVAL_S
         ):
             return
-        self._look_s = monotonic()
+        self._last_save_s = monotonic()
         memory = self.simulator.robot.memory
-        if memory != self._kept or is_due:
+        if memory != self._saved_memory or is_due:
             outputs.write(Path(self.options.memory), memory, "unwritable_at --memory")
-            self._kept = memory
+            self._saved_memory = memory
 
 
 def _transports(port: int, has_terminal: bool) -> Transports:
@@ -211,34 +211,36 @@ def _transports(port: int, has_terminal: bool) -> Transports:
         raise CommandError(2, "no_pty")
     try:
         return Transports(port, has_terminal)
-    except OSError as why:
-        raise CommandError(3, "listen_taken", port=str(port), why=why) from None
+    except OSError as error:
+        raise CommandError(3, "listen_taken", port=str(port), why=error) from None
 
 
-def _announcement(name: str, number: int) -> Announcement:
+def _announcement(name: str, port: int) -> Announcement:
     try:
         from tiniscript.virtual.announcement import Announcement, NameTaken
-    except ImportError as missing:
+    except ImportError as error:
         install_command = install_advice.command(install_advice.RADIO)
-        why = missing.name or ""
+        why = error.name or ""
         raise CommandError(
             2, "port_not_installed", port="--announce", why=why, how=install_command
         ) from None
     try:
-        return Announcement(name, number)
+        return Announcement(name, port)
     except NameTaken:
         raise CommandError(3, "name_taken", name=printable_name(name)) from None
     except OSError as why:
         raise CommandError(3, "no_announcement", why=why) from None
 
 
-def _pushes_ms(option: str, typed: str | None) -> list[int]:
-    if typed is None:
+def _pushes_ms(option: str, typed_times: str | None) -> list[int]:
+    if typed_times is None:
         return []
-    values = [decimal(part.strip()) for part in typed.split(",")]
+    values = [decimal(part.strip()) for part in typed_times.split(",")]
     pushes_ms = [value for value in values if value is not None and value >= 0]
     if len(pushes_ms) != len(values):
-        raise CommandError(2, "bad_button", option=option, found=printable_name(typed) or "''")
+        raise CommandError(
+            2, "bad_button", option=option, found=printable_name(typed_times) or "''"
+        )
     return pushes_ms
 
 
@@ -255,15 +257,15 @@ def _memory(name: str | None) -> bytes | None:
             return file.read(MOST_MEMORY_BYTES)
     except FileNotFoundError:
         return None
-    except (OSError, ValueError) as why:
-        raise CommandError(2, "unreadable_memory", file=printable_name(name), why=why) from None
+    except (OSError, ValueError) as error:
+        raise CommandError(2, "unreadable_memory", file=printable_name(name), why=error) from None
 
 
-def _name(robot: VirtualRobot, name: str) -> None:
+def _set_name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc set name` does, before any client connects."""
     data = name_bytes(name)
     keys = KeyFile(is_for_virtual=True)
-    computer = Computer(robot, robot.chance.getrandbits(32), keys)
-    computer.until(computer.session.name(data))
+    computer = Computer(robot, robot.random_source.getrandbits(32), keys)
+    computer.wait_for(computer.session.name(data))
     robot.step(robot.now_ms + 500)  # it is saved
     robot.power_cycle()

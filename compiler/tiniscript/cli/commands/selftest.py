@@ -12,36 +12,36 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.diagnosing import diagnosis_of, expected_of
+from tiniscript.cli.robot.diagnosing import diagnosis_of, expectations_of
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
-from tiniscript.cli.texts.causes import as_data, rows
+from tiniscript.cli.texts.causes import as_data, finding_lines
 from tiniscript.doctor import report
 from tiniscript.doctor.examination import Expectations
-from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
+from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure_finding
 from tiniscript.library import opening
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    expected = expected_of(options, language)
-    port, name = options.port or opening.last_port(), ""
+    expectations = expectations_of(options, language)
+    port, name = options.port or opening.usable_last_port(), ""
     try:
         with Connection(options, robot, language) as connection:
             port = connection.port
             try:
                 connection.meet()
-                findings = SelfTest(connection, expected, not options.yes).run()
+                findings = SelfTest(connection, expectations, not options.yes).run()
             except CommandError:  # nothing was started: no robot has answered
                 raise
             except BaseException:  # Ctrl-C, too: the motors may turn
                 connection.stop()
                 raise
             name = connection.name
-    except CommandError as failure:
-        if failure.exit_code != 3 or options.virtual:
+    except CommandError as error:
+        if error.exit_code != 3 or options.virtual:
             raise
-        findings = _without_robot(options, port, expected, failure, language)
+        findings = _without_robot(options, port, expectations, error, language)
     _print(findings, name, port, options.json, language)
     if options.report is not None:
         data = ("\n".join(_report(findings, name, port or "", language)) + "\n").encode()
@@ -52,7 +52,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _without_robot(
-    options: Namespace, port: str | None, expected: Expectations, failure: CommandError,
+    options: Namespace, port: str | None, expectations: Expectations, error: CommandError,
     language: str,
 ) -> list[Finding]:  # fmt: skip
     """Return what the doctor finds where no robot has answered.
@@ -60,10 +60,10 @@ def _without_robot(
     It may open the port that was to be opened, and no other one.
     """
     may_open = port is not None
-    findings = diagnosis_of(options, port, expected, language, may_open=may_open).findings
+    findings = diagnosis_of(options, port, expectations, language, may_open=may_open).findings
     wrong_findings = [finding for finding in findings if finding.is_wrong]
     if not wrong_findings:  # it has come meanwhile
-        return [sure("plain", said=failure.sentence(language))]
+        return [sure_finding("plain", said=error.sentence(language))]
     return [finding._replace(part_name=finding.part or "answers") for finding in wrong_findings]
 
 
@@ -79,8 +79,10 @@ def _print(
         return
     if name:
         say("selftest_head", language, robot=name, port=printable_name(port or ""))
-    print("\n".join(rows(findings, language)))
-    counts = {item: sum(row.verdict == item for row in findings) for item in (OK, WRONG, OPEN)}
+    print("\n".join(finding_lines(findings, language)))
+    counts = {
+        verdict: sum(row.verdict == verdict for row in findings) for verdict in (OK, WRONG, OPEN)
+    }
     good_count, wrong_count, open_count = counts[OK], counts[WRONG], counts[OPEN]
     say(
         "selftest_end",
@@ -101,8 +103,8 @@ def _report(findings: list[Finding], name: str, port: str, language: str) -> lis
         hidden_names.append((name, report.HIDDEN))
 
     def without_names(row: str) -> str:
-        for private_findings, public in hidden_names:
-            row = row.replace(private_findings, public)
+        for private_name, public_name in hidden_names:
+            row = row.replace(private_name, public_name)
         return row
 
     head = report.head(report.SELFTEST_MARK, text("selftest_about", language),
@@ -113,4 +115,4 @@ def _report(findings: list[Finding], name: str, port: str, language: str) -> lis
         else finding._replace(values=report.values_of(finding))
         for finding in findings  # what is of no part is of the computer and its port
     ]
-    return [*head, "", *map(without_names, rows(private_findings, language))]
+    return [*head, "", *map(without_names, finding_lines(private_findings, language))]

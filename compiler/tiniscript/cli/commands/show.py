@@ -44,9 +44,9 @@ def _sketch(options: Namespace, program_input: inputs.Input, robot: Robot, langu
     if not compilation.is_right:
         return 1
     assert compilation.program is not None
-    if missing := missing_feature(compilation.program, robot.kit):
+    if missing_name := missing_feature(compilation.program, robot.kit):
         raise CommandError(
-            2, f"sketch_no_{missing}", file=inputs.printable_name(program_input.name)
+            2, f"sketch_no_{missing_name}", file=inputs.printable_name(program_input.name)
         )
     sketch = sketch_of(compilation.source, compilation.program, robot, language).encode()
     if outputs.write_output(options.output, sketch):

@@ -20,9 +20,9 @@ def run(options: Namespace, language: str) -> int:
 
 def _start(connection: Connection, is_detached: bool, is_json: bool) -> int:
     reply = connection.request(lambda session: session.start(is_detached))
-    number, run = reply.values.program, reply.values.run
+    checksum, run = reply.values.program, reply.values.run
     key = "started_detached" if is_detached else "started"
-    sentence = connection.text(key, checksum=f"{number:08x}")
+    sentence = connection.text(key, checksum=f"{checksum:08x}")
     printer = EventPrinter(connection.language, is_json)
-    printer.say(0, "STARTED", "", sentence, program=f"{number:08x}")
+    printer.say(0, "STARTED", "", sentence, program=f"{checksum:08x}")
     return 0 if is_detached else RunMonitor(connection, printer).follow(run)

@@ -40,7 +40,7 @@ def run(options: Namespace, language: str) -> int:
         return _serve(options, language, (serving.HOST, port), hosting)
     host = _address_option(options.address) if options.address else _address()
     room = Classroom(
-        hosting, list(map(inputs.port, options.ports)), 60 * minutes or None,
+        hosting, list(map(inputs.check_port, options.ports)), 60 * minutes or None,
         folder=class_keeping.groups_folder(),
     )  # fmt: skip
     with closing(_class_keeper()) as keeper:
@@ -48,20 +48,20 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _serve(
-    options: Namespace, language: str, place: tuple[str, int], hosting: Hosting,
+    options: Namespace, language: str, host_and_port: tuple[str, int], hosting: Hosting,
     class_: _Class | None = None,
 ) -> int:  # fmt: skip
     resumed_count = _resume_class(class_) if class_ else 0
     if not serving.is_built() or building.is_possible():
         page_build.prepare(options, language)
-    host, port = place
+    host, port = host_and_port
     try:
         server = _server(port, host, hosting, class_.room if class_ else None)
-    except OSError as why:
+    except OSError as error:
         address = f"http://{host}:{port}/"
         key = "studio_no_address" if options.is_class else "studio_taken"
         raise CommandError(
-            3, key, port=str(port), why=why, address=printable_name(address)
+            3, key, port=str(port), why=error, address=printable_name(address)
         ) from None
     thread = Thread(target=server.serve_forever, name="studio", daemon=True)
     try:
@@ -93,9 +93,9 @@ def _serve(
         if thread.is_alive():
             server.shutdown()  # of one that has not begun it would wait for ever
         with show_wait("studio_stops", language):
-            unconfirmed = hosting.close()
-        for silent in unconfirmed:
-            say_aside("not_confirmed", language, port=printable_name(silent))
+            unconfirmed_ports = hosting.close()
+        for silent_port in unconfirmed_ports:
+            say_aside("not_confirmed", language, port=printable_name(silent_port))
         server.server_close()
     return 0
 
@@ -135,9 +135,9 @@ def _address() -> str:
 def _address_option(address: str) -> str:
     """Return the address of --address, which has no other form: Host must be exactly this."""
     try:
-        result = IPv4Address(address)
+        ip_address = IPv4Address(address)
     except ValueError:
-        result = IPv4Address(0)
-    if result.is_unspecified or result.is_multicast:
+        ip_address = IPv4Address(0)
+    if ip_address.is_unspecified or ip_address.is_multicast:
         raise CommandError(2, "studio_bad_address", found=printable_name(address))
-    return str(result)
+    return str(ip_address)

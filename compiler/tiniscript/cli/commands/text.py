@@ -15,7 +15,9 @@ def run(options: Namespace, language: str) -> int:
     is_allowed = options.whether == "on"
     with connect(options, language) as connection:
         info = connection.meet()
-        connection.ask_or(lambda session: session.allow_text(is_allowed), "text_none", "BAD_VALUE")
+        connection.request_or_raise(
+            lambda session: session.allow_text(is_allowed), "text_none", "BAD_VALUE"
+        )
         key = "text_on" if is_allowed else "text_off"
         if not info.values.features & OWNED:
             key = "text_free"

@@ -23,36 +23,36 @@ def run(options: Namespace, language: str) -> int:
     typed_values = _trim_options(options, language)
     with connect(options, language) as connection:
         connection.meet()
-        before = trim_from_reply(connection.request(lambda session: session.trim()).values)
+        old_trim = trim_from_reply(connection.request(lambda session: session.trim()).values)
         if options.show:
-            _print(connection, "trim_tells", before, options.json)
+            _print(connection, "trim_tells", old_trim, options.json)
             return 0
         if options.reset or typed_values:
-            trim = _change_trim(before, typed_values, options.reset)
+            trim = _change_trim(old_trim, typed_values, options.reset)
         else:
-            trim = guide(connection, before)
+            trim = guide(connection, old_trim)
         # This trim may be set already; the status OK means that it is saved.
         connection.request(lambda session: session.trim(trim.data()))
         _print(connection, "trim_keeps", trim, options.json)
     return 0
 
 
-def _change_trim(before: Trim, typed_values: dict[str, Any], is_reset: bool) -> Trim:
+def _change_trim(old_trim: Trim, typed_values: dict[str, Any], is_reset: bool) -> Trim:
     """Return a trim with what the options say."""
     paces = {name: typed_values.pop(name) for name in Pace._fields if name in typed_values}
-    if paces and before.pace is None:
+    if paces and old_trim.pace is None:
         raise CommandError(1, "trim_no_pace")
-    if before.pace is not None:
-        pace = (Pace() if is_reset else before.pace)._replace(**paces)
+    if old_trim.pace is not None:
+        pace = (Pace() if is_reset else old_trim.pace)._replace(**paces)
         if not pace.rises:
             raise CommandError(2, "trim_not_faster")
         typed_values["pace"] = pace
-    return (Trim() if is_reset else before)._replace(**typed_values)
+    return (Trim() if is_reset else old_trim)._replace(**typed_values)
 
 
 def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     """Return the fields of a trim that the options set."""
-    result: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     for option, name in (
         ("exchange", "is_exchanged"),
         ("reverse_left", "is_left_reversed"),
@@ -60,9 +60,9 @@ def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     ):
         word: str | None = getattr(options, option)
         if word is not None:
-            result[name] = word == "yes"
+            fields[name] = word == "yes"
     if options.balance is not None:
-        result["balance"] = whole_number(
+        fields["balance"] = whole_number(
             "--balance", options.balance, 0, -MOST_BALANCE, MOST_BALANCE, language
         )
     for name in Pace._fields:
@@ -70,10 +70,10 @@ def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
         if text is not None:
             option, most_thousandths = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
             size = thousandths(option, text.replace(",", "."), 0, 0, most_thousandths, language)
-            result[name] = size / ONE
+            fields[name] = size / ONE
     if options.least is not None:
-        result["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
-    return result
+        fields["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
+    return fields
 
 
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:

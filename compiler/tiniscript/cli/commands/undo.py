@@ -22,7 +22,7 @@ from tiniscript.link.payloads import ReceiptReply
 class UndoSaving(Saving):
     """Waits until the robot keeps its choice: what it has undone is not lost before."""
 
-    SAID: ClassVar = {"saves_later": "undo_later", "low_supply": "undo_low_supply",
+    KEY_BY_REASON: ClassVar = {"saves_later": "undo_later", "low_supply": "undo_low_supply",
                       "not_saved": "undo_not_saved"}  # fmt: skip
 
 
@@ -37,8 +37,8 @@ def run(options: Namespace, language: str) -> int:
         try:
             UndoSaving(connection, printer_of(connection, options.json), receipt.values).wait()
             return 0
-        except CommandError as failure:
-            if failure.key == "plain":
+        except CommandError as error:
+            if error.key == "plain":
                 raise
     # the command that held the port has ended, as its program has
     with Connection(options, robot, language) as connection:
@@ -54,8 +54,8 @@ def _undo_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
     receipt = UndoReceipt(connection)
     member.tell("crew_saving")
-    quiet = EventPrinter(connection.language, False, print_line=lambda line: None)
-    UndoSaving(connection, quiet, receipt.values).wait()
+    printer = EventPrinter(connection.language, False, print_line=lambda line: None)
+    UndoSaving(connection, printer, receipt.values).wait()
     return Result(True, receipt.line(), receipt.program_fields())
 
 
@@ -65,8 +65,8 @@ class UndoReceipt:
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
         self.values: ReceiptReply = connection.request(lambda session: session.undo()).values
-        places = source_map.recall(self.values.program)
-        self.program = None if places is None else places.name
+        program_map = source_map.recall(self.values.program)
+        self.program = None if program_map is None else program_map.name
 
     def program_fields(self) -> dict[str, object]:
         """Return which program is back, as data. `program`: its file, where that is known."""

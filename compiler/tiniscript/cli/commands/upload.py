@@ -18,7 +18,7 @@ from tiniscript.cli.robot.program_upload import (
     has_button,
     has_keys,
     is_running,
-    receipt,
+    receipt_fields,
     send_program,
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
     is_for_many = select_port(options)
     # the robot that answers may not be the default one
     may_choose_robot = options.robot is None and not is_for_many and not program_input.is_image
-    ready_program = _ready(program_input, robot, options, may_choose_robot)
+    ready_program = _prepare(program_input, robot, options, may_choose_robot)
     if ready_program is None:
         return 1
     is_followed = ready_program.image.start == "SI" and not (options.no_run or options.detach)
@@ -80,7 +80,7 @@ def run(options: Namespace, language: str) -> int:
             return stop_and_say(connection)
 
 
-def _ready(
+def _prepare(
     program_input: inputs.Input, robot: Robot, options: Namespace, may_choose_robot: bool
 ) -> images.ReadyProgram | None:  # fmt: skip
     """Return the program, or None where its mistakes have just been printed.
@@ -94,11 +94,11 @@ def _ready(
         return images.ready_program(
             program_input, robot, language, is_strict=True, may_choose_robot=True
         )
-    except images.OtherRobot as other:
-        result = own_kit.find_answering_robot(options, robot, language)
-        if result is not None:
-            return images.ready_program(program_input, result, language, is_strict=True)
-        outputs.print_diagnostics(other.compiled, language)
+    except images.OtherRobot as error:
+        answering_robot = own_kit.find_answering_robot(options, robot, language)
+        if answering_robot is not None:
+            return images.ready_program(program_input, answering_robot, language, is_strict=True)
+        outputs.print_diagnostics(error.compilation, language)
         return None
 
 
@@ -109,19 +109,19 @@ def _upload(
     progress = Progress(
         language, 1 + len(ready_program.image.later_fields) + len(ready_program.image.code)
     )
-    connection.quiet.before = progress.end
+    connection.wait_notice.before_print = progress.end
 
     def draw_progress(done_bytes: int) -> None:
         if done_bytes and progress.draw(done_bytes):  # before that, it is what is waited for
-            connection.quiet.note_words()
+            connection.wait_notice.note_other_output()
 
     tells_readings = options.record is not None and _ask_for_readings(connection)
     try:
-        values = send_program(connection, ready_program, options, draw_progress)
-        began_s = monotonic()  # before anything else is loaded or told
+        receipt_reply = send_program(connection, ready_program, options, draw_progress)
+        sent_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
-    printer = printer_of(connection, options.json, ready_program.places, values.program)
+    printer = printer_of(connection, options.json, ready_program.program_map, receipt_reply.program)
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder
@@ -130,33 +130,38 @@ def _upload(
         simulator = connection.simulator
         robot_ms = None if simulator is None else simulator.event_ms
         text, robot = options.recorded_text, connection.profile
-        head = recordings.head(recordings.REAL, text, robot, values.program)
-        recorder = Recorder(options.record, head, began_s, robot_ms, robot.kit)
-        printer.rows = recorder.add
+        head = recordings.head(recordings.REAL, text, robot, receipt_reply.program)
+        recorder = Recorder(options.record, head, sent_s, robot_ms, robot.kit)
+        printer.add_row = recorder.add
         printer.readings = recorder.add_reading if tells_readings else None
-    saving = Saving(connection, printer, values)
+    saving = Saving(connection, printer, receipt_reply)
     try:
         if options.json:
-            print(json.dumps(receipt(connection, ready_program, name, values, options)), flush=True)
+            print(
+                json.dumps(receipt_fields(connection, ready_program, name, receipt_reply, options)),
+                flush=True,
+            )
         else:
-            print(_receipt_line(connection, ready_program, name, values, options), flush=True)
-        connection.quiet.note_words()
+            print(
+                _receipt_line(connection, ready_program, name, receipt_reply, options), flush=True
+            )
+        connection.wait_notice.note_other_output()
         images.keep_map(ready_program)  # only now, so that the robot starts earlier
         return follow_run(connection, ready_program, saving, options, printer)
     except KeyboardInterrupt:
-        code = stop_and_say(connection)
+        exit_code = stop_and_say(connection)
         try:
             if recorder is not None:
                 recorder.end("STOPPED")
             saving.wait()  # short, as the motors stand now
-        except CommandError as failure:
-            print(failure.sentence(language), file=sys.stderr)
+        except CommandError as error:
+            print(error.sentence(language), file=sys.stderr)
         except KeyboardInterrupt:
             pass  # a second one ends this wait: the stop has been told
-        return code
+        return exit_code
     except OSError:  # tsc's output has no reader any more
         if connection.stop_unseen():
-            saving.wait_unseen()
+            saving.wait_unread()
         raise
     except CommandError:
         if recorder is not None:
@@ -179,19 +184,22 @@ def _ask_for_readings(connection: Connection) -> bool:
 
 
 def _receipt_line(
-    connection: Connection, ready_program: images.ReadyProgram, name: str, values: ReceiptReply,
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    name: str,
+    receipt_reply: ReceiptReply,
     options: Namespace,
-) -> str:  # fmt: skip
+) -> str:
     how_key = "how_waits"
     if is_running(ready_program, options):
         how_key = "how_detached" if options.detach else "how_running"
     elif has_button(connection, ready_program, options):
         how_key = "how_key" if has_keys(connection) else "how_pushed"
     sentence = connection.text(how_key, start=ready_program.image.start)
-    saved = saved_name(values.saved)
+    saved_state = saved_name(receipt_reply.saved)
     if not options.verbose:
-        if saved != "SAVING":  # else it is told once it is saved
-            key = "saved" if saved == "STORED" else f"saved_{saved}"
+        if saved_state != "SAVING":  # else it is told once it is saved
+            key = "saved" if saved_state == "STORED" else f"saved_{saved_state}"
             sentence = f"{connection.text(key)}   {sentence}"
         return connection.text("receipt", program=name, how=sentence)
     return connection.text(
@@ -199,7 +207,7 @@ def _receipt_line(
         program=name,
         image=ready_program.image_bytes,
         code=len(ready_program.image.code),
-        checksum=f"{values.program:08x}",
-        saved=connection.text(f"saved_{saved}", slot=values.slot),
+        checksum=f"{receipt_reply.program:08x}",
+        saved=connection.text(f"saved_{saved_state}", slot=receipt_reply.slot),
         how=sentence,
     )

@@ -38,9 +38,9 @@ def run(options: Namespace, language: str) -> int:
     if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
         raise CommandError(2, "wifi_one_way")
     broker_options = (options.user, options.group, options.trust, options.tls or None)
-    if options.broker is None and any(item is not None for item in broker_options):
+    if options.broker is None and any(option is not None for option in broker_options):
         raise CommandError(2, "broker_no_user")
-    broker = robot_broker.settings(options, language) if options.broker is not None else None
+    broker = robot_broker.broker_settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)
     with connect(options, language) as connection:
         info = connection.meet()
@@ -53,7 +53,7 @@ def run(options: Namespace, language: str) -> int:
             robot_broker.use_broker(connection, broker, options)
             return 0
         if options.forget or name is not None:
-            _refuse_itself(connection)
+            _refuse_over_wifi(connection)
         if options.forget:
             connection.request(lambda session: session.forget_wifi())
             connection.say("wifi_forgotten")
@@ -61,11 +61,11 @@ def run(options: Namespace, language: str) -> int:
             _join(connection, name, options.access_point)
         else:
             _print_wifi_state(connection, _wifi_state(connection))
-            robot_broker.tell_if_any(connection)
+            robot_broker.tell_broker_if_any(connection)
     return 0
 
 
-def _refuse_itself(connection: Connection) -> None:
+def _refuse_over_wifi(connection: Connection) -> None:
     """Refuse to change the network over the network: nobody would hear how that ends.
 
     A robot that would refuse anyway does so here, before anybody is asked for a password.
@@ -77,7 +77,7 @@ def _refuse_itself(connection: Connection) -> None:
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     prompt = text("wifi_password", connection.language)
-    password = asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
+    password = asking.ask_password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
     network = Network(name, password, is_access_point)
     connection.request(lambda session: session.join(network))
     ask = partial(_wifi_state, connection)
@@ -88,7 +88,9 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
 
 
 def _wifi_state(connection: Connection) -> WifiReply:
-    return connection.ask_or(lambda session: session.wifi(), "wifi_none", "UNKNOWN_MESSAGE").values
+    return connection.request_or_raise(
+        lambda session: session.wifi(), "wifi_none", "UNKNOWN_MESSAGE"
+    ).values
 
 
 def _print_wifi_state(connection: Connection, wifi_reply: WifiReply) -> None:

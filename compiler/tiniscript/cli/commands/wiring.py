@@ -15,7 +15,7 @@ from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.page import rail_rows, wire_rows
 from tiniscript.robots.wiring.plan import plan_of
 
-GAP = "  "  # between columns
+COLUMN_GAP = "  "  # between columns
 LEAST_COLUMN_WIDTH = 16  # a column on a terminal that is too narrow for the table
 
 
@@ -53,15 +53,15 @@ def _print_rows(rows: list[tuple[str, ...]]) -> None:
     widths = [
         max(cell_len(row[k]) for row in printable_rows) for k in range(len(printable_rows[0]))
     ]
-    indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
+    indent = sum(widths[:-1]) + len(COLUMN_GAP) * (len(widths) - 1)
     room = widths[-1]
     if sys.stdout.isatty():
         room = min(room, max(LEAST_COLUMN_WIDTH, get_terminal_size().columns - indent - 1))
-    for *row, last in printable_rows:
-        cells = GAP.join(
+    for *row, last_cell in printable_rows:
+        cells = COLUMN_GAP.join(
             set_cell_size(cell, width) for cell, width in zip(row, widths, strict=False)
         )
-        first, *rest = wrap(last, room) or [""]
-        print(f"{cells}{GAP}{first}".rstrip())
-        for line in rest:
+        first_line, *other_lines = wrap(last_cell, room) or [""]
+        print(f"{cells}{COLUMN_GAP}{first_line}".rstrip())
+        for line in other_lines:
             print(" " * indent + line)

@@ -13,7 +13,7 @@ class Bookkeeping:
     def __init__(self) -> None:
         self.is_on = False
 
-    def hides(self, event: Event) -> bool:
+    def filter_event(self, event: Event) -> bool:
         if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "RESTARTED"):
             self.is_on = False
         elif event.name != "SHOW":
@@ -22,7 +22,7 @@ class Bookkeeping:
             self.is_on = True
         return self.is_on
 
-    def hides_trace(self, name: str, values: tuple[int, ...]) -> bool:
+    def filter_trace_event(self, name: str, values: tuple[int, ...]) -> bool:
         """The same for an action in the trace of a virtual robot."""
         if name in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False

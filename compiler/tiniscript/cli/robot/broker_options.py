@@ -18,7 +18,7 @@ PLAIN_PORT, TLS_PORT = 1883, 8883
 DEFAULT_GROUP = "class"  # of who names none
 
 
-class Place(NamedTuple):
+class BrokerAddress(NamedTuple):
     host: str
     port: int
 
@@ -26,16 +26,16 @@ class Place(NamedTuple):
         return f"{self.host}:{self.port}"
 
 
-def place(options: Namespace, is_tls: bool = False) -> Place:
+def broker_address(options: Namespace, is_tls: bool = False) -> BrokerAddress:
     """Return where the broker is. Raises CommandError."""
     match = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
     port = int(match[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if match else 0
     if match is None or not 0 < port < 1 << 16:
         raise CommandError(2, "broker_bad_host", found=printable_name(options.broker) or "''")
-    return Place(match[1].lower(), port)
+    return BrokerAddress(match[1].lower(), port)
 
 
-def group(options: Namespace) -> str:
+def group_name(options: Namespace) -> str:
     """Return the name of the class. Raises CommandError."""
     name = DEFAULT_GROUP if options.group is None else str(options.group)
     if not is_class(name):
@@ -43,7 +43,7 @@ def group(options: Namespace) -> str:
     return name
 
 
-def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
+def ask_user(options: Namespace, language: str) -> tuple[bytes, bytes]:
     """Return a name and its password, or two empty ones. Raises CommandError."""
     if options.user is None:
         return b"", b""
@@ -51,10 +51,10 @@ def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
     if not 1 <= len(name) <= NETWORK_BYTES or not options.user.isprintable():
         raise CommandError(2, "broker_bad_user")
     prompt = text("broker_password", language).format(user=printable_name(options.user))
-    return name, asking.password(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
+    return name, asking.ask_password(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
 
 
-def trust(options: Namespace) -> bytes | None:
+def read_certificate(options: Namespace) -> bytes | None:
     """Return what the file with a certificate has; None: there is no such option.
 
     Raises CommandError.
@@ -65,7 +65,7 @@ def trust(options: Namespace) -> bytes | None:
         raise CommandError(2, "broker_trust_alone")
     try:
         return Path(options.trust).read_bytes()
-    except (OSError, ValueError) as why:
+    except (OSError, ValueError) as error:
         raise CommandError(
-            2, "broker_unread", file=printable_name(options.trust), why=why
+            2, "broker_unread", file=printable_name(options.trust), why=error
         ) from None

@@ -12,7 +12,7 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.paths import CLASS_ROWS
+from tiniscript.cli.paths import CLASS_ROWS_HEADER
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection, convert_port_error
 from tiniscript.cli.robot.description import describe_in_a_line
@@ -43,44 +43,44 @@ class Classroom:
             if options.user is not None:
                 raise CommandError(2, "broker_no_user")
             raise CommandError(2, "class_no_broker")
-        broker_options.trust(options)
+        broker_options.read_certificate(options)
         self.options = options
         self.language = language
-        self.place = broker_options.place(options, options.tls)
-        self.group = broker_options.group(options)
+        self.address = broker_options.broker_address(options, options.tls)
+        self.group = broker_options.group_name(options)
         self.broker = self._connect(options)
 
     def _connect(self, options: Namespace) -> Broker:
-        with convert_port_error(f"mqtt://{self.place}"):
+        with convert_port_error(f"mqtt://{self.address}"):
             try:
                 from tiniscript.link.transports import broker
-            except ImportError as missing:
-                raise PortError(NOT_INSTALLED, missing.name or "") from None
-            broker.sign_in(*self.place, self._access(options))
-            return broker.connect(*self.place)
+            except ImportError as error:
+                raise PortError(NOT_INSTALLED, error.name or "") from None
+            broker.sign_in(*self.address, self._access(options))
+            return broker.connect(*self.address)
 
     def _access(self, options: Namespace) -> Access:
         from tiniscript.link.transports.broker import Access
 
-        user, password = broker_options.user(options, self.language)
-        name, word = (item.decode("utf-8", "surrogateescape") for item in (user, password))
-        return Access(name, word, bool(options.tls), options.trust)
+        user, password = broker_options.ask_user(options, self.language)
+        name, password_text = (data.decode("utf-8", "surrogateescape") for data in (user, password))
+        return Access(name, password_text, bool(options.tls), options.trust)
 
-    def present(self) -> list[Present]:
+    def present_robots(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        with convert_port_error(f"mqtt://{self.place}"):
+        with convert_port_error(f"mqtt://{self.address}"):
             try:
-                result = self.broker.present(self.group)
+                known_robots = self.broker.present(self.group)
             finally:
                 for topic, size in self.broker.skipped_topics.items():
                     say_aside(
                         "class_skipped", self.language, topic=printable_name(topic), bytes=size
                     )
-        if not any(item.is_here for item in result):
-            raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
-        return result
+        if not any(robot.is_here for robot in known_robots):
+            raise CommandError(3, "class_empty", group=self.group, host=str(self.address))
+        return known_robots
 
-    def targets(self, present_robots: list[Present], verb: str = "class") -> Namespace:
+    def options_for(self, present_robots: list[Present], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
 
         Only who has them drive has to attend to them.
@@ -88,9 +88,11 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [
-            port_of(*self.place, self.group, item.id) for item in present_robots if item.is_here
+            port_of(*self.address, self.group, robot.id)
+            for robot in present_robots
+            if robot.is_here
         ]
-        fleet_defaults = {option.name: option.unset for option in options_of(UPLOAD_VERB)}
+        fleet_defaults = {option.name: option.default for option in options_of(UPLOAD_VERB)}
         target_options = Namespace(**{**fleet_defaults, "port": None, **vars(self.options)})
         target_options.ports, target_options.verb = ports, verb
         if verb == UPLOAD_VERB:
@@ -98,68 +100,71 @@ class Classroom:
         return target_options
 
 
-def list_robots(room: Classroom) -> int:
-    result = room.present()
-    target_options = room.targets(result)
-    code = run_together(
+def list_robots(classroom: Classroom) -> int:
+    known_robots = classroom.present_robots()
+    target_options = classroom.options_for(known_robots)
+    exit_code = run_together(
         target_options,
-        inputs.robot(target_options, room.language),
-        room.language,
+        inputs.robot(target_options, classroom.language),
+        classroom.language,
         describe_in_a_line,
     )
-    for item in result:
-        if not item.is_here and not target_options.json:
-            say("class_gone", room.language, robot=printable_name(item.name), id=item.id)
-    return code
+    for robot in known_robots:
+        if not robot.is_here and not target_options.json:
+            say("class_gone", classroom.language, robot=printable_name(robot.name), id=robot.id)
+    return exit_code
 
 
-def upload(room: Classroom) -> int:
+def upload(classroom: Classroom) -> int:
     """Send a program to all at once, and follow it until it ends on each."""
-    target_options = room.targets(room.present(), UPLOAD_VERB)
+    target_options = classroom.options_for(classroom.present_robots(), UPLOAD_VERB)
     program_input = inputs.program(target_options)
-    robot = inputs.robot_for(program_input, target_options, room.language)
-    ready_program = images.ready_program(program_input, robot, room.language, is_strict=True)
+    robot = inputs.robot_for(program_input, target_options, classroom.language)
+    ready_program = images.ready_program(program_input, robot, classroom.language, is_strict=True)
     if ready_program is None:
         return 1
     return upload_to_many(
-        target_options, robot, room.language, ready_program, printable_name(program_input.name)
+        target_options, robot, classroom.language, ready_program, printable_name(program_input.name)
     )
 
 
-def stop(room: Classroom) -> int:
+def stop(classroom: Classroom) -> int:
     """Stop all at once, with one message; then ask each of them whether it stands."""
     is_published = False
     for _ in range(STOP_MESSAGES):
         with suppress(OSError):
-            is_published = room.broker.stop(room.group) or is_published
+            is_published = classroom.broker.stop(classroom.group) or is_published
     try:
-        result = room.present()
+        known_robots = classroom.present_robots()
     except CommandError:
         if is_published:
-            say_aside("class_stop_sent", room.language, group=printable_name(room.group))
+            say_aside("class_stop_sent", classroom.language, group=printable_name(classroom.group))
         raise
-    target_options = room.targets(result, "stop")
+    target_options = classroom.options_for(known_robots, "stop")
     return run_together(
-        target_options, inputs.robot(target_options, room.language), room.language, stop_one
+        target_options,
+        inputs.robot(target_options, classroom.language),
+        classroom.language,
+        stop_one,
     )
 
 
-def show(room: Classroom) -> int:
+def show(classroom: Classroom) -> int:
     """Print what the robots show, until Ctrl-C or for some seconds."""
-    options, language = room.options, room.language
+    options, language = classroom.options, classroom.language
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
-    target_options = room.targets(room.present())
+    target_options = classroom.options_for(classroom.present_robots())
     end_s = monotonic() + seconds if seconds else None
-    rows = Rows(options.csv, CLASS_ROWS) if options.csv is not None else None
+    rows = Rows(options.csv, CLASS_ROWS_HEADER) if options.csv is not None else None
     listener = Listener(target_options.json, end_s, rows)
     try:
-        code = run_together(
+        exit_code = run_together(
             target_options, inputs.robot(target_options, language), language, listener.listen
         )
     finally:
         if rows is not None:
             rows.close()
-    return 0 if code == 2 else code  # Ctrl-C is the usual way to end it
+    return 0 if exit_code == 2 else exit_code  # Ctrl-C is the usual way to end it
 
 
 class Listener:
@@ -181,18 +186,21 @@ class Listener:
         def print_line(line: str) -> None:
             member.print(line if self.is_json else f"{connection.name}: {line}")
 
-        add = self.rows.add if self.rows is not None else None
-        who = escape_formula(printable_name(connection.name)), f"{connection.device_info.id:08x}"
+        add_row = self.rows.add if self.rows is not None else None
+        first_cells = (
+            escape_formula(printable_name(connection.name)),
+            f"{connection.device_info.id:08x}",
+        )
         printer = EventPrinter(
             connection.language, self.is_json, robot_fields=robot_fields, has_times=self.is_json,
             print_line=print_line, print_error=print_line,
-            rows=partial(add, *who) if add is not None else None,
+            add_row=partial(add_row, *first_cells) if add_row is not None else None,
             began_ms=self.began_ms,
         )  # fmt: skip
         try:
-            for item in connection.watch(self.end_s):
-                if item is not None:
-                    printer.tell(*item)
+            for timed_event in connection.watch(self.end_s):
+                if timed_event is not None:
+                    printer.tell(*timed_event)
         except KeyboardInterrupt:
             pass
         return Result(True, text("class_over", connection.language))

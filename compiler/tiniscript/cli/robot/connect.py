@@ -19,7 +19,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.terminal.progress import Quiet, show_wait
+from tiniscript.cli.terminal.progress import RepeatedWaitNotice, show_wait
 from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
@@ -47,7 +47,7 @@ T = TypeVar("T")
 
 # verbs that stay on a port, and share it
 SHARED_VERBS = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
-STOP_LIMIT_S = 1.5  # timeout for a stop when the command ends and may have no reader
+STOP_TIMEOUT_S = 1.5  # timeout for a stop when the command ends and may have no reader
 OWN_VIRTUAL_ROBOT = ""  # no port: this command starts its own virtual robot
 
 
@@ -87,23 +87,28 @@ class Connection(Client):
         baud = baud_of(options, robot, language)
         self._is_meeting = False
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
-        result = _select_port(options, language)
-        if result == OWN_VIRTUAL_ROBOT:
+        selected_port = _select_port(options, language)
+        if selected_port == OWN_VIRTUAL_ROBOT:
             from tiniscript.cli.robot.simulator import CommandSimulator
 
             self.simulator = CommandSimulator(options, robot, language)
-            result = self.simulator.port
-        self.port, self.language = result, language
-        sentence = text("waits_for_robot", language).format(port=printable_name(result))
-        self.quiet = Quiet(sentence, is_seen=not is_one_of_many)
+            selected_port = self.simulator.port
+        self.port, self.language = selected_port, language
+        sentence = text("waits_for_robot", language).format(port=printable_name(selected_port))
+        self.wait_notice = RepeatedWaitNotice(sentence, is_seen=not is_one_of_many)
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
             with self._show_wait(), convert_robot_error():
                 super().__init__(
-                    result, verb, robot, asked_baud, language, is_shared=verb in SHARED_VERBS,
-                    heed=self._raise_if_interrupted,
-                )  # fmt: skip
+                    selected_port,
+                    verb,
+                    robot,
+                    asked_baud,
+                    language,
+                    is_shared=verb in SHARED_VERBS,
+                    poll=self._raise_if_interrupted,
+                )
         except BaseException:
             self._end_simulator()
             raise
@@ -111,14 +116,14 @@ class Connection(Client):
     def __enter__(self) -> Connection:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+    def __exit__(self, error_type: type[BaseException] | None, *_: object) -> None:
         try:
-            if kind is not None and issubclass(kind, OSError) and self.drives:
+            if error_type is not None and issubclass(error_type, OSError) and self.drives:
                 self.stop_unseen()
-            if kind is None or issubclass(kind, (CommandError, OSError)):
+            if error_type is None or issubclass(error_type, (CommandError, OSError)):
                 self._hold_for_others()
         finally:
-            self.close(STOP_LIMIT_S)
+            self.close(STOP_TIMEOUT_S)
             self._end_simulator()
 
     def _hold_for_others(self) -> None:
@@ -144,7 +149,7 @@ class Connection(Client):
         if self._is_stopped_unseen or not self.drives or self.drives_another:
             return False
         self._is_stopped_unseen = True
-        is_confirmed = self.stop(STOP_LIMIT_S)
+        is_confirmed = self.stop(STOP_TIMEOUT_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             say_aside(key, self.language, port=printable_name(self.port))
@@ -164,11 +169,11 @@ class Connection(Client):
     ) -> DeviceInfo:  # fmt: skip
         """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
         self._is_meeting = True
-        self.quiet.begin()
+        self.wait_notice.begin()
         with self._show_wait():
             device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
         self._is_meeting = False
-        self.quiet.go_on()
+        self.wait_notice.end_wait()
         remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
@@ -179,29 +184,29 @@ class Connection(Client):
         self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
     ) -> Reply[T]:
         """Wait for the outcome of a request, and say so where that takes long."""
-        arrived = request.done_bytes
+        done_bytes = request.done_bytes
 
-        def watch() -> None:
-            nonlocal arrived
-            if request.done_bytes != arrived:
-                arrived = request.done_bytes
-                self.quiet.note_news()
+        def poll() -> None:
+            nonlocal done_bytes
+            if request.done_bytes != done_bytes:
+                done_bytes = request.done_bytes
+                self.wait_notice.restart()
             if on_wait is not None:
                 on_wait()
-            self.quiet.look()
+            self.wait_notice.poll()
 
         if self._is_meeting:
             return super().wait(request, on_wait)
-        self.quiet.begin()
-        return super().wait(request, watch)
+        self.wait_notice.begin()
+        return super().wait(request, poll)
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
-        result = super().event(limit_s)
-        if result is not None:
-            self.quiet.note_news()
+        timed_event = super().event(limit_s)
+        if timed_event is not None:
+            self.wait_notice.restart()
         elif self._needs_a_reader:
-            streams.refuse_unread()
-        return result
+            streams.raise_if_reader_gone()
+        return timed_event
 
     @property
     def _needs_a_reader(self) -> bool:
@@ -217,15 +222,15 @@ class Connection(Client):
     def _show_wait(self, key: str = "waits_for_robot") -> Iterator[None]:
         """Say what takes so long, once; a fleet has a table that does."""
         is_robot = key == "waits_for_robot"
-        if self.is_one_of_many or (is_robot and self.quiet.is_told):
+        if self.is_one_of_many or (is_robot and self.wait_notice.is_told):
             yield
             return
-        with show_wait(key, self.language, self.port) as silence:
+        with show_wait(key, self.language, self.port) as notice:
             try:
                 yield
             finally:
-                if is_robot and silence.is_told:
-                    self.quiet.note_told()
+                if is_robot and notice.is_told:
+                    self.wait_notice.note_told()
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""
@@ -248,19 +253,19 @@ class Connection(Client):
 
     def text(self, key: str, **values: object) -> str:
         """Return a sentence, which may name the robot that has answered, and its port."""
-        name = "" if self.line.robot is None else self.name
-        names = {"robot": name, "port": printable_name(self.port)}
-        return text(key, self.language).format(**{**names, **values})
+        name = "" if self.connection.robot is None else self.name
+        default_values = {"robot": name, "port": printable_name(self.port)}
+        return text(key, self.language).format(**{**default_values, **values})
 
     def say(self, key: str, **values: object) -> None:
         """Print such a sentence."""
         print(self.text(key, **values))
 
-    def ask_or(
-        self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
+    def request_or_raise(
+        self, begin: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.request(make, [STATUSES[status] for status in statuses])
+        reply = self.request(begin, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply
@@ -272,12 +277,12 @@ class Connection(Client):
         """
         bookkeeping = Bookkeeping()
         while end_s is None or monotonic() < end_s:
-            result = self.event()
-            if result is not None and bookkeeping.hides(result[1]):
+            timed_event = self.event()
+            if timed_event is not None and bookkeeping.filter_event(timed_event[1]):
                 continue
-            if result is not None and result[1].name == "LOST":
+            if timed_event is not None and timed_event[1].name == "LOST":
                 raise CommandError(3, "link_lost", port=printable_name(self.port))
-            yield result
+            yield timed_event
 
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
@@ -288,13 +293,13 @@ class Connection(Client):
             self.is_interrupted = False
             raise KeyboardInterrupt
 
-    def failure(self, reply: Reply[object]) -> CommandError:
+    def error_for_reply(self, reply: Reply[object]) -> CommandError:
         """Return the sentence for an outcome that is not OK."""
-        reason = reason_of(self.line, reply)
+        reason = reason_of(self.connection, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.refusal_text(reply))
         if reason == FOREIGN:
-            explanation, advice = self.foreign()
+            explanation, advice = self.foreign_board_sentences()
             return CommandError(
                 3,
                 reason,
@@ -344,10 +349,10 @@ def open_client(
         return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED_VERBS)
 
 
-def port_failure(port: str, failure: PortError) -> CommandError:
+def error_for_port(port: str, error: PortError) -> CommandError:
     """Return the sentence for a port that does not open."""
-    error = opening.port_error(port, failure)
-    return CommandError(3, error.key, **error.values)
+    robot_error = opening.port_error(port, error)
+    return CommandError(3, robot_error.key, **robot_error.values)
 
 
 @contextmanager
@@ -355,8 +360,8 @@ def convert_port_error(port: str) -> Iterator[None]:
     """Raise CommandError where a port does not open."""
     try:
         yield
-    except PortError as failure:
-        raise port_failure(port, failure) from None
+    except PortError as error:
+        raise error_for_port(port, error) from None
 
 
 def remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
@@ -374,71 +379,77 @@ def _select_port(options: Namespace, language: str) -> str:
     virtual robot is the user's own. OWN_VIRTUAL_ROBOT stands for a virtual robot of this command.
     """
     port: str | None = options.port
-    can_bring = hasattr(options, "world")
+    can_start_virtual = hasattr(options, "world")
     if options.virtual:
         if port is not None:
             raise CommandError(2, "virtual_and_port")
         from tiniscript.cli.robot.simulator import running_address
 
         return running_address(options) or OWN_VIRTUAL_ROBOT
-    for name in virtual_names() if can_bring else ():
+    for name in virtual_names() if can_start_virtual else ():
         if getattr(options, name):
             raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
-        return inputs.port(port)
-    if (last_port := opening.last_port()) is not None:
-        return last_port
-    last = known_ports.remembered_ports().last
-    virtual = directory.unclaimed_robots() if can_bring else directory.running_robots()
-    if len(virtual) == 1:
-        return virtual[0].address
+        return inputs.check_port(port)
+    if (usable_port := opening.usable_last_port()) is not None:
+        return usable_port
+    last_port = known_ports.remembered_ports().last
+    virtual_robots = (
+        directory.unclaimed_robots() if can_start_virtual else directory.running_robots()
+    )
+    if len(virtual_robots) == 1:
+        return virtual_robots[0].address
     if not asking.can_ask() or getattr(options, "asks_nothing", False):
-        if last is not None:
-            raise CommandError(3, "last_port_missing", port=printable_name(last))
-        if virtual:
+        if last_port is not None:
+            raise CommandError(3, "last_port_missing", port=printable_name(last_port))
+        if virtual_robots:
             raise CommandError(
-                3, "which_virtual", known=", ".join(item.address for item in virtual)
+                3, "which_virtual", known=", ".join(robot.address for robot in virtual_robots)
             )
-        raise CommandError(3, "which_port_or_virtual" if can_bring else "which_port")
-    return _ask_port(language, can_bring, virtual)
+        raise CommandError(3, "which_port_or_virtual" if can_start_virtual else "which_port")
+    return _ask_port(language, can_start_virtual, virtual_robots)
 
 
-def describe_port(listed: ListedPort, language: str) -> str:
+def describe_port(listed_port: ListedPort, language: str) -> str:
     """Return the description of a port; of a built-in one the system has none."""
-    is_told = bool(listed.description) or not is_built_in(listed.port)
-    return listed.description if is_told else text("port_built_in", language)
+    has_description = bool(listed_port.description) or not is_built_in(listed_port.port)
+    return listed_port.description if has_description else text("port_built_in", language)
 
 
-def describe_virtual_robot(running: directory.RunningRobot, language: str) -> str:
+def describe_virtual_robot(running_robot: directory.RunningRobot, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
     from tiniscript.virtual import worlds
 
-    world = running.world
+    world = running_robot.world
     if world in worlds.names():
         world = worlds.load(world).labels[language]
-    sentence = text("virtual_port", language).format(robot=running.robot, world=world)
-    return f"{running.name}: {sentence}" if running.name else sentence
+    sentence = text("virtual_port", language).format(robot=running_robot.robot, world=world)
+    return f"{running_robot.name}: {sentence}" if running_robot.name else sentence
 
 
-def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRobot]) -> str:
+def _ask_port(
+    language: str, can_start_virtual: bool, virtual_robots: list[directory.RunningRobot]
+) -> str:
     """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.remembered_ports().names
     from tiniscript.link import ports
 
-    result = ports.list_ports()
-    choices = [item.port for item in result]
+    listed_ports = ports.list_ports()
+    choices = [entry.port for entry in listed_ports]
     choices += [port for port in names if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip
-    choices += [item.address for item in virtual if item.address not in choices]
+    choices += [entry.address for entry in virtual_robots if entry.address not in choices]
     if not choices:
-        if can_bring:
+        if can_start_virtual:
             from tiniscript.cli.robot.simulator import offer_virtual_robot
 
             if offer_virtual_robot(language):
                 return OWN_VIRTUAL_ROBOT
         raise CommandError(3, "no_ports")
-    descriptions = {item.port: describe_port(item, language) for item in result}
-    descriptions |= {item.address: describe_virtual_robot(item, language) for item in virtual}
+    descriptions = {entry.port: describe_port(entry, language) for entry in listed_ports}
+    descriptions |= {
+        entry.address: describe_virtual_robot(entry, language) for entry in virtual_robots
+    }
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
         details = "   ".join(filter(None, (names.get(port), descriptions.get(port))))
@@ -446,14 +457,14 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRob
             f"  {number}  {printable_name(port)}   {printable_name(details)}".rstrip(),
             file=sys.stderr,
         )
-    if can_bring:
+    if can_start_virtual:
         choices.append(OWN_VIRTUAL_ROBOT)
         print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)
     while True:
-        typed = asking.answer(text("choose_number", language))
-        if not typed:
+        typed_line = asking.ask(text("choose_number", language))
+        if not typed_line:
             raise CommandError(3, "which_port")
-        answer = typed.strip()
+        answer = typed_line.strip()
         if answer and answer in choices:
             return answer
         if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= len(choices):

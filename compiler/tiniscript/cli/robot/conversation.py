@@ -20,7 +20,7 @@ from tiniscript.link.trim import Trim
 TURNING_POWER = 60  # percent, while the person looks at a motor
 ANSWER_YES = 1
 ANSWER_NOTHING, ANSWER_AGAIN = 5, 6  # answers of `turned`
-MOTORS = {"left": f"M({TURNING_POWER}, 0)", "right": f"M(0, {TURNING_POWER})"}
+MOTOR_LINES = {"left": f"M({TURNING_POWER}, 0)", "right": f"M(0, {TURNING_POWER})"}
 
 
 class NoPerson(Exception):
@@ -51,24 +51,24 @@ class Conversation:
         self.language = connection.language
         self.is_asking = is_asking
 
-    def answer(self, key: str, **values: str) -> str:
+    def ask(self, key: str, **values: str) -> str:
         """Ask, and return the line that is typed. Raises NoPerson."""
         if not self.is_asking:
             raise NoPerson
-        result = asking.answer(text(key, self.language).format(**values))
-        if not result:
+        line = asking.ask(text(key, self.language).format(**values))
+        if not line:
             self.is_asking = False
             print(file=sys.stderr)
             raise NoPerson
-        return result.strip()
+        return line.strip()
 
-    def choice(self, key: str, high: int, **values: str) -> int:
-        """Ask until the answer is a number from 1 to `high`. Raises NoPerson."""
+    def ask_choice(self, key: str, most: int, **values: str) -> int:
+        """Ask until the answer is a number from 1 to `most`. Raises NoPerson."""
         while True:
-            result = self.answer(key, **values)
-            if result.isascii() and result.isdigit() and 1 <= int(result[:9]) <= high:
-                return int(result)
-            say_aside("ask_number", self.language, high=high)
+            answer = self.ask(key, **values)
+            if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= most:
+                return int(answer)
+            say_aside("ask_number", self.language, high=most)
 
     def run_line(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
@@ -89,39 +89,39 @@ class Conversation:
 
     def ask_what_was_seen(self, line: str, key: str, repeat_choice: int, **values: str) -> int:
         """Let the robot do a line, and ask what was seen; `repeat_choice` shows it once more."""
-        result = repeat_choice
-        while result == repeat_choice:
+        choice = repeat_choice
+        while choice == repeat_choice:
             if not self.is_asking:
                 raise NoPerson
             self.run_line(line)
-            result = self.choice(key, repeat_choice, **values)
-        return result
+            choice = self.ask_choice(key, repeat_choice, **values)
+        return choice
 
-    def lift(self) -> None:
-        self.answer("ask_lift")
+    def ask_to_lift(self) -> None:
+        self.ask("ask_lift")
 
     def turn_motor(self, side: str) -> WheelTurn:
         """Turn the motor of a side; return what the person saw. Raises NoPerson, CommandError."""
         key = "ask_turned" if side == "left" else "ask_turned_other"
-        result = self.ask_what_was_seen(f"{MOTORS[side]}; W(1); M(0, 0)", key, ANSWER_AGAIN)
-        return NO_WHEEL_TURN if result == ANSWER_NOTHING else WHEEL_ANSWERS[result - 1]
+        answer = self.ask_what_was_seen(f"{MOTOR_LINES[side]}; W(1); M(0, 0)", key, ANSWER_AGAIN)
+        return NO_WHEEL_TURN if answer == ANSWER_NOTHING else WHEEL_ANSWERS[answer - 1]
 
 
-def trim_from_answers(before: Trim, left: WheelTurn, right: WheelTurn) -> Trim | None:
+def trim_from_answers(old_trim: Trim, left: WheelTurn, right: WheelTurn) -> Trim | None:
     """Return the trim with which each wheel turns forward for its side.
 
-    With `before`, the motor of the left side turned the one wheel, that of the right side the
+    With `old_trim`, the motor of the left side turned the one wheel, that of the right side the
     other. None where both turned the same, or one turned none.
     """
     if {left.wheel, right.wheel} != {"left", "right"}:
         return None
-    was_reversed = (before.is_left_reversed, before.is_right_reversed)
-    reversed_now = {
-        turned.wheel: is_reversed_now != (not turned.is_forward)
-        for turned, is_reversed_now in zip((left, right), was_reversed, strict=True)
+    was_reversed = (old_trim.is_left_reversed, old_trim.is_right_reversed)
+    is_reversed_by_wheel = {
+        turn.wheel: was_side_reversed != (not turn.is_forward)
+        for turn, was_side_reversed in zip((left, right), was_reversed, strict=True)
     }
-    return before._replace(
-        is_exchanged=before.is_exchanged != (left.wheel == "right"),
-        is_left_reversed=reversed_now["left"],
-        is_right_reversed=reversed_now["right"],
+    return old_trim._replace(
+        is_exchanged=old_trim.is_exchanged != (left.wheel == "right"),
+        is_left_reversed=is_reversed_by_wheel["left"],
+        is_right_reversed=is_reversed_by_wheel["right"],
     )

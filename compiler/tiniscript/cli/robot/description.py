@@ -35,7 +35,7 @@ from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
-ROUND_TRIPS = 10  # round trips
+ROUND_TRIP_COUNT = 10  # round trips
 
 
 class Description(NamedTuple):
@@ -51,7 +51,7 @@ class Description(NamedTuple):
     def fields(self) -> dict[str, object]:
         """Return it as data."""
         status, hello = self.status, self.device_info.values
-        has_program = not self._why_no_program()
+        has_program = not self._no_program_key()
         fault = None
         if status.fault:
             program = f"{status.fault_program:08x}"
@@ -125,15 +125,20 @@ class Description(NamedTuple):
         return text(key, self.language).format(**{**names, **values})
 
     def _program(self) -> str:
-        say, status, fields = self._text, self.status, self.fields()
-        why = self._why_no_program()
-        if why:
-            return say(why)
-        places = source_map.recall(status.program)
-        name = f" ({printable_name(places.name)})" if places is not None else ""
-        saved = say(f"saved_{fields['saved']}", slot=status.slot)
-        return say("info_program", checksum=fields["program"], name=name, code=status.length,
-                   saved=saved)  # fmt: skip
+        format_text, status, fields = self._text, self.status, self.fields()
+        no_program_key = self._no_program_key()
+        if no_program_key:
+            return format_text(no_program_key)
+        program_map = source_map.recall(status.program)
+        name = f" ({printable_name(program_map.name)})" if program_map is not None else ""
+        saved_text = format_text(f"saved_{fields['saved']}", slot=status.slot)
+        return format_text(
+            "info_program",
+            checksum=fields["program"],
+            name=name,
+            code=status.length,
+            saved=saved_text,
+        )
 
     def _text_level(self) -> str | None:
         """Return the level of text that the robot reads, or None."""
@@ -144,13 +149,13 @@ class Description(NamedTuple):
         level = self._text_level()
         return self._text("info_no_text" if level is None else "info_text", level=level)
 
-    def _why_no_program(self) -> str:
+    def _no_program_key(self) -> str:
         """Return the reason why the robot holds no program, or an empty text."""
-        texts = {
+        key_by_saved = {
             SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version",
             SAVED_UNREADABLE: "info_unreadable",
         }  # fmt: skip
-        return texts.get(self.status.saved, "")
+        return key_by_saved.get(self.status.saved, "")
 
     def _fault(self) -> str:
         status = self.status
@@ -182,50 +187,52 @@ def describe_in_a_line(connection: Connection, member: Member) -> Result:
 def introduce(connection: Connection, is_json: bool) -> int:
     """Print what a robot says about itself and how soon it answers; return the exit code."""
     connection.meet()
-    trips = _trips(connection, ROUND_TRIPS)
+    trips_ms = _measure_trips(connection, ROUND_TRIP_COUNT)
     description = describe_robot(connection)
     if is_json:
-        print(json.dumps({**description.fields(), **trips_as_data(trips)}, indent=2))
+        print(json.dumps({**description.fields(), **trips_as_data(trips_ms)}, indent=2))
     else:
         print(description.text())
-        print(trips_in_words(trips, connection.language))
+        print(trips_in_words(trips_ms, connection.language))
     return 0
 
 
-def measure_line(connection: Connection, member: Member) -> Result:
+def describe_and_measure(connection: Connection, member: Member) -> Result:
     """Describe one of many robots, and say how soon it answers."""
     result = describe_in_a_line(connection, member)
     member.tell("crew_pinging")
-    trips = _trips(connection, ROUND_TRIPS)
-    text = f"{result.sentence}; {trips_in_words(trips, connection.language)}"
-    return Result(True, text, {**result.fields, **trips_as_data(trips)})
+    trips_ms = _measure_trips(connection, ROUND_TRIP_COUNT)
+    text = f"{result.sentence}; {trips_in_words(trips_ms, connection.language)}"
+    return Result(True, text, {**result.fields, **trips_as_data(trips_ms)})
 
 
-def _trips(connection: Connection, count: int) -> list[float]:
+def _measure_trips(connection: Connection, count: int) -> list[float]:
     """Return how many milliseconds the answers took that came at once; none: CommandError."""
-    trips_ms = trips_of(SharedRobot(connection.line, connection.wait), count)
+    trips_ms = trips_of(SharedRobot(connection.connection, connection.wait), count)
     if not trips_ms:
-        raise connection.failure(Reply(LOST))
+        raise connection.error_for_reply(Reply(LOST))
     return [*trips_ms]
 
 
-def _shortest_usual_longest(trips: list[float]) -> dict[str, float]:
-    return {"least": min(trips), "median": median(trips), "most": max(trips)}
+def _trip_summary(trips_ms: list[float]) -> dict[str, float]:
+    return {"least": min(trips_ms), "median": median(trips_ms), "most": max(trips_ms)}
 
 
-def trips_as_data(trips: list[float]) -> dict[str, object]:
-    result = _shortest_usual_longest(trips) if trips else {}
-    return {"round_trips": len(trips)} | {f"{name}_ms": round(ms, 1) for name, ms in result.items()}
+def trips_as_data(trips_ms: list[float]) -> dict[str, object]:
+    summary = _trip_summary(trips_ms) if trips_ms else {}
+    return {"round_trips": len(trips_ms)} | {
+        f"{name}_ms": round(ms, 1) for name, ms in summary.items()
+    }
 
 
-def trips_in_words(trips: list[float], language: str) -> str:
-    numbers = {name: f"{ms:.1f}" for name, ms in _shortest_usual_longest(trips).items()}
-    return text("ping", language).format(n=len(trips), **numbers)
+def trips_in_words(trips_ms: list[float], language: str) -> str:
+    ms_texts = {name: f"{ms:.1f}" for name, ms in _trip_summary(trips_ms).items()}
+    return text("ping", language).format(n=len(trips_ms), **ms_texts)
 
 
 def trim_in_words(trim: Trim, language: str) -> str:
     """Return a trim in words."""
-    result = [
+    parts = [
         text(key, language)
         for key, is_set in (
             ("trim_exchanged", trim.is_exchanged),
@@ -236,14 +243,14 @@ def trim_in_words(trim: Trim, language: str) -> str:
     ] or [text("trim_as_wired", language)]
     key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
     balance = key if trim.balance else "trim_even"
-    result.append(text(balance, language).format(n=abs(trim.balance)))
+    parts.append(text(balance, language).format(n=abs(trim.balance)))
     if trim.least:
-        result.append(text("trim_least", language).format(n=trim.least))
+        parts.append(text("trim_least", language).format(n=trim.least))
     if trim.pace is not None:
-        lines = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
-        result += [
+        pace_rows = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
+        parts += [
             text(key, language).format(at_40=f"{at_40:g}", at_80=f"{at_80:g}")
-            for key, (at_40, at_80) in lines
+            for key, (at_40, at_80) in pace_rows
             if at_80
         ] or [text("trim_kits_pace", language)]
-    return ", ".join(result)
+    return ", ".join(parts)

@@ -14,9 +14,9 @@ from tiniscript.cli import inputs
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.terminal.asking import can_ask, confirm
-from tiniscript.cli.terminal.progress import Doing
+from tiniscript.cli.terminal.progress import StatusLine
 from tiniscript.cli.texts import text
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
+from tiniscript.doctor.diagnosis import Diagnosis, DoctorServices, Question, diagnose
 from tiniscript.doctor.examination import PING_COUNT, Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
@@ -38,7 +38,7 @@ from tiniscript.virtual import directory
 
 
 def diagnosis_of(
-    options: Namespace, port: str | None, expected: Expectations, language: str,
+    options: Namespace, port: str | None, expectations: Expectations, language: str,
     watch_ms: int = 0, may_open: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Let the doctor look at a port, or at the one that there is; say what it does meanwhile.
@@ -48,38 +48,47 @@ def diagnosis_of(
     robot = inputs.robot(options, language)
     question = Question(
         port,
-        opening.last_port(),
+        opening.usable_last_port(),
         baud_of(options, robot, language),
-        expected,
+        expectations,
         int.from_bytes(os.urandom(4), "little"),
         watch_ms,
-        tuple(item.address for item in directory.unclaimed_robots()),
+        tuple(running_robot.address for running_robot in directory.unclaimed_robots()),
     )
-    status_line = Doing(not options.json)
+    status_line = StatusLine(not options.json)
     try:
-        return diagnose(_doors(options, language, status_line, expected.pings, may_open), question)
+        return diagnose(
+            _make_services(options, language, status_line, expectations.ping_count, may_open),
+            question,
+        )
     finally:
         status_line.end()
 
 
-def expected_of(options: Namespace, language: str, ping_count: int = PING_COUNT) -> Expectations:
+def expectations_of(
+    options: Namespace, language: str, ping_count: int = PING_COUNT
+) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=ping_count)
+    return Expectations(
+        kit, robot.name, robot_name_of_kit, _has_key, _doubt_cause, ping_count=ping_count
+    )
 
 
 def examination_of(
-    connection: Connection, expected: Expectations,
+    connection: Connection, expectations: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> tuple[list[Finding], RobotAnswers | None]:  # fmt: skip
     """Let the doctor examine a robot that has answered; return what it found and heard."""
-    robot = SharedRobot(connection.line, connection.wait)
+    robot = SharedRobot(connection.connection, connection.wait)
     reply = robot.hello()
     if reply is None:
-        raise connection.failure(Reply(LOST))
+        raise connection.error_for_reply(Reply(LOST))
     answers: list[RobotAnswers] = []
-    findings = examine(robot, reply, expected._replace(hear=answers.append), on_step=on_step)
+    findings = examine(
+        robot, reply, expectations._replace(on_answers=answers.append), on_step=on_step
+    )
     return findings, answers[-1] if answers else None
 
 
@@ -87,22 +96,22 @@ def _has_key(robot_id: int) -> bool:
     return bool(KeyFile().of_robot(robot_id))
 
 
-def _doubt(port: str, hello: HelloReply) -> str:
+def _doubt_cause(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
     keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
     if is_other(keys, canonical_port(port), info):
         return "other_robot"
-    is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
-    return "unproven" if has_to_seal(keys, info) and not is_right else ""
+    is_proven = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
+    return "unproven" if has_to_seal(keys, info) and not is_proven else ""
 
 
-def _doors(
-    options: Namespace, language: str, status_line: Doing, ping_count: int, is_agreed: bool
-) -> Doors:
+def _make_services(
+    options: Namespace, language: str, status_line: StatusLine, ping_count: int, is_agreed: bool
+) -> DoctorServices:
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.open_port(port, baud))
 
-    def confirms_opening(port: str) -> bool:
+    def confirm_opening(port: str) -> bool:
         if options.yes or is_agreed:
             return True
         if options.json or not can_ask():
@@ -111,15 +120,20 @@ def _doors(
         return confirm(text("doctor_yes", language).format(port=printable_name(port)))
 
     @contextmanager
-    def share(port: str) -> Iterator[LinkConnection]:
+    def share_port(port: str) -> Iterator[LinkConnection]:
         connection_options = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
         with Connection(
             connection_options, inputs.robot(options, language), language
         ) as connection:
             connection.meet()
-            yield connection.line
+            yield connection.connection
 
-    return Doors(
-        System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
-        share, lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
-    )  # fmt: skip
+    return DoctorServices(
+        System(),
+        open_wire,
+        lambda port: join(port, "doctor"),
+        confirm_opening,
+        ports.is_radio,
+        share_port,
+        lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
+    )

@@ -16,28 +16,30 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import has_text, text
 from tiniscript.library import source_map
-from tiniscript.library.shows import Finder, Show
-from tiniscript.library.source_map import Map
+from tiniscript.library.shows import Show, ShowFinder
+from tiniscript.library.source_map import SourceMap
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.payloads import ReadingEvent
 
 
-def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
+def fault_sentence(
+    fault_number: int, offset: int, checksum: int, program_map: SourceMap | None, language: str
+) -> str:
     """Return the meaning of a fault, and its line in the program if the text is known."""
-    is_other = places is None
-    places = source_map.recall(program) if places is None else places
-    name = fault_name(number)
+    is_recalled = program_map is None
+    program_map = source_map.recall(checksum) if program_map is None else program_map
+    name = fault_name(fault_number)
     if not has_text(f"fault_{name}"):
-        return text("fault_unknown", language).format(number=number)
-    return fault_text(name, at, places, is_other, language)
+        return text("fault_unknown", language).format(number=fault_number)
+    return fault_text(name, offset, program_map, is_recalled, language)
 
 
 def _print_line(line: str) -> None:
     print(line, flush=True)
 
 
-def _err(line: str) -> None:
+def _print_error(line: str) -> None:
     sys.stdout.flush()
     print(line, file=sys.stderr, flush=True)
 
@@ -45,10 +47,10 @@ def _err(line: str) -> None:
 class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
-    `places` is the map of the program that is followed, `program` its checksum, and `whole_map` its
-    map with what a person has not typed, if there is such a thing. `rows` gets the cells of each
-    event, for a CSV file. `print_line` and `print_error` replace `print` while a picture is on the
-    terminal. JSON lines also get the `robot_fields`.
+    `program_map` is the map of the program that is followed, `program` its checksum, and
+    `whole_map` its map with what a person has not typed, if there is such a thing. `add_row` gets
+    the cells of each event, for a CSV file. `print_line` and `print_error` replace `print` while a
+    picture is on the terminal. JSON lines also get the `robot_fields`.
     """
 
     def __init__(
@@ -56,27 +58,29 @@ class EventPrinter:
         language: str,
         is_json: bool = False,
         has_times: bool = False,
-        places: Map | None = None,
-        rows: Callable[[int, str, str, str], None] | None = None,
+        program_map: SourceMap | None = None,
+        add_row: Callable[[int, str, str, str], None] | None = None,
         print_line: Callable[[str], None] | None = None,
         print_error: Callable[[str], None] | None = None,
         robot_fields: Mapping[str, object] | None = None,
         began_ms: int | None = None,
-        program: int | None = None,
-        whole_map: Map | None = None,
+        checksum: int | None = None,
+        whole_map: SourceMap | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
         self.has_times = has_times
-        self.places = places
-        shown_map = whole_map or places
-        self.shows = Finder({} if shown_map is None or program is None else {program: shown_map})
+        self.program_map = program_map
+        shown_map = whole_map or program_map
+        self.shows = ShowFinder(
+            {} if shown_map is None or checksum is None else {checksum: shown_map}
+        )
         self.has_lines = whole_map is None  # whose numbers a person knows
-        self.rows = rows
+        self.add_row = add_row
         self.readings: Callable[[ReadingEvent], None] | None = None  # gets those; nobody else does
-        self.out = print_line or _print_line
-        self.err = print_error or _err
-        self.about = robot_fields or {}
+        self.print_line = print_line or _print_line
+        self.print_error = print_error or _print_error
+        self.robot_fields = robot_fields or {}
         self.began_ms = began_ms
 
     def tell(self, time_ms: int, event: Event) -> None:
@@ -102,78 +106,78 @@ class EventPrinter:
             sentence = text("missed", self.language).format(n=event.count)
             self.say(since_ms, "MISSED", str(event.count), sentence, count=event.count)
         elif event.name == "TEXT":
-            words = printable_name(event.text.decode("utf-8", "replace"))
-            sentence = text("robot_text", self.language).format(said=words)
-            self.say(since_ms, "TEXT", escape_formula(words), sentence, text=words)
+            robot_text = printable_name(event.text.decode("utf-8", "replace"))
+            sentence = text("robot_text", self.language).format(said=robot_text)
+            self.say(since_ms, "TEXT", escape_formula(robot_text), sentence, text=robot_text)
 
     def name_of(self, event: ShownEvent) -> str:
         """Return the name of a value, by which it is told from the values of all other SHOWs."""
         show = self.shows.show_of(event)
         if show is None:
             return ""
-        place = f"{show.line}:{show.column}" if show.shares_line else str(show.line)
-        return self._name_with_place(show, place)
+        line_text = f"{show.line}:{show.column}" if show.shares_line else str(show.line)
+        return self._name_with_line(show, line_text)
 
-    def _name_with_place(self, show: Show, place: str) -> str:
+    def _name_with_line(self, show: Show, line_text: str) -> str:
         if not (show.shares_text and self.has_lines):
             return show.text
-        return text("shown_line", self.language).format(what=show.text, line=place)
+        return text("shown_line", self.language).format(what=show.text, line=line_text)
 
     def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
-        value_shown, show = value_text(*value), self.shows.show_of(event)
+        shown_value, show = value_text(*value), self.shows.show_of(event)
         if show is None:
-            self.say(since_ms, "SHOW", value_shown, value=value_of(*value))
+            self.say(since_ms, "SHOW", shown_value, value=value_of(*value))
             return
-        text = f"{self._name_with_place(show, str(show.line))} {value_shown}"
-        self.say(since_ms, "SHOW", value_shown, text, self.name_of(event), value=value_of(*value),
+        text = f"{self._name_with_line(show, str(show.line))} {shown_value}"
+        self.say(since_ms, "SHOW", shown_value, text, self.name_of(event), value=value_of(*value),
                  name=show.text, line=show.line, column=show.column)  # fmt: skip
 
-    def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
-        fault = fault_name(number)
-        sentence = fault_sentence(number, at, program, self.places, self.language)
-        places = self.places or source_map.recall(program)
-        place = places.at(at) if places is not None else None
-        place_fields = {} if place is None else {"line": place.line}
-        self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=at,
-                 program=f"{program:08x}", **place_fields)  # fmt: skip
+    def _tell_fault(self, since_ms: int, fault_number: int, offset: int, checksum: int) -> None:
+        fault = fault_name(fault_number)
+        sentence = fault_sentence(fault_number, offset, checksum, self.program_map, self.language)
+        program_map = self.program_map or source_map.recall(checksum)
+        location = program_map.location_at(offset) if program_map is not None else None
+        line_fields = {} if location is None else {"line": location.line}
+        self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=offset,
+                 program=f"{checksum:08x}", **line_fields)  # fmt: skip
 
     def say(
-        self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,
+        self, since_ms: int, name: str, shown_value: str, sentence: str = "", cell: str = "", /,
         is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
-        """Print an event: `said`, or its name and its values. JSON gets the fields, a row the
+        """Print an event: `sentence`, or its name and its values. JSON gets the fields, a row the
         `cell` that says which SHOW it was."""
-        if self.rows is not None:
-            self.rows(since_ms, name, what, escape_formula(cell))
+        if self.add_row is not None:
+            self.add_row(since_ms, name, shown_value, escape_formula(cell))
         if self.is_json:
             times = {"ms": since_ms} if self.has_times else {}
-            self.out(json.dumps({**times, "event": name, **self.about, **fields}))
+            self.print_line(json.dumps({**times, "event": name, **self.robot_fields, **fields}))
         elif is_bad or name in ("MISSED", "TEXT"):
-            self.err(said)
+            self.print_error(sentence)
         else:
-            time = f"{since_ms} " if self.has_times else ""
-            self.out(time + (said or f"{name} {what}"))
+            time_text = f"{since_ms} " if self.has_times else ""
+            self.print_line(time_text + (sentence or f"{name} {shown_value}"))
 
 
 def printer_of(
     connection: Connection,
     is_json: bool = False,
-    places: Map | None = None,
-    program: int | None = None,
-    whole_map: Map | None = None,
+    program_map: SourceMap | None = None,
+    checksum: int | None = None,
+    whole_map: SourceMap | None = None,
 ) -> EventPrinter:
     """Return the printer of a connection's events, above the picture of its virtual robot."""
     simulator = connection.simulator
     print_line, print_error = (
-        (None, None) if simulator is None else (simulator.say, simulator.complain)
+        (None, None) if simulator is None else (simulator.say, simulator.say_error)
     )
     return EventPrinter(
         connection.language,
         is_json,
-        places=places,
+        program_map=program_map,
         print_line=print_line,
         print_error=print_error,
-        program=program,
+        checksum=checksum,
         whole_map=whole_map,
     )

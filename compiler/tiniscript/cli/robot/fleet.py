@@ -30,13 +30,15 @@ if TYPE_CHECKING:
 
 
 LOOK_INTERVAL_S = 0.1
-STRANGER_LIMIT_S = 4.0  # timeout for a port that the user has not named and that never had a robot
+STRANGER_TIMEOUT_S = (
+    4.0  # timeout for a port that the user has not named and that never had a robot
+)
 # failures that may only mean that a port that the user has not named has no robot
 ABSENT_REASONS = (
     "port_missing", "port_missing_but", "port_unreachable", "port_not_found", "port_not_found_but",
     "port_not_announced",
 )  # fmt: skip
-NO_ROBOT = (
+NO_ROBOT_REASONS = (
     "link_silent", "link_other", "link_foreign", "link_echo", "not_confirmed", "port_slow",
     "port_no_port", "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux",
     "port_gone", "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
@@ -63,13 +65,13 @@ def run_together(options: Namespace, robot: Robot, language: str, work: Work) ->
         if sys.stderr.isatty() and not options.json:
             from tiniscript.cli.terminal.fleet_table import FleetTable
 
-            with FleetTable(fleet.in_order(), language) as table:
+            with FleetTable(fleet.sorted_members(), language) as table:
                 fleet.watch(table)
         else:
             fleet.watch(None)
     except KeyboardInterrupt:  # while something is printed, too
         fleet.interrupt()
-        streams.drop_unread()
+        streams.drop_unread_output()
         fleet.stop()
     except OSError:  # nobody reads, or can read, the output
         if options.verb == "upload" and not options.detach:
@@ -90,7 +92,7 @@ class Fleet:
         self.robot = robot
         self.language = language
         self.is_interrupted = False
-        self._news = Bell()
+        self._result_bell = Bell()
         self._attend: Callable[[], None] = getattr(options, "attend", lambda: None)
 
     def begin(self, work: Work) -> None:
@@ -100,62 +102,64 @@ class Fleet:
 
     def watch(self, table: FleetTable | None) -> None:
         """Print results until all have one; Ctrl-C stops all, a second one leaves at once."""
-        untold = list(self.members)
+        unfinished_members = list(self.members)
         begin_s = monotonic()
         end_s: float | None = None
-        while untold and (end_s is None or monotonic() < end_s):
+        while unfinished_members and (end_s is None or monotonic() < end_s):
             self._attend()
-            if monotonic() - begin_s > STRANGER_LIMIT_S and all(map(_is_stranger, untold)):
-                self._give_up(untold)
+            if monotonic() - begin_s > STRANGER_TIMEOUT_S and all(
+                map(_is_stranger, unfinished_members)
+            ):
+                self._give_up(unfinished_members)
             try:
                 if table is not None:
                     table.draw()
                 else:
-                    self._news.wait(LOOK_INTERVAL_S)
-                self._refuse_unread()
-                self._print_results(untold, table)
+                    self._result_bell.wait(LOOK_INTERVAL_S)
+                self._raise_if_reader_gone()
+                self._print_results(unfinished_members, table)
             except KeyboardInterrupt:
                 if self.is_interrupted:
                     return
                 self.interrupt()
-                streams.drop_unread()
-                end_s = monotonic() + opening.CONFIRM_S + 1
+                streams.drop_unread_output()
+                end_s = monotonic() + opening.CONFIRM_TIMEOUT_S + 1
         if table is not None:
-            present_members = [member for member in self.in_order() if not member.is_absent]
+            present_members = [member for member in self.sorted_members() if not member.is_absent]
             present_members.sort(
                 key=lambda member: member.mark == "bad"
             )  # failures are printed last
-            table.end(member.row for member in present_members)
-        self._print_sum()
+            table.end(member.result_line for member in present_members)
+        self._print_summary()
 
-    def _refuse_unread(self) -> None:
+    def _raise_if_reader_gone(self) -> None:
         """Raise BrokenPipeError where robots drive and nobody reads the output."""
         is_driving = self.options.verb == "upload" and not self.options.detach
         if is_driving and not self.is_interrupted:
-            streams.refuse_unread()
+            streams.raise_if_reader_gone()
 
-    def _print_results(self, untold: list[Member], table: FleetTable | None) -> None:
-        """Print the results that are new, and take those robots out of `untold`."""
-        for member in [member for member in untold if member.result is not None]:
+    def _print_results(self, unfinished_members: list[Member], table: FleetTable | None) -> None:
+        """Print the results that are new, and take those robots out of `unfinished_members`."""
+        for member in [member for member in unfinished_members if member.result is not None]:
             if member.bug is not None:
                 raise member.bug
             if table is None:
                 self._print(member)
-            untold.remove(member)
+            unfinished_members.remove(member)
         self._print_lines(table)
 
     def stop(self) -> None:
         """Stop every robot, and wait until they have confirmed; a second Ctrl-C ends the wait."""
         self.interrupt()
         with suppress(KeyboardInterrupt):
-            self.wait(opening.CONFIRM_S)
+            self.wait(opening.CONFIRM_TIMEOUT_S)
 
     def wait(self, limit_s: float) -> None:
         """Wait until all robots have a result."""
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
-            self._news.wait(LOOK_INTERVAL_S)
+            self._result_bell.wait(LOOK_INTERVAL_S)
 
     def interrupt(self) -> None:
         """Stop every robot."""
@@ -168,7 +172,7 @@ class Fleet:
         """Remember the names of all robots that have answered."""
         for member in self.members:
             connection = member.connection
-            if connection is not None and connection.line.robot is not None:
+            if connection is not None and connection.connection.robot is not None:
                 name = connection.device_info.name
                 opening.remember(member.target.port, name, is_used=False)
 
@@ -191,12 +195,12 @@ class Fleet:
         except Reconnect:
             self._run(member, work)
             return
-        except CommandError as failure:
-            member.result = self._failure_result(member, failure)
+        except CommandError as error:
+            member.result = self._failure_result(member, error)
         except Exception as bug:
             member.bug = bug
             member.result = Result(False, "")
-        self._news.ring()
+        self._result_bell.ring()
 
     def _connect(self, member: Member, work: Work) -> None:
         member_options = Namespace(**{**vars(self.options), "port": member.target.port})
@@ -214,15 +218,15 @@ class Fleet:
     def _stop_result(self, connection: Connection) -> Result:
         if connection.stop():
             return Result(False, text("robot_stopped", self.language))
-        failure = CommandError(3, "not_confirmed", port=printable_name(connection.port))
-        return Result(False, failure.plain(self.language))
+        error = CommandError(3, "not_confirmed", port=printable_name(connection.port))
+        return Result(False, error.plain_sentence(self.language))
 
-    def _failure_result(self, member: Member, failure: CommandError) -> Result:
+    def _failure_result(self, member: Member, error: CommandError) -> Result:
         target = member.target
-        is_absent = failure.key in ABSENT_REASONS or (
-            failure.key in NO_ROBOT and not target.is_known
+        is_absent = error.key in ABSENT_REASONS or (
+            error.key in NO_ROBOT_REASONS and not target.is_known
         )
-        sentence = failure.plain(self.language)
+        sentence = error.plain_sentence(self.language)
         return Result(False, sentence, {}, is_absent and not target.is_named)
 
     # -- what is printed --------------------------------------------------------------------------
@@ -232,7 +236,7 @@ class Fleet:
         if self.options.json:
             print(member.as_json(), flush=True)
         elif not member.is_absent:
-            print(member.row, flush=True)
+            print(member.result_line, flush=True)
 
     def _print_lines(self, table: FleetTable | None) -> None:
         while self.lines:
@@ -248,7 +252,7 @@ class Fleet:
         for member in strangers:
             member.result = Result(False, sentence, {}, is_absent=True)
 
-    def in_order(self) -> list[Member]:
+    def sorted_members(self) -> list[Member]:
         """Return the robots by their ports, `COM9` before `COM10`."""
 
         def key(member: Member) -> list[tuple[int, str]]:
@@ -257,9 +261,9 @@ class Fleet:
 
         return sorted(self.members, key=key)
 
-    def _print_sum(self) -> None:
+    def _print_summary(self) -> None:
         """Print the number of successes, and the ports without a robot."""
-        absent_members = [member for member in self.in_order() if member.is_absent]
+        absent_members = [member for member in self.sorted_members() if member.is_absent]
         present_count = len(self.members) - len(absent_members)
         if self.options.json or not present_count:
             return
@@ -275,5 +279,5 @@ class Fleet:
 def _is_stranger(member: Member) -> bool:
     """Whether the user has not named the port and no robot has ever answered on it."""
     connection = member.connection
-    has_answered = connection is not None and connection.line.robot is not None
+    has_answered = connection is not None and connection.connection.robot is not None
     return not (has_answered or member.target.is_named or member.target.is_known)

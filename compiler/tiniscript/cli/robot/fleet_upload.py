@@ -11,7 +11,7 @@ from tiniscript.cli import images
 from tiniscript.cli.images import ReadyProgram
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.description import measure_line
+from tiniscript.cli.robot.description import describe_and_measure
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result
@@ -27,7 +27,7 @@ def upload_to_many(
     """Send a program to many robots, keep its source map; return the exit code."""
     images.keep_map(ready_program)
     is_ping = ready_program.image.start == "PING"  # a program that asks who is there
-    work = measure_line if is_ping else partial(_upload, options, ready_program, name)
+    work = describe_and_measure if is_ping else partial(_upload, options, ready_program, name)
     return run_together(options, robot, language, work)
 
 
@@ -46,19 +46,19 @@ def _upload(
         member.tell("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
 
     draw_progress(0)
-    values = program_upload.send_program(connection, ready_program, options, draw_progress)
-    receipt = program_upload.receipt(connection, ready_program, name, values, options)
+    receipt_reply = program_upload.send_program(connection, ready_program, options, draw_progress)
+    receipt = program_upload.receipt_fields(connection, ready_program, name, receipt_reply, options)
     if options.json:
         member.print(json.dumps(receipt))
-    runs = program_upload.is_running(ready_program, options)
-    member.tell("crew_running" if runs and not options.detach else "crew_saving")
-    printer = MemberPrinter(connection, ready_program, member, options.json, values.program)
-    saving = Saving(connection, printer, values)
+    starts = program_upload.is_running(ready_program, options)
+    member.tell("crew_running" if starts and not options.detach else "crew_saving")
+    printer = MemberPrinter(connection, ready_program, member, options.json, receipt_reply.program)
+    saving = Saving(connection, printer, receipt_reply)
     exit_code = program_upload.follow_run(connection, ready_program, saving, options, printer)
-    if not runs or options.detach:
-        key = "how_waits" if not runs else "how_detached"
-        printer.end = text(key, language).format(start=ready_program.image.start)
-    sentence = printer.end
+    if not starts or options.detach:
+        key = "how_waits" if not starts else "how_detached"
+        printer.end_text = text(key, language).format(start=ready_program.image.start)
+    sentence = printer.end_text
     if options.verbose:
         sentence = text("crew_uploaded", language).format(
             checksum=receipt["checksum"], code=receipt["code_bytes"], how=sentence
@@ -67,7 +67,8 @@ def _upload(
 
 
 class MemberPrinter(EventPrinter):
-    """Prints the events of one of many robots. `end` is the end of its program, in one line."""
+    """Prints the events of one of many robots. `end_text` is the end of its program, in one
+    line."""
 
     def __init__(
         self,
@@ -75,29 +76,29 @@ class MemberPrinter(EventPrinter):
         ready_program: ReadyProgram,
         member: Member,
         is_json: bool,
-        program: int,
+        checksum: int,
     ) -> None:
         super().__init__(
             connection.language,
             is_json,
-            places=ready_program.places,
+            program_map=ready_program.program_map,
             robot_fields={"port": connection.port},
             print_line=member.print,
-            program=program,
+            checksum=checksum,
         )
         self.member = member
-        self.end = ""
+        self.end_text = ""
 
     def say(
-        self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,
+        self, since_ms: int, name: str, shown_value: str, sentence: str = "", cell: str = "", /,
         is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
-        line = said or f"{name} {what}"
+        line = sentence or f"{name} {shown_value}"
         if name == "SHOW":
             self.member.value = line
         elif name != "SAVED":
-            self.end = "  ".join(item.strip() for item in line.splitlines())
+            self.end_text = "  ".join(part.strip() for part in line.splitlines())
         if self.is_json:
-            super().say(since_ms, name, what, said, cell, is_bad=is_bad, **fields)
+            super().say(since_ms, name, shown_value, sentence, cell, is_bad=is_bad, **fields)
         elif name == "SHOW" and not sys.stderr.isatty():  # there is no table
-            self.out(f"{self.member.name} ({self.member.target.port}): {line}")
+            self.print_line(f"{self.member.name} ({self.member.target.port}): {line}")

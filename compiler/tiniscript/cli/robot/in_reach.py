@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import compress
 from typing import NamedTuple
 
-from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.robot.connect import error_for_port
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.link import ports
@@ -30,7 +30,7 @@ from tiniscript.link.sharing.shared_connection import is_alive
 from tiniscript.virtual import directory
 
 
-class InReach(NamedTuple):
+class ReachableRobots(NamedTuple):
     """`descriptions` maps ports to descriptions; `other_ports` are ports that mean one of these,
     too; `absent_ports` are known ports without a robot; `notes` say what was not searched, and
     why."""
@@ -41,65 +41,75 @@ class InReach(NamedTuple):
     notes: list[str]
 
 
-def find_robots(known_ports: list[str], language: str) -> InReach:
+def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
     """Search for some seconds. A robot that is known by a port of `known_ports` keeps it."""
-    result = InReach({}, [], [], [])
+    reach = ReachableRobots({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
     with ThreadPoolExecutor(2) as pool:
         searches = [(kind, pool.submit(search, known_ports, language))
                     for kind, search in ((BLE, _find_by_radio), (TCP, _find_by_name))]  # fmt: skip
         for kind, search in searches:
             try:
-                part = search.result()
-            except PortError as failure:
-                if failure.reason not in reasons:
-                    result.notes.append(port_failure(kind, failure).sentence(language))
-                reasons.add(failure.reason)
+                reach_part = search.result()
+            except PortError as error:
+                if error.reason not in reasons:
+                    reach.notes.append(error_for_port(kind, error).sentence(language))
+                reasons.add(error.reason)
                 continue
-            result.descriptions.update(part.descriptions)
-            result.other_ports.extend(part.other_ports)
-            result.absent_ports.extend(part.absent_ports)
-    return result
+            reach.descriptions.update(reach_part.descriptions)
+            reach.other_ports.extend(reach_part.other_ports)
+            reach.absent_ports.extend(reach_part.absent_ports)
+    return reach
 
 
-def _find_by_radio(known_ports: list[str], language: str) -> InReach:
+def _find_by_radio(known_ports: list[str], language: str) -> ReachableRobots:
     devices = ports.find_in_reach()
-    names = [canonical(each.name) for each in devices]
+    names = [canonical(device.name) for device in devices]
     rows = []
-    for each, name in zip(devices, names, strict=True):
+    for device, name in zip(devices, names, strict=True):
         sentence = text("radio_port", language)
-        sentence = f"{each.name}, {sentence}" if each.name else sentence
-        means = {canonical(each.address)} | ({name} if names.count(name) == 1 else set())
-        rows.append((BLE + each.address, {BLE + each for each in means}, sentence))
+        sentence = f"{device.name}, {sentence}" if device.name else sentence
+        meanings = {canonical(device.address)} | ({name} if names.count(name) == 1 else set())
+        rows.append((BLE + device.address, {BLE + device for device in meanings}, sentence))
     canonical_of = {port: BLE + name_in(port) for port in known_ports if is_bluetooth(port)}
-    return _rows(rows, canonical_of)
+    return _name_robots(rows, canonical_of)
 
 
-def _find_by_name(known_ports: list[str], language: str) -> InReach:
+def _find_by_name(known_ports: list[str], language: str) -> ReachableRobots:
     announced_robots = ports.find_announced()
     rows = []
-    for announced in announced_robots:
-        name = TCP + announced.name if announced.name.isprintable() else announced.port
-        sentence = text("announced_port", language).format(port=announced.port)
-        rows.append((name, {canonical_port(name), canonical_port(announced.port)}, sentence))
+    for announced_robot in announced_robots:
+        name = (
+            TCP + announced_robot.name
+            if announced_robot.name.isprintable()
+            else announced_robot.port
+        )
+        sentence = text("announced_port", language).format(port=announced_robot.port)
+        rows.append((name, {canonical_port(name), canonical_port(announced_robot.port)}, sentence))
     canonical_of = {port: canonical_port(port) for port in known_ports if is_network_name(port)}
-    reach = _rows(rows, canonical_of)
+    reach = _name_robots(rows, canonical_of)
     reach.other_ports.extend(
-        announced.port for announced in announced_robots if announced.port not in reach.descriptions
+        announced_robot.port
+        for announced_robot in announced_robots
+        if announced_robot.port not in reach.descriptions
     )
     return reach
 
 
-def _rows(rows: list[tuple[str, set[str], str]], canonical_of: dict[str, str]) -> InReach:
+def _name_robots(
+    rows: list[tuple[str, set[str], str]], canonical_of: dict[str, str]
+) -> ReachableRobots:
     """Name each robot by the port that the user knows: `rows` have a port, all that mean it, and a
     description; `canonical_of` maps known ports to what they mean."""
-    reach = InReach({}, [], list(canonical_of), [])
+    reach = ReachableRobots({}, [], list(canonical_of), [])
     for port, names, description in rows:
-        known_ports = [value for value, canonical in canonical_of.items() if canonical in names]
+        known_ports = [
+            given_port for given_port, canonical in canonical_of.items() if canonical in names
+        ]
         reach.descriptions[known_ports[0] if known_ports else port] = description
         reach.other_ports.extend(known_ports[1:])
-        for item in known_ports:
-            reach.absent_ports.remove(item)
+        for known_port in known_ports:
+            reach.absent_ports.remove(known_port)
     return reach
 
 
@@ -108,13 +118,15 @@ MOST_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
 
 def ports_in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    ports_in_use = [registration.port for registration in running_servers()]
-    result = [] if is_virtual else ports_in_use[:]
+    server_ports = [registration.port for registration in running_servers()]
+    robot_ports = [] if is_virtual else server_ports[:]
     for robot in directory.running_robots():
-        names = [robot.address, *([robot.terminal] if robot.terminal else [])]
-        shared_ports = [port for port in names if canonical_port(port) in ports_in_use]
-        result.append(shared_ports[0] if shared_ports else robot.address)  # one robot, one port
-    return _unique_ports(result)
+        port_names = [robot.address, *([robot.terminal] if robot.terminal else [])]
+        shared_ports = [port for port in port_names if canonical_port(port) in server_ports]
+        robot_ports.append(
+            shared_ports[0] if shared_ports else robot.address
+        )  # one robot, one port
+    return _unique_ports(robot_ports)
 
 
 def running_servers() -> list[Registration]:
@@ -131,9 +143,9 @@ def ports_to_stop(is_virtual: bool = False) -> list[str]:
 
     They include that of the last used robot, which may drive on without any command.
     """
-    result = ports_in_use(is_virtual)
-    last = None if is_virtual else opening.last_port()
-    return _unique_ports([*result, *([last] if last is not None else [])])
+    used_ports = ports_in_use(is_virtual)
+    last_port = None if is_virtual else opening.usable_last_port()
+    return _unique_ports([*used_ports, *([last_port] if last_port is not None else [])])
 
 
 def _unique_ports(ports: Iterable[str]) -> list[str]:

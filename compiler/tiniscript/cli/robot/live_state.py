@@ -17,37 +17,37 @@ from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK
 from tiniscript.diagnostics import codes
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compile_text
-from tiniscript.library.source_map import Map
+from tiniscript.library.compiling import Compilation, compile_text
+from tiniscript.library.source_map import SourceMap
 from tiniscript.semantics.ir import Assign, walk
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.syntax.parser import parse
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
-_UNUSED = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)
+_UNUSED_CODES = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)
 
 
-class Value(NamedTuple):
+class LiveValue(NamedTuple):
     value: int
     is_yes_no: bool
 
 
-class Line(NamedTuple):
-    """A compiled line: `shown` are the variables whose values it shows after the mark.
+class LiveLine(NamedTuple):
+    """A compiled line: `shown_variables` are the variables whose values it shows after the mark.
 
-    `defs` are the DEFs in it, which are known once it is done; `does_nothing`: it has nothing
-    but DEFs; `forgets`: it sets variables, but has no room to show them. `whole` is the map of the
-    line with the DEFs and variables before it, which have `before` lines.
+    `defs` are the DEFs in it, which are known once it is done; `has_only_defs`: it has nothing
+    but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map` is the
+    map of the line with the DEFs and variables before it, which have `lines_before` lines.
     """
 
-    compiled: Compiled
-    shown: tuple[str, ...]
+    compilation: Compilation
+    shown_variables: tuple[str, ...]
     defs: dict[str, str]
-    does_nothing: bool = False
-    forgets: bool = False
-    whole: Map | None = None
-    before: int = 0
+    has_only_defs: bool = False
+    loses_values: bool = False
+    whole_map: SourceMap | None = None
+    lines_before: int = 0
 
 
 def header(text: str) -> str:
@@ -56,7 +56,7 @@ def header(text: str) -> str:
     return match[1].upper() if match else "SI"
 
 
-def open_ends(text: str) -> str:
+def missing_ends(text: str) -> str:
     """Return the ends that are missing of the blocks of a text, `END_LOOP; END_DEF`; the text may
     go on there. Nothing where none is open, or an end is one of no block."""
     ends: list[str] = []
@@ -75,76 +75,88 @@ class LiveState:
     def __init__(self, kit: Kit) -> None:
         self.kit = kit
         self.defs: dict[str, str] = {}
-        self.values: dict[str, Value] = {}
+        self.values: dict[str, LiveValue] = {}
 
     def names(self) -> list[str]:
         return [*self.defs, *self.values]
 
-    def line(self, text: str, room: int) -> Line:
+    def compile_line(self, text: str, room: int) -> LiveLine:
         """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
         match = _HEADER.match(text)
         body = " " * match.end() + text[match.end() :] if match else text
         instructions = parse(Source(body)).program.body
-        own_texts = {node.name: body[node.span.start : node.span.end] for node in instructions
+        def_texts = {node.name: body[node.span.start : node.span.end] for node in instructions
                      if isinstance(node, ast.Def)}  # fmt: skip
-        values, defs = self._definitions_for(body, own_texts)
-        before = values + defs
-        plain = compile_text(f"{before}{body}", self.kit)
-        if not plain.is_right:
-            return Line(_compiled_part(plain, len(before)), (), own_texts)
-        shown = _assigned_variables(plain, len(values))
+        values, defs = self._definitions_for(body, def_texts)
+        prefix = values + defs
+        plain_compilation = compile_text(f"{prefix}{body}", self.kit)
+        if not plain_compilation.is_right:
+            return LiveLine(_compiled_part(plain_compilation, len(prefix)), (), def_texts)
+        assigned_variables = _assigned_variables(plain_compilation, len(values))
         if all(isinstance(node, ast.Def) for node in instructions):
-            return Line(_compiled_part(plain, len(before)), (), own_texts, does_nothing=True)
-        if shown:
-            after = "".join(f"\nSHOW({name})" for name in (as_text(BOOKKEEPING_MARK), *shown))
-            full = compile_text(f"{before}{body}{after}", self.kit)
-            if full.is_right and len(full.code) <= room:
-                line = _compiled_part(full, len(before), len(before + body))
-                whole = _map_of(full, len(before + body))
-                return Line(line, shown, own_texts, whole=whole, before=before.count("\n"))
-        line = _compiled_part(plain, len(before))
-        whole = _map_of(plain, len(before + body))
-        return Line(line, (), own_texts, False, bool(shown), whole, before.count("\n"))
+            return LiveLine(
+                _compiled_part(plain_compilation, len(prefix)), (), def_texts, has_only_defs=True
+            )
+        if assigned_variables:
+            suffix = "".join(
+                f"\nSHOW({name})" for name in (as_text(BOOKKEEPING_MARK), *assigned_variables)
+            )
+            full_compilation = compile_text(f"{prefix}{body}{suffix}", self.kit)
+            if full_compilation.is_right and len(full_compilation.code) <= room:
+                own_part = _compiled_part(full_compilation, len(prefix), len(prefix + body))
+                whole_map = _map_of(full_compilation, len(prefix + body))
+                return LiveLine(
+                    own_part,
+                    assigned_variables,
+                    def_texts,
+                    whole_map=whole_map,
+                    lines_before=prefix.count("\n"),
+                )
+        own_part = _compiled_part(plain_compilation, len(prefix))
+        whole_map = _map_of(plain_compilation, len(prefix + body))
+        return LiveLine(
+            own_part, (), def_texts, False, bool(assigned_variables), whole_map, prefix.count("\n")
+        )
 
-    def _definitions_for(self, text: str, own_texts: dict[str, str]) -> tuple[str, str]:
+    def _definitions_for(self, text: str, def_texts: dict[str, str]) -> tuple[str, str]:
         """Return the variables and the DEFs that a line needs, as text."""
-        names_used: set[str] = set()
-        texts = [text]
-        while texts:
-            words = {token.text for token in scan(texts.pop()).tokens if token.kind is WORD}
-            texts += [self.defs[name] for name in words - names_used if name in self.defs]
-            names_used |= words
+        used_names: set[str] = set()
+        texts_left = [text]
+        while texts_left:
+            words = {token.text for token in scan(texts_left.pop()).tokens if token.kind is WORD}
+            texts_left += [self.defs[name] for name in words - used_names if name in self.defs]
+            used_names |= words
         values = "".join(f"{name} = {value_text(*value)}\n" for name, value in self.values.items()
-                         if name in names_used)  # fmt: skip
+                         if name in used_names)  # fmt: skip
         defs = "".join(f"{value}\n" for name, value in self.defs.items()
-                       if name in names_used and name not in own_texts)  # fmt: skip
+                       if name in used_names and name not in def_texts)  # fmt: skip
         return values, defs
 
 
-def _assigned_variables(compilation: Compiled, start: int) -> tuple[str, ...]:
+def _assigned_variables(compilation: Compilation, start: int) -> tuple[str, ...]:
     """Return the variables that are set from `start` on."""
     program = compilation.program
     assert program is not None
-    numbers = {
-        item.variable
+    variable_numbers = {
+        statement.variable
         for body in (program.body, *(procedure.body for procedure in program.procedures))
-        for item in walk(body)
-        if isinstance(item, Assign) and item.span.start >= start
+        for statement in walk(body)
+        if isinstance(statement, Assign) and statement.span.start >= start
     }
-    return tuple(program.variables[number] for number in sorted(numbers))
+    return tuple(program.variables[number] for number in sorted(variable_numbers))
 
 
-def _map_of(compilation: Compiled, end: int) -> Map:
+def _map_of(compilation: Compilation, end: int) -> SourceMap:
     """Return the map of the text up to `end`; what is after it comes from nowhere."""
-    nowhere = Span(end, end)
-    places = tuple(
-        place if place.span.end <= end else place._replace(span=nowhere)
-        for place in compilation.places
+    empty_span = Span(end, end)
+    locations = tuple(
+        location if location.span.end <= end else location._replace(span=empty_span)
+        for location in compilation.locations
     )
-    return source_map.map_of_compiled(compilation._replace(places=places))
+    return source_map.map_of_compiled(compilation._replace(locations=locations))
 
 
-def _compiled_part(compilation: Compiled, start: int, end: int | None = None) -> Compiled:
+def _compiled_part(compilation: Compilation, start: int, end: int | None = None) -> Compilation:
     """Return the diagnostics of the text from `start` to `end`, as if it stood alone.
 
     For a mistake before `start` the source is the whole text. An unused DEF or variable gives no
@@ -163,12 +175,14 @@ def _compiled_part(compilation: Compiled, start: int, end: int | None = None) ->
         )
         for diagnostic in compilation.diagnostics
         if start <= diagnostic.span.start <= end
-        and (diagnostic.is_mistake or diagnostic.code not in _UNUSED)
+        and (diagnostic.is_mistake or diagnostic.code not in _UNUSED_CODES)
         and (diagnostic.span.start < end or end == len(text))
     ]
-    places = tuple(
-        place._replace(span=Span(max(0, place.span.start - start), max(0, place.span.end - start)))
-        for place in compilation.places
+    locations = tuple(
+        location._replace(
+            span=Span(max(0, location.span.start - start), max(0, location.span.end - start))
+        )
+        for location in compilation.locations
     )
     source = Source(text[start:end], "live")
-    return compilation._replace(source=source, diagnostics=diagnostics, places=places)
+    return compilation._replace(source=source, diagnostics=diagnostics, locations=locations)

@@ -48,21 +48,28 @@ def targets(options: Namespace) -> list[Target]:
     Ports in use come first, then ports of known robots. Opens none.
     """
     names_by_port = known_ports.remembered_ports().names
-    expected_ports = [inputs.port(port) for port in options.ports]
+    candidate_ports = [inputs.check_port(port) for port in options.ports]
     if options.all:
-        expected_ports = [registration.port for registration in find_all()]
-        expected_ports += [
+        candidate_ports = [registration.port for registration in find_all()]
+        candidate_ports += [
             port for port in names_by_port if is_there(port) and not directory.is_gone(port)
         ]
         from tiniscript.link import ports
 
-        expected_ports += [item.port for item in ports.list_ports()]
-        expected_ports += [robot.address for robot in directory.running_robots()]
-    names = {canonical_port(port): name for port, name in reversed(names_by_port.items())}
-    port_of = {canonical_port(port): port for port in reversed(expected_ports)}
+        candidate_ports += [listed_port.port for listed_port in ports.list_ports()]
+        candidate_ports += [robot.address for robot in directory.running_robots()]
+    name_by_canonical = {
+        canonical_port(port): name for port, name in reversed(names_by_port.items())
+    }
+    port_by_canonical = {canonical_port(port): port for port in reversed(candidate_ports)}
     return [
-        Target(port, names.get(canonical, ""), not options.all, canonical in names)
-        for canonical, port in reversed(port_of.items())
+        Target(
+            port,
+            name_by_canonical.get(canonical, ""),
+            not options.all,
+            canonical in name_by_canonical,
+        )
+        for canonical, port in reversed(port_by_canonical.items())
     ]
 
 
@@ -121,7 +128,7 @@ class Member:
         return f"{sentence}   {self.value}" if self.value else sentence
 
     @property
-    def row(self) -> str:
+    def result_line(self) -> str:
         text = self.result.sentence if self.result is not None else ""
         name = (
             f"{printable_name(self.name)} ({printable_name(self.target.port)})"

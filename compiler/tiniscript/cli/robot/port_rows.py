@@ -4,42 +4,54 @@ from __future__ import annotations
 
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import describe_port, describe_virtual_robot
-from tiniscript.cli.robot.in_reach import InReach, running_servers
+from tiniscript.cli.robot.in_reach import ReachableRobots, running_servers
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import canonical_port, is_there
 from tiniscript.virtual import directory
 
-EMPTY_REACH = InReach({}, [], [], [])  # nothing was searched
+EMPTY_REACH = ReachableRobots({}, [], [], [])  # nothing was searched
 
 Row = dict[str, object]  # a port as data
 
 
-def list_rows(language: str, only: str | None = None, in_reach: InReach = EMPTY_REACH) -> list[Row]:
+def list_rows(
+    language: str, only_port: str | None = None, in_reach: ReachableRobots = EMPTY_REACH
+) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
-    remembered = known_ports.remembered_ports()
-    virtual = {each.address: each for each in directory.running_robots()}
-    descriptions = {each.port: describe_port(each, language) for each in ports.list_ports()}
+    remembered_ports = known_ports.remembered_ports()
+    virtual_by_address = {entry.address: entry for entry in directory.running_robots()}
+    descriptions = {entry.port: describe_port(entry, language) for entry in ports.list_ports()}
     descriptions |= in_reach.descriptions
     verb_of_port = {registration.port: registration.verb for registration in running_servers()}
-    names = [only] if only is not None else list(descriptions)
-    if only is None:
-        names += [port for port in remembered.names if port not in descriptions and is_there(port)
-                  and port not in in_reach.other_ports and not directory.is_gone(port)]  # fmt: skip
-        names += [port for port in virtual if port not in (*names, *in_reach.other_ports)]
-        listed = {canonical_port(port) for port in names}
-        names += [port for port in verb_of_port if port not in listed]
-    descriptions |= {port: describe_virtual_robot(each, language) for port, each in virtual.items()}
+    shown_ports = [only_port] if only_port is not None else list(descriptions)
+    if only_port is None:
+        shown_ports += [
+            port
+            for port in remembered_ports.names
+            if port not in descriptions
+            and is_there(port)
+            and port not in in_reach.other_ports
+            and not directory.is_gone(port)
+        ]
+        shown_ports += [
+            port for port in virtual_by_address if port not in (*shown_ports, *in_reach.other_ports)
+        ]
+        canonical_ports = {canonical_port(port) for port in shown_ports}
+        shown_ports += [port for port in verb_of_port if port not in canonical_ports]
+    descriptions |= {
+        port: describe_virtual_robot(entry, language) for port, entry in virtual_by_address.items()
+    }
     return [
         {
             "port": port,
             "description": descriptions.get(port, ""),
-            "remembered": remembered.names.get(port),
-            "is_last_used": remembered.last == port,
-            "is_virtual": port in virtual,
+            "remembered": remembered_ports.names.get(port),
+            "is_last_used": remembered_ports.last == port,
+            "is_virtual": port in virtual_by_address,
             "held_by": verb_of_port.get(canonical_port(port)),
         }
-        for port in names
+        for port in shown_ports
     ]
 
 

@@ -16,16 +16,16 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.debugger import (
     Debugger,
-    Halting,
-    lines_of,
-    places_of,
+    HaltableProgram,
+    breakpoint_offsets,
+    parse_lines,
     require_breakpoints,
 )
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, exit_code_of
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts import text
-from tiniscript.library.compiling import compile_text, kit_of
+from tiniscript.library.compiling import compile_text, used_fingerprint
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import cause_name, saved_name
 from tiniscript.link.outcomes import LOST, Event
@@ -41,18 +41,20 @@ def send_program(
 ) -> ReceiptReply:
     """Send a program to the robot; return its receipt. `draw_progress` gets the number of code
     bytes that have arrived. Raises CommandError."""
-    places: tuple[int, ...] = ()
+    breakpoints: tuple[int, ...] = ()
     if options.breaks:
-        places = places_of(lines_of(options.breaks, connection.language), _halting(ready_program))
+        breakpoints = breakpoint_offsets(
+            parse_lines(options.breaks, connection.language), _haltable_program(ready_program)
+        )
         require_breakpoints(connection)
-    runs = not options.no_run and not places
+    starts = not options.no_run and not breakpoints
     reply = connection.send_program(
-        ready_program.image, runs, not options.no_save, options.detach, draw_progress
+        ready_program.image, starts, not options.no_save, options.detach, draw_progress
     )
     if reply.status:
-        raise _failure(connection, reply, ready_program)
-    if places:  # it starts with them
-        connection.request(lambda session: session.break_at(places))
+        raise _upload_error(connection, reply, ready_program)
+    if breakpoints:  # it starts with them
+        connection.request(lambda session: session.break_at(breakpoints))
         return connection.request(lambda session: session.start()).values
     return reply.values
 
@@ -74,7 +76,7 @@ def follow_run(
         if options.breaks:
             exit_code = _follow_halts(connection, ready_program, saving, printer)
         else:
-            exit_code = RunMonitor(connection, printer, on_wait=saving.look).follow(saving.run)
+            exit_code = RunMonitor(connection, printer, on_wait=saving.poll).follow(saving.run)
     elif has_button(connection, ready_program, options):
         exit_code = follow_button(connection, printer, saving)
     saving.wait()
@@ -88,19 +90,19 @@ def _follow_halts(
     printer: EventPrinter,
 ) -> int:
     """The same for a program with breakpoints."""
-    with Debugger(connection, printer, _halting(ready_program)) as debugger:
+    with Debugger(connection, printer, _haltable_program(ready_program)) as debugger:
 
         def on_wait() -> None:
-            saving.look()
-            debugger.look()
+            saving.poll()
+            debugger.poll_keys()
 
         return RunMonitor(connection, printer, debugger.hold, on_wait).follow(saving.run)
 
 
-def _halting(ready_program: images.ReadyProgram) -> Halting:
-    if ready_program.places is None:
+def _haltable_program(ready_program: images.ReadyProgram) -> HaltableProgram:
+    if ready_program.program_map is None:
         raise CommandError(2, "break_image")
-    return Halting(ready_program.image.code, ready_program.places)
+    return HaltableProgram(ready_program.image.code, ready_program.program_map)
 
 
 def is_running(ready_program: images.ReadyProgram, options: Namespace) -> bool:
@@ -119,7 +121,7 @@ def has_button(
     )
 
 
-def _failure(
+def _upload_error(
     connection: Connection, reply: Reply[object], ready_program: images.ReadyProgram
 ) -> CommandError:
     port = inputs.printable_name(connection.port)
@@ -130,18 +132,21 @@ def _failure(
         )
     if reply.status == LOST:
         return CommandError(3, "upload_lost", port=port)
-    return connection.failure(reply)
+    return connection.error_for_reply(reply)
 
 
-def receipt(
-    connection: Connection, ready_program: images.ReadyProgram, name: str, values: ReceiptReply,
+def receipt_fields(
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    name: str,
+    receipt_reply: ReceiptReply,
     options: Namespace,
-) -> dict[str, object]:  # fmt: skip
+) -> dict[str, object]:
     """Return the result of the upload as data."""
-    image, runs, saved = (
+    image, starts, saved_state = (
         ready_program.image,
         is_running(ready_program, options),
-        saved_name(values.saved),
+        saved_name(receipt_reply.saved),
     )
     return {
         "event": "RECEIPT",
@@ -150,12 +155,12 @@ def receipt(
         "program": name,
         "image_bytes": ready_program.image_bytes,
         "code_bytes": len(image.code),
-        "checksum": f"{values.program:08x}",
-        "saved": saved,
-        "slot": values.slot if saved == "STORED" else None,
+        "checksum": f"{receipt_reply.program:08x}",
+        "saved": saved_state,
+        "slot": receipt_reply.slot if saved_state == "STORED" else None,
         "start": image.start,
-        "is_running": runs,
-        "is_detached": runs and bool(options.detach),
+        "is_running": starts,
+        "is_detached": starts and bool(options.detach),
         "is_pushed": has_button(connection, ready_program, options),  # JSON output has no keys
     }
 
@@ -168,7 +173,7 @@ def follow_line(
     Raises CommandError.
     """
     compilation = compile_text(f"SI|{line}", connection.profile.kit)
-    kit = kit_of(compilation, connection.profile)
+    kit = used_fingerprint(compilation, connection.profile)
     run = connection.request(lambda session: session.live(compilation.code, kit)).values.run
     return RunMonitor(connection, printer, hold).follow(run)
 
@@ -190,28 +195,28 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
     """
     simulator = connection.simulator
     assert simulator is not None
-    is_person = has_keys(connection)
-    simulator.watch(text("button_keys", connection.language) if is_person else "")
-    if not is_person:
+    has_person = has_keys(connection)
+    simulator.watch(text("button_keys", connection.language) if has_person else "")
+    if not has_person:
         simulator.push()
     with Keys() as keys:
         while True:
-            for key in keys.read_pressed() if is_person else "":
+            for key in keys.read_keys() if has_person else "":
                 if key in QUIT_KEYS:
                     return DONE
                 if key in PUSH_KEYS:
                     simulator.push()
-            result = connection.event()
-            saving.look()
+            timed_event = connection.event()
+            saving.poll()
             if connection.is_time_over:
                 return RunMonitor(connection, printer).stop_in_time()
-            if result is None:
+            if timed_event is None:
                 continue
-            _check_event(connection, result[1], saving.program)
-            if result[1].name != "STARTED":
-                printer.tell(*result)
-            exit_code = exit_code_of(result[1], None)
-            if exit_code is not None and not (is_person and _is_push(result[1])):
+            _check_event(connection, timed_event[1], saving.program)
+            if timed_event[1].name != "STARTED":
+                printer.tell(*timed_event)
+            exit_code = exit_code_of(timed_event[1], None)
+            if exit_code is not None and not (has_person and _is_push(timed_event[1])):
                 return exit_code
 
 

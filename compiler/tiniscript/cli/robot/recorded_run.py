@@ -64,7 +64,9 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     image = result.image
     data = pack(image.start, image.devices, image.code, image.later_fields, image.needs)
     with convert_refusal(world.name, language):
-        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=message))
+        run = Simulation(
+            robot.name, world, data, settings=Settings(seed=seed, given_readings=message)
+        )
     if image.start == "SB":
         run.push()
     started_ms = run.robot.started_ms or 0
@@ -82,7 +84,9 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     recording = recordings.encode(head, rows, end_ms)
     outputs.write(Path(options.record), recording.encode(), "unwritable_more --record")
     if fault:
-        text = fault_text(fault, fault_at or 0, result.places, program_input.is_image, language)
+        text = fault_text(
+            fault, fault_at or 0, result.program_map, program_input.is_image, language
+        )
         print(text, file=sys.stderr)
     return int(bool(fault))
 

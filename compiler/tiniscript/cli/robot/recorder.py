@@ -42,24 +42,24 @@ class Rows:
             self._file = path.open("w", encoding="utf-8", newline="\n")  # a device or a pipe
             self._file.write(first.decode())
             self._file.flush()
-        except (OSError, ValueError) as why:
-            raise self._failure(why) from None
+        except (OSError, ValueError) as error:
+            raise self._failure(error) from None
 
     def add(self, *cells: object) -> None:
         try:
             with self._lock:
                 csv.writer(self._file, lineterminator="\n").writerow(cells)
                 self._file.flush()
-        except (OSError, ValueError) as why:
-            raise self._failure(why) from None
+        except (OSError, ValueError) as error:
+            raise self._failure(error) from None
 
     def line(self, row: str) -> None:
         try:
             with self._lock:
                 self._file.write(row + "\n")
                 self._file.flush()
-        except (OSError, ValueError) as why:
-            raise self._failure(why) from None
+        except (OSError, ValueError) as error:
+            raise self._failure(error) from None
 
     def close(self) -> None:
         with suppress(OSError):  # a write failure was told already

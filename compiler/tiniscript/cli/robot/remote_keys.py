@@ -21,7 +21,7 @@ from tiniscript.link.requests import OK, Reply
 
 FIRST_HOLD_S, REPEAT_HOLD_S = 0.7, 0.15  # for which a press holds a key
 SEND_INTERVAL_S = 0.1  # what is held is said so often: after half a second of silence nothing is
-LOOK_S = 0.02  # between two looks at the keys
+POLL_S = 0.02  # between two looks at the keys
 _QUIT_KEYS = ("q", "Q", "\x04")
 _ARROWS = {"A": "UP", "B": "DOWN", "C": "RIGHT", "D": "LEFT"}
 _WINDOWS_ARROWS = {"H": "UP", "P": "DOWN", "M": "RIGHT", "K": "LEFT"}
@@ -35,20 +35,20 @@ class HeldKeys:
     """Which keys are held, as far as a terminal tells."""
 
     def __init__(self) -> None:
-        self._until_s: dict[str, float] = {}
-        self._begun = ""
+        self._release_s: dict[str, float] = {}
+        self._unfinished_key = ""
 
-    def take(self, typed: str, now_s: float) -> bool:
+    def take(self, typed_keys: str, now_s: float) -> bool:
         """Take what was typed; return whether somebody wants to leave."""
-        text, at = self._begun + typed, 0
-        self._begun = ""
-        while at < len(text):
-            if _UNFINISHED_KEY.match(text, at):
-                self._begun = text[at:]
+        text, offset = self._unfinished_key + typed_keys, 0
+        self._unfinished_key = ""
+        while offset < len(text):
+            if _UNFINISHED_KEY.match(text, offset):
+                self._unfinished_key = text[offset:]
                 return False
-            match = _WHOLE_KEY.match(text, at)
+            match = _WHOLE_KEY.match(text, offset)
             assert match
-            at = match.end()
+            offset = match.end()
             arrow, windows, letter = match.groups()
             if letter in _QUIT_KEYS:
                 return True
@@ -60,11 +60,11 @@ class HeldKeys:
         return False
 
     def _press(self, name: str, now_s: float) -> None:
-        is_repeat = now_s < self._until_s.get(name, now_s)
-        self._until_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
+        is_repeat = now_s < self._release_s.get(name, now_s)
+        self._release_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
-    def pressed_at(self, now_s: float) -> Pressed:
-        return pressed_of(name for name, until_s in self._until_s.items() if now_s < until_s)
+    def keys_at(self, now_s: float) -> Pressed:
+        return pressed_of(name for name, release_s in self._release_s.items() if now_s < release_s)
 
 
 class TerminalRemote:
@@ -74,35 +74,35 @@ class TerminalRemote:
         self.has_quit = False
         self._connection = connection
         self._keys = Keys()
-        self._held = HeldKeys()
-        self._said, self._said_s = NOTHING_PRESSED, 0.0
+        self._held_keys = HeldKeys()
+        self._sent_keys, self._sent_s = NOTHING_PRESSED, 0.0
         self._request: PendingRequest[EmptyReply] | None = None
 
     def __enter__(self) -> TerminalRemote:
         if not has_remote(self._connection.device_info):
-            raise self._connection.failure(Reply(STATUSES["NO_REMOTE"]))
+            raise self._connection.error_for_reply(Reply(STATUSES["NO_REMOTE"]))
         self._keys.__enter__()
         return self
 
     def __exit__(self, *raised: object) -> None:
         self._keys.__exit__(*raised)
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
         now_s = monotonic()
-        if self._held.take(self._keys.read_pressed(), now_s):
+        if self._held_keys.take(self._keys.read_keys(), now_s):
             self.has_quit = True
             raise KeyboardInterrupt
-        self._refuse()
-        pressed = self._held.pressed_at(now_s)
-        if pressed == self._said and (
-            pressed == NOTHING_PRESSED or now_s - self._said_s < SEND_INTERVAL_S
+        self._check_reply()
+        pressed_keys = self._held_keys.keys_at(now_s)
+        if pressed_keys == self._sent_keys and (
+            pressed_keys == NOTHING_PRESSED or now_s - self._sent_s < SEND_INTERVAL_S
         ):
             return
-        self._said, self._said_s = pressed, now_s
-        self._request = self._connection.begin_request(lambda session: session.press(*pressed))
+        self._sent_keys, self._sent_s = pressed_keys, now_s
+        self._request = self._connection.begin_request(lambda session: session.press(*pressed_keys))
 
-    def _refuse(self) -> None:
+    def _check_reply(self) -> None:
         outcome = None if self._request is None else self._request.outcome
         if outcome is not None and outcome.status not in (OK, CANCELLED, LOST):
-            raise self._connection.failure(outcome)
+            raise self._connection.error_for_reply(outcome)

@@ -21,63 +21,74 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
-READY_LIMIT_S = 20  # until the robot is in the network, or at the broker
+READY_TIMEOUT_S = 20  # until the robot is in the network, or at the broker
 LOOK_INTERVAL_S = 0.5
 UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 
-def settings(options: Namespace, language: str) -> BrokerSettings:
+def broker_settings(options: Namespace, language: str) -> BrokerSettings:
     """Return what the options say; the password is asked for. Raises CommandError."""
     is_tls = bool(options.tls)
-    place, group = broker_options.place(options, is_tls), broker_options.group(options)
-    address = _address(place)
-    is_host_name = not re.fullmatch(r"[0-9.]+", place.host)
-    if is_host_name and len(place.host) > BROKER_NAME_BYTES:
-        raise CommandError(2, "broker_long_name", host=place.host, bytes=str(BROKER_NAME_BYTES))
-    tls = _tls(options, place, is_host_name)
-    user, password = broker_options.user(options, language)
-    name = place.host.encode() if is_host_name else b""
-    return BrokerSettings(address.packed, place.port, group, user, password, name, tls)
+    broker_address, group_name = (
+        broker_options.broker_address(options, is_tls),
+        broker_options.group_name(options),
+    )
+    ip_address = _resolve(broker_address)
+    is_host_name = not re.fullmatch(r"[0-9.]+", broker_address.host)
+    if is_host_name and len(broker_address.host) > BROKER_NAME_BYTES:
+        raise CommandError(
+            2, "broker_long_name", host=broker_address.host, bytes=str(BROKER_NAME_BYTES)
+        )
+    tls = _tls_settings(options, broker_address, is_host_name)
+    user, password = broker_options.ask_user(options, language)
+    name = broker_address.host.encode() if is_host_name else b""
+    return BrokerSettings(
+        ip_address.packed, broker_address.port, group_name, user, password, name, tls
+    )
 
 
-def _address(place: broker_options.Place) -> IPv4Address:
+def _resolve(broker_address: broker_options.BrokerAddress) -> IPv4Address:
     """Return where the broker is now. Raises CommandError."""
     try:
-        result = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_STREAM)
-        return IPv4Address(result[0][4][0])
-    except (OSError, UnicodeError, ValueError) as why:
-        raise CommandError(2, "broker_unknown", host=place.host, why=why) from None
+        addresses = socket.getaddrinfo(
+            broker_address.host, broker_address.port, socket.AF_INET, socket.SOCK_STREAM
+        )
+        return IPv4Address(addresses[0][4][0])
+    except (OSError, UnicodeError, ValueError) as error:
+        raise CommandError(2, "broker_unknown", host=broker_address.host, why=error) from None
 
 
-def _tls(options: Namespace, place: broker_options.Place, is_host_name: bool) -> Tls | None:
+def _tls_settings(
+    options: Namespace, broker_address: broker_options.BrokerAddress, is_host_name: bool
+) -> Tls | None:
     """Return whom the robot trusts, if it is to speak TLS. Raises CommandError."""
-    data = broker_options.trust(options)
+    data = broker_options.read_certificate(options)
     if not options.tls:
         return None
     if data is None:
         raise CommandError(2, "broker_no_trust")
     if not is_host_name:
-        raise CommandError(2, "broker_tls_name", host=place.host)
-    trust = _certificate(data)
-    if trust is None or len(trust) > TRUST_BYTES:
+        raise CommandError(2, "broker_tls_name", host=broker_address.host)
+    certificate = _certificate(data)
+    if certificate is None or len(certificate) > TRUST_BYTES:
         file = printable_name(options.trust)
         raise CommandError(2, "broker_bad_trust", file=file, bytes=str(TRUST_BYTES))
-    return Tls(trust, int(time.strftime("%Y%m%d")))
+    return Tls(certificate, int(time.strftime("%Y%m%d")))
 
 
 def _certificate(data: bytes) -> bytes | None:
     """Return the one certificate that a file has, in DER, or None."""
-    texts = re.findall(_PEM, data.decode("latin-1"), re.DOTALL)
-    if len(texts) > 1:
+    pem_blocks = re.findall(_PEM, data.decode("latin-1"), re.DOTALL)
+    if len(pem_blocks) > 1:
         return None
     try:
-        result = ssl.PEM_cert_to_DER_cert(texts[0]) if texts else data
+        der_data = ssl.PEM_cert_to_DER_cert(pem_blocks[0]) if pem_blocks else data
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-        context.load_verify_locations(cadata=result)
+        context.load_verify_locations(cadata=der_data)
     except (ssl.SSLError, ValueError):
         return None
-    return result if context.cert_store_stats()["x509"] == 1 else None
+    return der_data if context.cert_store_stats()["x509"] == 1 else None
 
 
 def use_broker(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
@@ -88,8 +99,10 @@ def use_broker(connection: Connection, broker: BrokerSettings | None, options: N
     if is_at_broker(connection.port):
         raise CommandError(2, "broker_over_it", robot=connection.name)
     if broker is not None and IPv4Address(broker.address).is_loopback:
-        _refuse_itself(connection, IPv4Address(broker.address))
-    connection.ask_or(lambda session: session.use_broker(broker), "broker_old", "BAD_VALUE")
+        _refuse_loopback(connection, IPv4Address(broker.address))
+    connection.request_or_raise(
+        lambda session: session.use_broker(broker), "broker_old", "BAD_VALUE"
+    )
     if broker is None:
         connection.say("broker_off")
         return
@@ -99,15 +112,17 @@ def use_broker(connection: Connection, broker: BrokerSettings | None, options: N
     tell_wifi_state(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
-def await_state(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
+def await_state(
+    request_state: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]
+) -> WifiReply:
     """Return what the robot tells when something has come of it, or after READY_S."""
-    end_s = time.monotonic() + READY_LIMIT_S
-    while not is_over(wifi_reply := ask()) and time.monotonic() < end_s:
+    end_s = time.monotonic() + READY_TIMEOUT_S
+    while not is_over(wifi_reply := request_state()) and time.monotonic() < end_s:
         time.sleep(LOOK_INTERVAL_S)
     return wifi_reply
 
 
-def tell_if_any(connection: Connection) -> None:
+def tell_broker_if_any(connection: Connection) -> None:
     """Say where the robot's broker is, if it has one."""
     reply = connection.wait(connection.begin_request(lambda session: session.broker()))
     if reply.status == STATUSES["OK"] and reply.values.network:
@@ -123,8 +138,8 @@ def tell_wifi_state(
     """
     state = _state(wifi_reply)
     key = f"broker_{state.lower()}" if wifi_reply.network else "broker_none"
-    group = printable_name(wifi_reply.network.decode("utf-8", "replace"))
-    sentence = connection.text(key, address=name or address(wifi_reply), group=group)
+    group_name = printable_name(wifi_reply.network.decode("utf-8", "replace"))
+    sentence = connection.text(key, address=name or address(wifi_reply), group=group_name)
     if command and state == "READY":
         sentence += connection.text("broker_all", command=command)
     print(sentence)
@@ -132,10 +147,15 @@ def tell_wifi_state(
 
 def _class_command(options: Namespace) -> str:
     """Return `tsc class` at the broker of the options, as this computer reaches it."""
-    place = broker_options.place(options, bool(options.tls))
-    default_place = broker_options.place(Namespace(broker=place.host), bool(options.tls))
-    words = ["--broker", place.host if place == default_place else str(place)]
-    words += ["--class", broker_options.group(options)]
+    broker_address = broker_options.broker_address(options, bool(options.tls))
+    default_address = broker_options.broker_address(
+        Namespace(broker=broker_address.host), bool(options.tls)
+    )
+    words = [
+        "--broker",
+        broker_address.host if broker_address == default_address else str(broker_address),
+    ]
+    words += ["--class", broker_options.group_name(options)]
     if options.user is not None:
         words += ["--user", options.user]
     if options.tls:
@@ -153,7 +173,7 @@ def _broker_state(connection: Connection) -> WifiReply:
     return connection.request(lambda session: session.broker()).values
 
 
-def _refuse_itself(connection: Connection, broker: IPv4Address) -> None:
+def _refuse_loopback(connection: Connection, broker: IPv4Address) -> None:
     """Refuse a broker at 127.0.0.1: no robot but one that is on this computer is at it."""
     wifi_reply = connection.request(lambda session: session.wifi()).values
     robot_address = IPv4Address(wifi_reply.address.to_bytes(4, "little"))

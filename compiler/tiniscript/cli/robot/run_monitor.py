@@ -43,8 +43,8 @@ class RunMonitor:
         self.connection = connection
         self.printer = printer
         self.hold = hold
-        self.look = on_wait
-        self.look_s = wait_s
+        self.on_wait = on_wait
+        self.wait_s = wait_s
 
     def follow(self, run: int) -> int:
         """Wait for the end of a run; return the exit code.
@@ -53,14 +53,14 @@ class RunMonitor:
         """
         follower = Follower(run)
         while True:
-            result = self.connection.event(self.look_s)
-            if self.look is not None:
-                self.look()
+            timed_event = self.connection.event(self.wait_s)
+            if self.on_wait is not None:
+                self.on_wait()
             if self.connection.is_time_over:
                 return self.stop_in_time()
-            if result is None:
+            if timed_event is None:
                 continue
-            time_ms, event = result
+            time_ms, event = timed_event
             try:
                 if not follower.follow(event, printable_name(self.connection.port)):
                     continue
@@ -69,7 +69,7 @@ class RunMonitor:
             if self.hold is None or not self.hold(event):
                 self.printer.tell(time_ms, event)
                 if event.name not in ("STARTED", "READING"):
-                    self.connection.quiet.note_words()
+                    self.connection.wait_notice.note_other_output()
             exit_code = exit_code_of(event, run)
             if exit_code is not None:
                 return exit_code
@@ -108,7 +108,7 @@ def stop_and_say(connection: Connection) -> int:
 class Saving:
     """Waits until the robot has saved the uploaded program, and prints that once."""
 
-    SAID: ClassVar[dict[str, str]] = {}  # in place of what is said for a reason
+    KEY_BY_REASON: ClassVar[dict[str, str]] = {}  # in place of what is said for a reason
 
     def __init__(
         self, connection: Connection, printer: EventPrinter, receipt: ReceiptReply
@@ -116,59 +116,59 @@ class Saving:
         self.connection = connection
         self.printer = printer
         self.run, self.program = receipt.run, receipt.program
-        self.is_unseen = False
-        self._robots = client.Saving(receipt)
-        self._asked: PendingRequest[StatusReply] | None = None
-        self._asked_s = monotonic()
+        self.is_unread = False
+        self._progress = client.Saving(receipt)
+        self._status_request: PendingRequest[StatusReply] | None = None
+        self._requested_s = monotonic()
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Request the status every second, without waiting."""
-        if self._asked is not None and self._asked.outcome is not None:
-            self._learn(self._asked.outcome, is_running=True)
-            self._asked = None
+        if self._status_request is not None and self._status_request.outcome is not None:
+            self._update(self._status_request.outcome, is_running=True)
+            self._status_request = None
         elif (
-            self._asked is None
-            and not self._robots.is_over
-            and monotonic() - self._asked_s > STATUS_INTERVAL_S
+            self._status_request is None
+            and not self._progress.is_over
+            and monotonic() - self._requested_s > STATUS_INTERVAL_S
         ):
-            self._asked_s = monotonic()
-            self._asked = self.connection.begin_request(Requester.status)
+            self._requested_s = monotonic()
+            self._status_request = self.connection.begin_request(Requester.status)
 
     def wait(self) -> None:
         """Wait until it is saved. Raises CommandError where it is not."""
-        if self._robots.is_over:
+        if self._progress.is_over:
             return
-        for _ in self._robots.rounds():
-            self._learn(self.connection.request(Requester.status), is_running=False)
-            if not self._robots.is_over:
+        for _ in self._progress.polls():
+            self._update(self.connection.request(Requester.status), is_running=False)
+            if not self._progress.is_over:
                 self.connection.event()
-        reason = self._robots.reason
+        reason = self._progress.reason
         if reason:
-            sentence = text(self.SAID.get(reason, reason), self.connection.language)
+            sentence = text(self.KEY_BY_REASON.get(reason, reason), self.connection.language)
             raise CommandError(3, "plain", said=sentence)
 
-    def wait_unseen(self) -> None:
+    def wait_unread(self) -> None:
         """The same when tsc's output has no reader: only failures are printed."""
-        self.is_unseen = True
+        self.is_unread = True
         try:
             self.wait()
-        except CommandError as failure:
+        except CommandError as error:
             with suppress(OSError):
-                print(failure.sentence(self.connection.language), file=sys.stderr, flush=True)
+                print(error.sentence(self.connection.language), file=sys.stderr, flush=True)
 
-    def _learn(self, reply: Reply[StatusReply], is_running: bool) -> None:
-        if reply.status or self._robots.is_over:
+    def _update(self, reply: Reply[StatusReply], is_running: bool) -> None:
+        if reply.status or self._progress.is_over:
             return
-        was_low = self._robots.saved == SAVED_LOW_SUPPLY
-        self._robots.learn(reply.values)
+        was_low = self._progress.saved == SAVED_LOW_SUPPLY
+        self._progress.update(reply.values)
         language = self.connection.language
-        if self.is_unseen or reply.values.program != self.program:
+        if self.is_unread or reply.values.program != self.program:
             return
-        if self._robots.saved == SAVED_STORED:
+        if self._progress.saved == SAVED_STORED:
             slot = reply.values.slot
             is_verbose = getattr(self.connection.options, "verbose", False)
             key = "now_saved_slot" if is_verbose else "now_saved"
             sentence = text(key, language).format(slot=slot)
             self.printer.say(0, "SAVED", str(slot), sentence, slot=slot)
-        elif self._robots.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
+        elif self._progress.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

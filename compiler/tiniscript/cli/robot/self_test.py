@@ -23,7 +23,7 @@ from tiniscript.cli.robot.conversation import (
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.diagnosing import examination_of
 from tiniscript.doctor.examination import Expectations, RobotAnswers
-from tiniscript.doctor.findings import Finding, sure
+from tiniscript.doctor.findings import Finding, sure_finding
 from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
@@ -41,7 +41,7 @@ SIDES = ("left", "right")
 READING_COUNT = 3
 SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
 NOTICEABLE_PARTS = 50  # a hand changes a reading by more than one part of so many of its range
-STANDS = "W(2)"
+STAND_LINE = "W(2)"
 BUZZER_HEARD, BUZZER_AGAIN = 1, 3  # answers about the buzzer
 ANSWERED_FAILURES = (
     "plain",
@@ -52,86 +52,88 @@ ANSWERED_FAILURES = (
 class SelfTest(Conversation):
     """The checks of a robot that has answered. `is_asking`: a person is beside it."""
 
-    def __init__(self, connection: Connection, expected: Expectations, is_asking: bool) -> None:
+    def __init__(self, connection: Connection, expectations: Expectations, is_asking: bool) -> None:
         super().__init__(connection, is_asking)
-        self.expected = expected
-        self.found: list[Finding] = []
-        self.heard: RobotAnswers | None = None
+        self.expectations = expectations
+        self.findings: list[Finding] = []
+        self.robot_answers: RobotAnswers | None = None
         self.trim = Trim()
 
     def run(self) -> list[Finding]:
         """Return what was found; an end of the link is the last of it."""
         try:
-            self._check()
-        except CommandError as failure:
-            self._add("plain", said=failure.sentence(self.language))
-        return self.found
+            self._run_checks()
+        except CommandError as error:
+            self._add("plain", said=error.sentence(self.language))
+        return self.findings
 
-    def _check(self) -> None:
+    def _run_checks(self) -> None:
         self._add("is_there")
         robot = self._examine()
         self.trim = trim_from_reply(self.connection.request(lambda session: session.trim()).values)
-        self.found.append(self._trim_is())
+        self.findings.append(self._trim_finding())
         if robot is None:
             return
         self.connection.profile = robot
-        if self.heard is not None and self.heard.status.noise:
-            self._discs()
-        is_lifted = self._is_lifted()
+        if self.robot_answers is not None and self.robot_answers.status.noise:
+            self._check_discs()
+        is_lifted = self._ask_whether_lifted()
         for sensor, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True):
-            self._sensor(sensor, wiring)
-        self._motors(is_lifted)
+            self._check_sensor(sensor, wiring)
+        self._check_motors(is_lifted)
         if robot.board.buzzer is not None:
-            self._buzzer()
+            self._check_buzzer()
 
     def _add(self, cause: str, part: str = "", **values: str) -> None:
-        self.found.append(Finding(cause, True, values, part))
+        self.findings.append(Finding(cause, True, values, part))
 
     # -- what the robot says about itself
 
     def _examine(self) -> Robot | None:
         """Let the doctor examine it; return the robot that it is, where this computer knows it."""
-        expected = self.connection.profile
+        expected_robot = self.connection.profile
         kit = self.connection.device_info.kit
-        causes, self.heard = examination_of(self.connection, self.expected)
-        expected_robot = expected if kit == expected.kit.fingerprint else robot_of_kit(kit)
-        good = self._passed_parts(expected_robot.name if expected_robot is not None else "")
+        causes, self.robot_answers = examination_of(self.connection, self.expectations)
+        known_robot = expected_robot if kit == expected_robot.kit.fingerprint else robot_of_kit(kit)
+        passed_by_part = self._passed_parts(known_robot.name if known_robot is not None else "")
         for part in SELF_REPORTED_PARTS:
-            self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
-        return expected_robot
+            self.findings += [
+                cause for cause in causes if cause.part == part
+            ] or passed_by_part.get(part, [])
+        return known_robot
 
     def _passed_parts(self, name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""
-        if self.heard is None:
+        if self.robot_answers is None:
             return {}
-        hello, status, _, trips_ms = self.heard
+        hello, status, _, trips_ms = self.robot_answers
         sizes = {size: str(getattr(hello, size)) for size in ("room", "largest", "window")}
         findings = [
-            sure("kit_is", robot=name),
-            sure("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
-            sure("supply_is", reset=row_name(RESETS, hello.reset)),
-            sure(_saved_cause(row_name(SAVED, status.saved))),
+            sure_finding("kit_is", robot=name),
+            sure_finding("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
+            sure_finding("supply_is", reset=row_name(RESETS, hello.reset)),
+            sure_finding(_saved_cause(row_name(SAVED, status.saved))),
         ]
         if trips_ms:
             times = {"least": min(trips_ms), "ms": median(trips_ms), "most": max(trips_ms)}
             values = {value: f"{ms:.0f}" for value, ms in times.items()}
-            findings.append(sure("line_is", n=str(len(trips_ms)), **values))
+            findings.append(sure_finding("line_is", n=str(len(trips_ms)), **values))
         return {finding.part: [finding] for finding in findings}
 
-    def _discs(self) -> None:
+    def _check_discs(self) -> None:
         """Let it stand, and longer than wheels roll: an edge is none of a wheel."""
-        before = self.connection.request(lambda session: session.status()).values.noise
+        edges_before = self.connection.request(lambda session: session.status()).values.noise
         try:
-            self.run_line(STANDS)
-        except CommandError as failure:
-            if failure.key not in ANSWERED_FAILURES:
+            self.run_line(STAND_LINE)
+        except CommandError as error:
+            if error.key not in ANSWERED_FAILURES:
                 raise
-            self._add("plain", "discs", said=failure.sentence(self.language))
+            self._add("plain", "discs", said=error.sentence(self.language))
             return
-        after = self.connection.request(lambda session: session.status()).values.noise
+        edges_after = self.connection.request(lambda session: session.status()).values.noise
         left, right = (
             str((count_now - count_before) % 256)
-            for count_now, count_before in zip(after, before, strict=True)
+            for count_now, count_before in zip(edges_after, edges_before, strict=True)
         )
         if left == right == "0":
             self._add("discs_rest")
@@ -140,102 +142,103 @@ class SelfTest(Conversation):
 
     # -- what it senses and does
 
-    def _is_lifted(self) -> bool:
+    def _ask_whether_lifted(self) -> bool:
         with suppress(NoPerson):
-            self.lift()
+            self.ask_to_lift()
             return True
         return False
 
-    def _sensor(self, sensor: Device, wiring: Wiring) -> None:
+    def _check_sensor(self, sensor: Device, wiring: Wiring) -> None:
         name = sensor.name
         try:
-            before = self._read(sensor)
-            if wiring.driver == SONAR and not any(before):  # nothing is so near
+            readings_before = self._read(sensor)
+            if wiring.driver == SONAR and not any(readings_before):  # nothing is so near
                 self._add("echo_hung", name=name)
                 return
-            values = _range(sensor, before)
-            self.answer("ask_free", name=name, values=values)
-            before = self._read(sensor)
-            values = _range(sensor, before)
-            self.answer("ask_hand", name=name)
-            after = self._read(sensor)
-        except CommandError as failure:
-            if failure.key not in ANSWERED_FAILURES:
+            values = _range(sensor, readings_before)
+            self.ask("ask_free", name=name, values=values)
+            readings_before = self._read(sensor)
+            values = _range(sensor, readings_before)
+            self.ask("ask_hand", name=name)
+            readings_after = self._read(sensor)
+        except CommandError as error:
+            if error.key not in ANSWERED_FAILURES:
                 raise
-            self._add("no_reading", name=name, said=failure.sentence(self.language))
+            self._add("no_reading", name=name, said=error.sentence(self.language))
             return
         except NoPerson:
-            is_stuck = not sensor.is_yes_no and {*before} <= {sensor.low, sensor.high}
+            is_stuck = not sensor.is_yes_no and {*readings_before} <= {sensor.low, sensor.high}
             self._add("stuck" if is_stuck else "reads", name=name, values=values)
             return
-        range_text = _range(sensor, after)
+        range_text = _range(sensor, readings_after)
         least_change = 0 if sensor.is_yes_no else (sensor.high - sensor.low) // NOTICEABLE_PARTS
-        if abs(sum(after) - sum(before)) > least_change * READING_COUNT:
+        if abs(sum(readings_after) - sum(readings_before)) > least_change * READING_COUNT:
             cause = "changes"
         else:  # a hand may be as bright as the floor
             cause = "as_bright" if sensor.is_yes_no else "same"
         self._add(cause, name=name, values=values, now=range_text)
 
-    def _motors(self, is_lifted: bool) -> None:
+    def _check_motors(self, is_lifted: bool) -> None:
         """Turn both. A robot with other wires may learn them, and turns both again."""
-        before = self.found
-        self.found = [*before]
-        left, right = (self._motor(side, is_lifted) for side in SIDES)
-        if left is None or right is None or not self._learns(left, right):
+        findings_before = self.findings
+        self.findings = [*findings_before]
+        left, right = (self._check_motor(side, is_lifted) for side in SIDES)
+        if left is None or right is None or not self._offer_wiring(left, right):
             return
-        self.found = [
-            self._trim_is() if finding.cause == "trim_is" else finding for finding in before
+        self.findings = [
+            self._trim_finding() if finding.cause == "trim_is" else finding
+            for finding in findings_before
         ]
         for side in SIDES:
-            self._motor(side, is_lifted)
+            self._check_motor(side, is_lifted)
 
-    def _motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
+    def _check_motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
         """Return what a person saw of a motor, which is found; None where nobody did."""
         try:
             if not is_lifted:
                 raise NoPerson
-            turned = self.turn_motor(side)
+            turn = self.turn_motor(side)
         except NoPerson:
             self._add("unasked", side)
             return None
-        except CommandError as failure:
-            self._record_failure(side, failure)
+        except CommandError as error:
+            self._record_failure(side, error)
             return None
-        if not turned.wheel:
+        if not turn.wheel:
             self._add("still", side)
         else:
-            self._add("turns" if turned == WheelTurn(side, True) else "other_turn", side)
-        return turned
+            self._add("turns" if turn == WheelTurn(side, True) else "other_turn", side)
+        return turn
 
-    def _learns(self, left: WheelTurn, right: WheelTurn) -> bool:
+    def _offer_wiring(self, left: WheelTurn, right: WheelTurn) -> bool:
         """Have the robot keep how its motors are wired, if that is new and the person wants it."""
         trim = trim_from_answers(self.trim, left, right)
         if trim is None or trim == self.trim:
             return False
         with suppress(NoPerson):
-            if self.choice("ask_learn", 2) == ANSWER_YES:
+            if self.ask_choice("ask_learn", 2) == ANSWER_YES:
                 self.connection.request(lambda session: session.trim(trim.data()))
                 self.trim = trim
                 return True
         return False
 
-    def _trim_is(self) -> Finding:
-        return sure("trim_is", trim=trim_in_words(self.trim, self.language))
+    def _trim_finding(self) -> Finding:
+        return sure_finding("trim_is", trim=trim_in_words(self.trim, self.language))
 
-    def _buzzer(self) -> None:
+    def _check_buzzer(self) -> None:
         try:
             answer = self.ask_what_was_seen("BEEP(0.5, 440)", "ask_buzzer", BUZZER_AGAIN)
         except NoPerson:
             self._add("unasked", "buzzer")
-        except CommandError as failure:
-            self._record_failure("buzzer", failure)
+        except CommandError as error:
+            self._record_failure("buzzer", error)
         else:
             self._add("heard" if answer == BUZZER_HEARD else "unheard")
 
-    def _record_failure(self, part: str, failure: CommandError) -> None:
-        self._add("ended", part, said=failure.sentence(self.language))
-        if failure.key not in ANSWERED_FAILURES:
-            raise failure
+    def _record_failure(self, part: str, error: CommandError) -> None:
+        self._add("ended", part, said=error.sentence(self.language))
+        if error.key not in ANSWERED_FAILURES:
+            raise error
 
     def _read(self, sensor: Device) -> list[int]:
         """Return readings, in thousandths, or 0 and 1. Raises CommandError."""
@@ -245,9 +248,9 @@ class SelfTest(Conversation):
         return values
 
 
-def _saved_cause(saved: str) -> str:
+def _saved_cause(saved_state: str) -> str:
     """Return the cause of what the robot says of its program."""
-    return {"STORED": "saved", "NOTHING": "empty"}.get(saved, "unsaved")
+    return {"STORED": "saved", "NOTHING": "empty"}.get(saved_state, "unsaved")
 
 
 def _range(sensor: Device, values: list[int]) -> str:

@@ -38,15 +38,17 @@ def running_address(options: Namespace) -> str | None:
 
     Raises CommandError if several run, or if none runs and the verb cannot start one.
     """
-    can_bring = hasattr(options, "world")
-    if can_bring and simulator_options.wants_own(options):
+    can_start = hasattr(options, "world")
+    if can_start and simulator_options.wants_own(options):
         return None
-    result = directory.unclaimed_robots() if can_bring else directory.running_robots()
-    if not result and not can_bring:
+    running_robots = directory.unclaimed_robots() if can_start else directory.running_robots()
+    if not running_robots and not can_start:
         raise CommandError(3, "no_virtual")
-    if len(result) > 1:
-        raise CommandError(3, "which_virtual", known=", ".join(item.address for item in result))
-    return result[0].address if result else None
+    if len(running_robots) > 1:
+        raise CommandError(
+            3, "which_virtual", known=", ".join(robot.address for robot in running_robots)
+        )
+    return running_robots[0].address if running_robots else None
 
 
 class CommandSimulator(SimulatorThread):
@@ -65,14 +67,16 @@ class CommandSimulator(SimulatorThread):
         self._is_watched = False  # `watch` was called
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
-        self._drawing = RLock()
-        self._drawn = Bell()
-        self._undrawn: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self._told: deque[Event] = deque(maxlen=MOST_EVENTS)  # what `told_ms` may be asked for
-        self._rounds = 0  # rounds after which the picture is up to date
+        self._draw_lock = RLock()
+        self._round_bell = Bell()
+        self._undrawn_events: deque[Event] = deque(maxlen=MOST_EVENTS)
+        self._told_events: deque[Event] = deque(
+            maxlen=MOST_EVENTS
+        )  # what `told_ms` may be asked for
+        self._round_count = 0  # rounds after which the picture is up to date
         robot = simulator_options.make_robot(options, profile, language)
         super().__init__(robot, options.verb, hurry, faults)
-        self.simulator.lasts_ms = self.end_ms
+        self.simulator.duration_ms = self.end_ms
         self._thread.start()
 
     @property
@@ -99,7 +103,7 @@ class CommandSimulator(SimulatorThread):
         from tiniscript.cli.terminal.screen import Screen
         from tiniscript.cli.terminal.world_drawing import WorldPicture
 
-        with self._drawing:
+        with self._draw_lock:
             self.screen = Screen()
             if self._picture is None:
                 self._picture = WorldPicture(self.robot, self.language, keys)
@@ -107,14 +111,14 @@ class CommandSimulator(SimulatorThread):
 
     def say(self, line: str) -> None:
         """Print a line, above the picture if there is one."""
-        with self._drawing:
+        with self._draw_lock:
             if self.screen is not None:
                 self.screen.say(line)
                 return
         print(line, flush=True)
 
-    def complain(self, line: str) -> None:
-        with self._drawing:
+    def say_error(self, line: str) -> None:
+        with self._draw_lock:
             if self.screen is not None and self.screen.is_shared:
                 self.screen.say(line)
                 return
@@ -126,31 +130,33 @@ class CommandSimulator(SimulatorThread):
 
         Of what it has not told itself (that its values did not arrive), the time now.
         """
-        expected = "STOP" if event == "STOPPED" else event
+        event_text = "STOP" if event == "STOPPED" else event
 
         def has_event() -> bool:
-            with self._drawing:
-                return any(event.text == expected for event in self._told)
+            with self._draw_lock:
+                return any(event.text == event_text for event in self._told_events)
 
-        is_told = expected.partition(" ")[0] in TOLD_EVENTS and self._drawn.wait_until(
+        is_told = event_text.partition(" ")[0] in TOLD_EVENTS and self._round_bell.wait_until(
             has_event, LONGEST_ROUND_S
         )
-        with self._drawing:
+        with self._draw_lock:
             started_ms = self.robot.started_ms or 0
             if not is_told:
                 return self.robot.now_ms - started_ms
             while True:
-                result = self._told.popleft()
-                if result.text == expected:
-                    return result.time_ms - started_ms
+                told_event = self._told_events.popleft()
+                if told_event.text == event_text:
+                    return told_event.time_ms - started_ms
 
     def unwatch(self) -> None:
         """Stop drawing; the last picture stays."""
         if self.screen is not None:
-            with self._drawing:
-                due = self._rounds + 1  # the newest events are still to come
-            self._drawn.wait_until(lambda: self._rounds >= due, LONGEST_ROUND_S)
-        with self._drawing:
+            with self._draw_lock:
+                wanted_round_count = self._round_count + 1  # the newest events are still to come
+            self._round_bell.wait_until(
+                lambda: self._round_count >= wanted_round_count, LONGEST_ROUND_S
+            )
+        with self._draw_lock:
             screen, self.screen = self.screen, None
             if screen is not None:
                 if self._picture is not None:
@@ -182,19 +188,19 @@ class CommandSimulator(SimulatorThread):
         return (self.robot.now_ms if ended_ms is None else ended_ms) - started_ms
 
     def on_turn(self) -> None:
-        with self._drawing:
+        with self._draw_lock:
             events = self.robot.take_events()
-            self._told.extend(event for event in events if event.what in TOLD_EVENTS)
-            self._undrawn.extend(events)
-            while self._picture is not None and self._undrawn:
-                event = self._undrawn.popleft()
-                if not self._bookkeeping.hides_trace(event.what, event.values):
+            self._told_events.extend(event for event in events if event.kind in TOLD_EVENTS)
+            self._undrawn_events.extend(events)
+            while self._picture is not None and self._undrawn_events:
+                event = self._undrawn_events.popleft()
+                if not self._bookkeeping.filter_trace_event(event.kind, event.values):
                     self._picture.take(event)
             if self.screen is not None and monotonic() >= self._frame_s:
                 self._frame_s = monotonic() + FRAME_S
                 self._draw(self.screen)
-            self._rounds += 1
-        self._drawn.ring()
+            self._round_count += 1
+        self._round_bell.ring()
 
     def _draw(self, screen: Screen) -> None:
         if self._picture is not None:
@@ -203,5 +209,5 @@ class CommandSimulator(SimulatorThread):
 
 def offer_virtual_robot(language: str) -> bool:
     """Ask whether to use the virtual robot; an empty answer is yes."""
-    answer = asking.answer(text("offer_virtual", language))
+    answer = asking.ask(text("offer_virtual", language))
     return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

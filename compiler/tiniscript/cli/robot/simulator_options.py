@@ -45,8 +45,10 @@ def make_robot(
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
     motors = _motors(options.motors, language)
-    message = sensor_lists(options.sensor, profile, language)
-    settings = Settings(seed=seed, noise=noise, motors=motors, told=message, baud=baud)
+    reading_lists = sensor_lists(options.sensor, profile, language)
+    settings = Settings(
+        seed=seed, noise=noise, motors=motors, given_readings=reading_lists, baud=baud
+    )
     with convert_refusal(world.name, language):
         return VirtualRobot(profile.with_language(language), world, settings, memory)
 
@@ -84,10 +86,10 @@ def faults_of(options: Namespace, language: str) -> float:
 
 def end_ms(options: Namespace, language: str) -> int | None:
     """Return the end in milliseconds of the robot's time, or None."""
-    result = getattr(options, "for")
-    if result is None:
+    typed_value = getattr(options, "for")
+    if typed_value is None:
         return None
-    return round(number("--for", result, 0, ONE // 10, LONGEST_S, language) * 1000)
+    return round(number("--for", typed_value, 0, ONE // 10, LONGEST_S, language) * 1000)
 
 
 def check_picture(options: Namespace) -> None:
@@ -96,8 +98,8 @@ def check_picture(options: Namespace) -> None:
         return
     try:
         import PIL.Image  # noqa: F401
-    except ImportError as why:
-        raise missing_package_error("plot_needs_pillow", why) from None
+    except ImportError as error:
+        raise missing_package_error("plot_needs_pillow", error) from None
 
 
 def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
@@ -118,27 +120,27 @@ def summary(
     driving = robot.driving
     passed_ms = robot.now_ms if passed_ms is None else passed_ms
     key = {0: "drove", 1: "drove_touching_once"}.get(driving.bumps, "drove_touching")
-    result = text(key, language).format(
+    summary_text = text(key, language).format(
         cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )
     if options.plot is not None:
-        result += " " + text("picture", language).format(file=printable_name(options.plot))
-    return result
+        summary_text += " " + text("picture", language).format(file=printable_name(options.plot))
+    return summary_text
 
 
 def number(
-    option: str, typed: str | None, default: int, low: int, high: int, language: str
+    option: str, typed_value: str | None, default: int, low: int, high: int, language: str
 ) -> float:
     """Return an option's decimal number; `default`, `low` and `high` are thousandths."""
-    return thousandths(option, typed, default, low, high, language) / ONE
+    return thousandths(option, typed_value, default, low, high, language) / ONE
 
 
-def _motors(typed: str | None, language: str) -> tuple[float, float]:
-    if typed is None:
+def _motors(typed_value: str | None, language: str) -> tuple[float, float]:
+    if typed_value is None:
         return 100.0, 100.0
-    parts = typed.split(",")
+    parts = typed_value.split(",")
     if len(parts) != 2:
-        raise CommandError(2, "bad_motors", found=printable_name(typed) or "''")
+        raise CommandError(2, "bad_motors", found=printable_name(typed_value) or "''")
     left, right = (
         number("--motors", part.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for part in parts
     )

@@ -27,11 +27,11 @@ def stop_one(connection: Connection, member: Member) -> Result:
 def hold_back(connection: Connection) -> None:
     """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
     connection.meet()
-    connection.ask_or(
+    connection.request_or_raise(
         lambda session: session.hold_back(), "no_teachers_key", "NOT_OWNER", "WRONG_KEY"
     )
 
 
 def may_be_opened(connection: Connection) -> bool:
     """Whether the port's server has ended during the stop, so that the port can be opened now."""
-    return bool(connection.line.held_by) and connection.line.has_ended
+    return bool(connection.connection.held_by) and connection.connection.has_ended

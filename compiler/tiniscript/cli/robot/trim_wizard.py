@@ -13,7 +13,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.conversation import ANSWER_YES, Conversation, NoPerson, trim_from_answers
 from tiniscript.cli.texts import say_aside
 from tiniscript.cli.texts.causes import label, sentences_of
-from tiniscript.doctor.findings import Finding, sure
+from tiniscript.doctor.findings import Finding, sure_finding
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.requests import ACCEPTING_STATUSES
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
@@ -21,79 +21,81 @@ from tiniscript.link.trim import MOST_PACE, Pace, Trim
 MEASURED_POWERS = 40, 80  # percent: it is seen and measured at both
 DRIVE_S, TURN_S = 2, 1  # how long it is measured
 INCH_CM = 2.54
-NUMBER = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
+NUMBER_PATTERN = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
 INCH_WORDS = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
 DEGREE_SIGNS = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
-AGAIN = 4
+STRAIGHT_AGAIN = 4
 # failures after a stop by another command
 STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
 MOST_TRIES = 4
 
 
-def guide(connection: Connection, before: Trim) -> Trim:
+def guide(connection: Connection, old_trim: Trim) -> Trim:
     """Ask until the robot drives straight; return the new trim."""
     try:
-        return TrimWizard(connection).trim(before)
-    except BaseException as why:
-        if isinstance(why, KeyboardInterrupt):
+        return TrimWizard(connection).trim(old_trim)
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
             print(file=sys.stderr)
             connection.stop()
-        if not isinstance(why, CommandError) or _is_there(why):
-            _give_back(connection, before)
-        if isinstance(why, NoPerson):
+        if not isinstance(error, CommandError) or _is_reachable(error):
+            _restore_trim(connection, old_trim)
+        if isinstance(error, NoPerson):
             raise CommandError(3, "trim_no_answer") from None
         raise
 
 
-def _is_there(failure: CommandError) -> bool:
+def _is_reachable(error: CommandError) -> bool:
     """Whether the robot can still be reached."""
-    return failure.key in STOPPED_KEYS or failure.key.startswith("trim_")
+    return error.key in STOPPED_KEYS or error.key.startswith("trim_")
 
 
-def _give_back(connection: Connection, before: Trim) -> None:
+def _restore_trim(connection: Connection, old_trim: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(MOST_TRIES - 1):
         try:
-            connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
-        except CommandError as failure:
-            if not _is_there(failure):
+            connection.request(lambda session: session.trim(old_trim.data()), ACCEPTING_STATUSES)
+        except CommandError as error:
+            if not _is_reachable(error):
                 raise
         else:
             return
-    connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
+    connection.request(lambda session: session.trim(old_trim.data()), ACCEPTING_STATUSES)
 
 
 class TrimWizard(Conversation):
-    def trim(self, before: Trim) -> Trim:
-        self.lift()
-        self._set(Trim())
+    def trim(self, old_trim: Trim) -> Trim:
+        self.ask_to_lift()
+        self._set_trim(Trim())
         trim = self._find_wiring()
-        self._set(trim)
-        trim = trim._replace(least=self._least())
-        self._set(trim)
-        self.answer("trim_floor")
-        slow = self._balance_wheels(trim, MEASURED_POWERS[0])
-        quick = self._balance_wheels(trim._replace(balance=slow), MEASURED_POWERS[1])
-        trim = trim._replace(balance=round((slow + quick) / 2))
-        self._set(trim)
-        if before.pace is None:
+        self._set_trim(trim)
+        trim = trim._replace(least=self._find_least_power())
+        self._set_trim(trim)
+        self.ask("trim_floor")
+        slow_balance = self._balance_wheels(trim, MEASURED_POWERS[0])
+        quick_balance = self._balance_wheels(
+            trim._replace(balance=slow_balance), MEASURED_POWERS[1]
+        )
+        trim = trim._replace(balance=round((slow_balance + quick_balance) / 2))
+        self._set_trim(trim)
+        if old_trim.pace is None:
             say_aside("trim_no_pace_here", self.language)
             return trim
-        if self.choice("trim_measure", 2) != ANSWER_YES:
-            return trim._replace(pace=before.pace)
+        if self.ask_choice("trim_measure", 2) != ANSWER_YES:
+            return trim._replace(pace=old_trim.pace)
         forward_pace = self._measure("F", DRIVE_S, "trim_how_far")
-        turning = self._measure("R", TURN_S, "trim_how_round")
-        return trim._replace(pace=Pace(*forward_pace, *turning))
+        turn_pace = self._measure("R", TURN_S, "trim_how_round")
+        return trim._replace(pace=Pace(*forward_pace, *turn_pace))
 
     def run_line(self, line: str) -> list[int]:
         try:
             return super().run_line(line)
-        except CommandError as failure:
-            if failure.key != "plain":
+        except CommandError as error:
+            if error.key != "plain":
                 raise
-            print(failure.sentence(self.language), file=sys.stderr)
+            print(error.sentence(self.language), file=sys.stderr)
             raise CommandError(3, "trim_ended") from None
 
     def _find_wiring(self) -> Trim:
@@ -102,72 +104,74 @@ class TrimWizard(Conversation):
         for side in ("left", "right"):
             wheel_turns.append(self.turn_motor(side))
             if not wheel_turns[-1].wheel:
-                raise self._failure(sure("still")._replace(part_name=side))
+                raise self._error_for(sure_finding("still")._replace(part_name=side))
         trim = trim_from_answers(Trim(), *wheel_turns)
         if trim is None:
-            raise self._failure(sure("same_wheel"))
+            raise self._error_for(sure_finding("same_wheel"))
         return trim
 
-    def _least(self) -> int:
+    def _find_least_power(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
         for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
             self.run_line(f"M({power}, {power}); W(1); M(0, 0)")
-            if self.choice("trim_moves", 2, n=str(power)) == ANSWER_YES:
+            if self.ask_choice("trim_moves", 2, n=str(power)) == ANSWER_YES:
                 return power if power > LEAST_STEP else 0
-        raise self._failure(sure("too_weak", n=str(MOST_LEAST)))
+        raise self._error_for(sure_finding("too_weak", n=str(MOST_LEAST)))
 
     def _measure(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
         while True:
-            result = [
+            paces = [
                 self._measure_move(move, power, seconds, question) / seconds
                 for power in MEASURED_POWERS
             ]
-            if result[0] < result[1]:
-                return result
+            if paces[0] < paces[1]:
+                return paces
             say_aside("trim_not_faster_again", self.language)
 
     def _measure_move(self, move: str, power: int, seconds: int, question: str) -> float:
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
-        self.answer("trim_mark")
+        self.ask("trim_mark")
         while True:
             self.run_line(f"{move}({seconds}, {power})")
-            answer = self.answer(question, n=str(power))
+            answer = self.ask(question, n=str(power))
             while answer:
-                size = parse_measure(answer, move == "R")
-                if size is not None and size <= MOST_PACE * seconds:
-                    return size
+                measure = parse_measure(answer, move == "R")
+                if measure is not None and measure <= MOST_PACE * seconds:
+                    return measure
                 say_aside(f"{question}_number", self.language)
-                answer = self.answer(question, n=str(power))
+                answer = self.ask(question, n=str(power))
 
     def _balance_wheels(self, trim: Trim, power: int) -> int:
         """Balance the wheels until the robot goes straight; return the balance."""
-        step, last = FIRST_STEP, 0
-        self._set(trim)
+        step, last_side = FIRST_STEP, 0
+        self._set_trim(trim)
         while True:
             self.run_line(f"F(2, {power})")
-            answer = self.choice("trim_straight", AGAIN)
+            answer = self.ask_choice("trim_straight", STRAIGHT_AGAIN)
             if answer == 1:
                 return trim.balance
-            if answer == AGAIN:
+            if answer == STRAIGHT_AGAIN:
                 continue
             # to its left: the right wheel is too strong
             side = -1 if answer == 2 else 1
-            if last and side != last:
+            if last_side and side != last_side:
                 step = max(1, step // 2)
-            last = side
+            last_side = side
             balance = trim.balance + side * step
             if abs(balance) > MOST_BALANCE:
-                raise self._failure(sure("too_uneven", n=str(MOST_BALANCE)))
+                raise self._error_for(sure_finding("too_uneven", n=str(MOST_BALANCE)))
             trim = trim._replace(balance=balance)
-            self._set(trim)
+            self._set_trim(trim)
 
-    def _failure(self, finding: Finding) -> CommandError:
-        result = sentences_of(finding, self.language)
+    def _error_for(self, finding: Finding) -> CommandError:
+        sentences = sentences_of(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=result.finding, then=result.advice)
+        return CommandError(
+            3, "trim_found", part=part, found=sentences.finding, then=sentences.advice
+        )
 
-    def _set(self, trim: Trim) -> None:
+    def _set_trim(self, trim: Trim) -> None:
         self.connection.request(
             lambda session: session.trim(trim.data()), ACCEPTING_STATUSES
         )  # kept at the end
@@ -175,7 +179,7 @@ class TrimWizard(Conversation):
 
 def parse_measure(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
-    match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    match = re.fullmatch(NUMBER_PATTERN + r" *(\S*?)\.?", answer.strip().lower())
     if match is None:
         return None
     number, unit = float(match[1].replace(",", ".")), match[2]

@@ -10,7 +10,7 @@ from getpass import getpass
 
 from tiniscript.cli.errors import CommandError
 
-YES = ("1", "y", "yes", "s", "si", "sí")
+YES_ANSWERS = ("1", "y", "yes", "s", "si", "sí")
 
 
 def can_ask() -> bool:
@@ -18,7 +18,7 @@ def can_ask() -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()
 
 
-def answer(question: str) -> str:
+def ask(question: str) -> str:
     """Ask, and return the line that is typed; nothing where nobody answers."""
     print(question, end="", file=sys.stderr, flush=True)
     return sys.stdin.readline()
@@ -26,16 +26,16 @@ def answer(question: str) -> str:
 
 def confirm(question: str) -> bool:
     """Ask, and return whether the answer is a yes: an empty one is none."""
-    return answer(question).strip().lower() in YES
+    return ask(question).strip().lower() in YES_ANSWERS
 
 
 LONGEST_LINE = 1024  # bytes of standard input that may be a password
 
 
-def password(prompt: str, least_bytes: int, most_bytes: int, complaint: str) -> bytes:
+def ask_password(prompt: str, least_bytes: int, most_bytes: int, error_key: str) -> bytes:
     """Ask without an echo, or take the first line of standard input, if nobody types there.
 
-    Raises CommandError `complaint` if it has fewer or more bytes, or some that nobody types.
+    Raises CommandError `error_key` if it has fewer or more bytes, or some that nobody types.
     """
     if sys.stdin is not None and sys.stdin.isatty():
         try:
@@ -45,7 +45,7 @@ def password(prompt: str, least_bytes: int, most_bytes: int, complaint: str) -> 
     else:
         data = b"" if sys.stdin is None else sys.stdin.buffer.readline(LONGEST_LINE)
         data = data.rstrip(b"\r\n")
-    is_plain = all(byte >= ord(" ") and byte != 0x7F for byte in data)
-    if not least_bytes <= len(data) <= most_bytes or not is_plain:
-        raise CommandError(2, complaint)
+    is_typeable = all(byte >= ord(" ") and byte != 0x7F for byte in data)
+    if not least_bytes <= len(data) <= most_bytes or not is_typeable:
+        raise CommandError(2, error_key)
     return data

@@ -34,7 +34,7 @@ class Canvas:
     def clear(self) -> None:
         self._cells = bytearray(len(self._cells))
 
-    def lines(self, dots: Iterable[Dot]) -> None:
+    def draw_lines(self, dots: Iterable[Dot]) -> None:
         """Draw straight lines from dot to dot."""
         for (ax, ay), (bx, by) in pairwise(dots):
             steps = min(max(abs(bx - ax), abs(by - ay), 1), _MOST_STEPS)
@@ -46,7 +46,7 @@ class Canvas:
                         _DOT_BITS[y % DOTS_PER_ROW][x % DOTS_PER_COLUMN]
                     )
 
-    def row(self, number: int) -> bytes:
+    def row_bits(self, number: int) -> bytes:
         """Return the dots of each character in a row, as bits of U+2800."""
         return bytes(self._cells[number * self.columns : (number + 1) * self.columns])
 
@@ -57,15 +57,15 @@ def merge_layers(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
     A character has the dots of all of them and the style of the topmost one that has any there.
     """
     texts = []
-    for number in range(layers[0][0].rows):
-        rows = [canvas.row(number) for canvas, _ in layers]
+    for row in range(layers[0][0].rows):
+        rows = [canvas.row_bits(row) for canvas, _ in layers]
         line = Text()
         for column, bits in enumerate(zip(*rows, strict=True)):
             dots = 0
             for bit in bits:
                 dots |= bit
             line.append(chr(_BLANK + dots) if dots else " ")
-            style = next((layers[k][1] for k, each in enumerate(bits) if each), "")
+            style = next((layers[k][1] for k, bit_set in enumerate(bits) if bit_set), "")
             if style:
                 line.stylize(style, column, column + 1)
         texts.append(line)

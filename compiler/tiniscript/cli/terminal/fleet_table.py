@@ -23,7 +23,7 @@ class FleetTable:
         self.members = members
         self.language = language
         self.screen = Screen()
-        self.wide = [0, 0]  # columns of names and ports, so far
+        self.column_widths = [0, 0]  # columns of names and ports, so far
 
     def __enter__(self) -> FleetTable:
         self.screen.begin()
@@ -56,24 +56,24 @@ class FleetTable:
         title = text("crew_title", self.language).format(over=done_count, all=len(self.members))
         lines = [Text(f"── {title} ".ljust(width, "─"), style="dim")]
         rows = list(self.members)
-        hidden = 0
+        hidden_count = 0
         if len(rows) > height - 1:
             rows.sort(key=lambda member: member.mark == "ok")  # the others stay in their order
-            hidden = len(rows) - max(0, height - 2)
-            rows = rows[: len(rows) - hidden]
+            hidden_count = len(rows) - max(0, height - 2)
+            rows = rows[: len(rows) - hidden_count]
         # of hidden rows, too, so that no column jumps when another row is shown
-        self.wide = [
+        self.column_widths = [
             max(old_width, *map(cell_len, column))
-            for old_width, column in zip(self.wide, _columns(self.members), strict=True)
+            for old_width, column in zip(self.column_widths, _columns(self.members), strict=True)
         ]
-        widths = self.wide
+        widths = self.column_widths
         for member, name, port in zip(rows, *_columns(rows), strict=True):
             line = Text(f"{set_cell_size(name, widths[0])}  {set_cell_size(port, widths[1])}  ")
             line.append(member.state_text(self.language), style=STYLES[member.mark])
             lines.append(line)
-        if hidden:
-            hidden_count = text("crew_more", self.language).format(n=hidden)
-            lines.append(Text(hidden_count, style="dim"))
+        if hidden_count:
+            hidden_text = text("crew_more", self.language).format(n=hidden_count)
+            lines.append(Text(hidden_text, style="dim"))
         for line in lines:
             line.truncate(max(1, width), overflow="ellipsis")
         return lines[: max(1, height)]

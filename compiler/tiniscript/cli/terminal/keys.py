@@ -13,44 +13,44 @@ _SEQUENCE = re.compile(r"\x1b(?:\[\[.|\[[0-?]*[ -/]*[@-~]|O.|[^\[O])?", re.DOTAL
 _SEQUENCE_OF_WINDOWS = re.compile(r"[\0\xe0].", re.DOTALL)
 
 
-def letters_of(pressed: str) -> str:
+def letters_of(keys: str) -> str:
     """Return what was typed without the keys of several characters."""
     pattern = _SEQUENCE_OF_WINDOWS if sys.platform == "win32" else _SEQUENCE
-    return pattern.sub("", pressed)
+    return pattern.sub("", keys)
 
 
 class Keys:
     """Where there is no terminal, there are no keys."""
 
     def __init__(self) -> None:
-        self._saved: object = None
-        self._file = -1
+        self._saved_mode: object = None
+        self._descriptor = -1
 
     def __enter__(self) -> Keys:
         if sys.stdin.isatty() and sys.platform != "win32" and is_in_front():
             import termios
             import tty
 
-            self._file = sys.stdin.fileno()
-            self._saved = termios.tcgetattr(self._file)
-            tty.setcbreak(self._file)
+            self._descriptor = sys.stdin.fileno()
+            self._saved_mode = termios.tcgetattr(self._descriptor)
+            tty.setcbreak(self._descriptor)
         return self
 
     def __exit__(self, *raised: object) -> None:
-        if self._saved is not None and sys.platform != "win32":
+        if self._saved_mode is not None and sys.platform != "win32":
             import termios
 
-            termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)  # type: ignore[arg-type]
+            termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._saved_mode)  # type: ignore[arg-type]
 
-    def read_pressed(self) -> str:
+    def read_keys(self) -> str:
         """Return the keys that were pressed since the last time."""
         if sys.platform == "win32":
             return _read_on_windows()
-        if self._file < 0:
+        if self._descriptor < 0:
             return ""
-        if not select.select([self._file], [], [], 0)[0]:
+        if not select.select([self._descriptor], [], [], 0)[0]:
             return ""
-        return os.read(self._file, 100).decode("utf-8", "replace")
+        return os.read(self._descriptor, 100).decode("utf-8", "replace")
 
 
 def is_in_front() -> bool:
@@ -68,9 +68,9 @@ def _read_on_windows() -> str:
         return ""
     import msvcrt
 
-    result = ""
+    keys = ""
     while msvcrt.kbhit():
-        result += msvcrt.getwch()
-    if INTERRUPT in result:
+        keys += msvcrt.getwch()
+    if INTERRUPT in keys:
         raise KeyboardInterrupt
-    return result
+    return keys

@@ -15,18 +15,18 @@ from shutil import get_terminal_size, which
 from tiniscript.cli.texts import text
 
 # What a shell answers where the command cannot be started.
-NOT_STARTED = (126, 127)
+NOT_STARTED_CODES = (126, 127)
 
 
 def show(text: str, language: str) -> None:
     """Show a text; a long one with a pager, until the person leaves that."""
     sys.stdout.flush()
-    command = _command(language) if _is_long_there(text) else ""
-    if not command or not _page(text, command):
+    command = _command(language) if _needs_pager(text) else ""
+    if not command or not _run_pager(text, command):
         print(text, end="")
 
 
-def _is_long_there(text: str) -> bool:
+def _needs_pager(text: str) -> bool:
     """Whether a person sits at a terminal that has fewer lines than the text."""
     is_person = sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
     return is_person and text.count("\n") >= get_terminal_size().lines
@@ -39,13 +39,13 @@ def _command(language: str) -> str:
     """
     command = os.environ.get("PAGER")
     if command is None:
-        result = which("less") if os.name != "nt" else None  # consoles of Windows scroll
+        less_path = which("less") if os.name != "nt" else None  # consoles of Windows scroll
         keys = text("pager_keys", language).replace(":", r"\:")
-        command = shlex.join([result, "-R", f"-Ps{keys}"]) if result else ""
+        command = shlex.join([less_path, "-R", f"-Ps{keys}"]) if less_path else ""
     return command.strip()
 
 
-def _page(text: str, command: str) -> bool:
+def _run_pager(text: str, command: str) -> bool:
     """Show a text with a pager; return whether it could be started.
 
     Ctrl-C belongs to the pager: tsc waits until the pager has left the terminal.
@@ -63,6 +63,6 @@ def _page(text: str, command: str) -> bool:
                 with suppress(OSError):  # the person has left already
                     pager.stdin.write(data)
                     pager.stdin.close()
-            return pager.wait() not in NOT_STARTED
+            return pager.wait() not in NOT_STARTED_CODES
         except KeyboardInterrupt:
             continue

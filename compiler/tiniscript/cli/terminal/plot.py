@@ -27,7 +27,7 @@ NAMELESS_CURVE = "SHOW"  # the curve of all values without a name
 AXIS_STEPS = 4  # between the marks of the axis, about
 
 
-class Board(Screen):
+class PlotScreen(Screen):
     """The terminal while values come: what is told, and below it the curves."""
 
     def __init__(self, waiting_text: str) -> None:
@@ -35,7 +35,7 @@ class Board(Screen):
         self.plot = Plot(waiting_text)
         self.drawn_s = 0.0
 
-    def __enter__(self) -> Board:
+    def __enter__(self) -> PlotScreen:
         self.begin()
         return self
 
@@ -57,10 +57,10 @@ Values = deque[tuple[int, int]]  # when, and thousandths
 
 
 class Plot:
-    """`now_ms` is the time of the newest value; `waiting` is said until there is one."""
+    """`now_ms` is the time of the newest value; `waiting_text` is said until there is one."""
 
     def __init__(self, waiting_text: str = "") -> None:
-        self.waiting = waiting_text
+        self.waiting_text = waiting_text
         self.now_ms = 0
         self.curves: dict[str, Values] = {}  # by name, in the order of their first values
         self.styles: dict[str, str] = {}
@@ -76,7 +76,7 @@ class Plot:
     def _add(self, name: str) -> None:
         """Begin a curve; where all styles are taken, the one without a value for longest ends."""
         if len(self.curves) == len(STYLES):
-            oldest = min(self.curves, key=lambda each: self.curves[each][-1][0])
+            oldest = min(self.curves, key=lambda curve_name: self.curves[curve_name][-1][0])
             del self.curves[oldest], self.styles[oldest]
         self.curves[name] = deque(maxlen=MOST_VALUES)
         self.styles[name] = next(style for style in STYLES if style not in self.styles.values())
@@ -121,7 +121,7 @@ class Plot:
         if self.curves:
             title.right_crop(1)
         else:
-            title.append(f"{NAMELESS_CURVE} {self.waiting} ")
+            title.append(f"{NAMELESS_CURVE} {self.waiting_text} ")
         end = f" {SHOWN_SECONDS} s "
         title.append("─" * (width - 6 - title.cell_len) + end)
         title.truncate(max(1, width))
@@ -133,16 +133,16 @@ class Plot:
         """Return a curve: each value holds until the next one."""
         canvas = Canvas(columns, rows)
         right, bottom = DOTS_PER_COLUMN * columns - 1, DOTS_PER_ROW * rows - 1
-        before: int | None = None
-        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SHOWN_SECONDS * 1000]
-        for (time_ms, value), end_ms in zip(values, ends, strict=True):
-            x, end = (
-                round(min(1.0, max(0.0, (item - begin_ms) / (SHOWN_SECONDS * 1000))) * right)
-                for item in (time_ms, end_ms)
+        last_y: int | None = None
+        end_times_ms = [*[time_ms for time_ms, _ in values][1:], begin_ms + SHOWN_SECONDS * 1000]
+        for (time_ms, value), end_ms in zip(values, end_times_ms, strict=True):
+            x, end_x = (
+                round(min(1.0, max(0.0, (instant_ms - begin_ms) / (SHOWN_SECONDS * 1000))) * right)
+                for instant_ms in (time_ms, end_ms)
             )
             y = round((high - value) / (high - low) * bottom)
-            canvas.lines([(x, y if before is None else before), (x, y), (end, y)])
-            before = y
+            canvas.draw_lines([(x, y if last_y is None else last_y), (x, y), (end_x, y)])
+            last_y = y
         return canvas
 
 

@@ -63,10 +63,10 @@ class Picture:
         self.now_ms = 0  # when the newest event was
         self.readings: dict[int, int] = {}
         self.settings: dict[int, int] = {}
-        self.shown: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
+        self.shown_values: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
-        self.widest = [0, 0]  # columns of values and units, so far
+        self.column_widths = [0, 0]  # columns of values and units, so far
 
     def take(self, event: Event) -> None:
         self.now_ms, name, values, event_text, _ = event
@@ -79,7 +79,7 @@ class Picture:
         elif name == "RELEASE":
             self.settings.pop(values[0], None)
         elif name == "SHOW":
-            self.shown.append(event_text.removeprefix("SHOW "))
+            self.shown_values.append(event_text.removeprefix("SHOW "))
         elif name == "BEEP":
             self.hertz, self.silent_ms = values[0], self.now_ms + values[1]
         else:
@@ -91,19 +91,19 @@ class Picture:
         """Return at most `height` lines of at most `width` columns."""
         room = max(1, height - 1)  # below the title
         if width >= COLUMNS_FOR_VALUES_BESIDE:
-            columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
-            values = self._values(min(MOST_VALUE_COLUMNS, width - columns - 2), room, now_ms)
-            way = self.sketch.draw(columns, room, now_ms)
-            values += [Text()] * (room - len(values))
-            for line in way:
+            columns = self.sketch.fit_columns(width - min(44, width * 11 // 20) - 2, room)
+            value_lines = self._values(min(MOST_VALUE_COLUMNS, width - columns - 2), room, now_ms)
+            way_lines = self.sketch.draw(columns, room, now_ms)
+            value_lines += [Text()] * (room - len(value_lines))
+            for line in way_lines:
                 line.align("left", columns + 2)
-            lines_below = [line + value for line, value in zip(way, values, strict=True)]
+            lines_below = [line + value for line, value in zip(way_lines, value_lines, strict=True)]
         else:
-            values = self._values(width, max(room - 3, min(room, 3)), now_ms)
-            rows = room - len(values)
+            value_lines = self._values(width, max(room - 3, min(room, 3)), now_ms)
+            rows = room - len(value_lines)
             lines_below = (
                 self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []
-            ) + values
+            ) + value_lines
         lines = [self._title(width), *lines_below]
         for line in lines:
             line.rstrip()
@@ -132,23 +132,23 @@ class Picture:
             for number in sorted(values):
                 name, unit = devices[number].name, devices[number].unit
                 rows.append((name, devices[number].text(values[number]), unit, self.labels[name]))
-        if self.shown:
-            *older, newest = self.shown
-            before = text("before", language).format(values=", ".join(reversed(older)))
-            rows.append(("SHOW", newest, "", before if older else ""))
+        if self.shown_values:
+            *older, newest = self.shown_values
+            older_text = text("before", language).format(values=", ".join(reversed(older)))
+            rows.append(("SHOW", newest, "", older_text if older else ""))
         if len(rows) > height:
             rows[1:3] = [(text("motors", language), f"{left} {right}", "%", "")]
         # values have a column that only grows: one that jumps cannot be read
-        names, *widths = (max(cell_len(row[k]) for row in rows) for k in range(3))
-        self.widest = [max(pair) for pair in zip(self.widest, widths, strict=True)]
-        numbers, units = self.widest
-        names = min(names, max(6, width // 3))
+        name_width, *widths = (max(cell_len(row[k]) for row in rows) for k in range(3))
+        self.column_widths = [max(pair) for pair in zip(self.column_widths, widths, strict=True)]
+        value_width, unit_width = self.column_widths
+        name_width = min(name_width, max(6, width // 3))
         lines = []
         for name, value, unit, detail in rows[:height]:
             line = Text(name)
-            line.truncate(names, overflow="ellipsis", pad=True)
-            line.append(f" {value:>{numbers}} ", style="bold")
-            line.append(f"{set_cell_size(unit, units)}  ")
+            line.truncate(name_width, overflow="ellipsis", pad=True)
+            line.append(f" {value:>{value_width}} ", style="bold")
+            line.append(f"{set_cell_size(unit, unit_width)}  ")
             line.append(detail, style="" if "│" in detail or detail is self.ending else "dim")
             line.truncate(width, overflow="ellipsis")
             lines.append(line)

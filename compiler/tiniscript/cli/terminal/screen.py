@@ -58,8 +58,8 @@ class Frame:
             rows += sum(max(0, line.cell_len - 1) // width for line in self.lines)
         parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
         parts.append(f"{TO_LINE_END}\n".join(map(self._style, lines)))
-        erased = TO_SCREEN_END if width != self._width else ""
-        return f"\r{_cursor_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
+        erase_code = TO_SCREEN_END if width != self._width else ""
+        return f"\r{_cursor_up(rows)}{erase_code}{''.join(parts)}{TO_SCREEN_END}"
 
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were; there are as many as before."""
@@ -103,7 +103,7 @@ class Screen:
         self.is_begun = False
         # Where nothing can be redrawn, only the last picture is printed.
         self.is_still = self.console.legacy_windows or self.console.is_dumb_terminal
-        self.last = Text()
+        self.last_picture = Text()
         self.lines: list[str] = []  # of the trace, for the next frame
         self.frame_s = time.monotonic()
         # where the trace goes to this very terminal, it has to go around the picture
@@ -121,7 +121,7 @@ class Screen:
             if self.is_begun:
                 self.is_begun = False
                 if self.is_still:
-                    self.console.print(self.last)
+                    self.console.print(self.last_picture)
                 else:
                     self.frame.end()
 
@@ -170,10 +170,10 @@ class Screen:
             for line in lines:
                 line.plain = "".join("*" if "⠀" <= c <= "⣿" else c for c in line.plain)
                 line.plain = line.plain.translate(DRAWING_SUBSTITUTES)
-        self.last = Text("\n", no_wrap=True).join(lines)
+        self.last_picture = Text("\n", no_wrap=True).join(lines)
         if not self.is_begun:
             self.flush()
-            self.console.print(self.last)
+            self.console.print(self.last_picture)
         elif not self.is_still:
             sys.stdout.flush()
             text = Text("\n".join(self.lines)).plain if self.lines else ""
@@ -185,5 +185,5 @@ def _is_one_terminal() -> bool:
     """Whether both streams of this command, which are terminals, are the same one."""
     if sys.platform == "win32":  # a command has one console
         return True
-    numbers = [os.fstat(item.fileno()).st_rdev for item in (sys.stdout, sys.stderr)]
-    return numbers[0] == numbers[1]
+    device_numbers = [os.fstat(stream.fileno()).st_rdev for stream in (sys.stdout, sys.stderr)]
+    return device_numbers[0] == device_numbers[1]

@@ -15,7 +15,7 @@ class EndRequest:
     def __init__(self) -> None:
         self.is_set = False
 
-    def ask(self, *_: Any) -> None:
+    def on_signal(self, *_: Any) -> None:
         """Handle a signal. A C callback may drop the exception, so a flag is set, too."""
         self.is_set = True
         raise KeyboardInterrupt
@@ -25,18 +25,20 @@ class EndRequest:
 def handle_signals() -> Iterator[EndRequest]:
     """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
     end_request = EndRequest()
-    numbers = (signal.SIGTERM, signal.SIGINT)
+    signal_numbers = (signal.SIGTERM, signal.SIGINT)
     hook_before = sys.unraisablehook
 
-    def tell_others(dropped: sys.UnraisableHookArgs) -> None:
-        if not issubclass(dropped.exc_type, KeyboardInterrupt):  # of which the flag is left
-            hook_before(dropped)
+    def on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
+        if not issubclass(unraisable.exc_type, KeyboardInterrupt):  # of which the flag is left
+            hook_before(unraisable)
 
-    sys.unraisablehook = tell_others
-    handlers_before = [signal.signal(number, end_request.ask) for number in numbers]
+    sys.unraisablehook = on_unraisable
+    handlers_before = [
+        signal.signal(signal_number, end_request.on_signal) for signal_number in signal_numbers
+    ]
     try:
         yield end_request
     finally:
         sys.unraisablehook = hook_before
-        for number, handler in zip(numbers, handlers_before, strict=True):
-            signal.signal(number, handler)
+        for signal_number, handler in zip(signal_numbers, handlers_before, strict=True):
+            signal.signal(signal_number, handler)

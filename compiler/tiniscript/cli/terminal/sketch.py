@@ -24,7 +24,7 @@ from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
 
 MOST_CORNERS = 5000  # of the way that stay in the picture
-WAY, ROBOT = "cyan", "bold green"
+WAY_STYLE, ROBOT_STYLE = "cyan", "bold green"
 ARROWS = "↑↖←↙↓↘→↗"  # every 45 degrees, counterclockwise from straight ahead
 _ROUND_SCALES = (
     1,
@@ -44,7 +44,7 @@ _ROUND_SCALES = (
 def round_scale(cm_per_dot: float) -> float:
     """Return the least scale, not below this one, at which the ruler has a round length."""
     tens = 10.0 ** floor(log10(cm_per_dot))
-    return next(item * tens for item in _ROUND_SCALES if item * tens >= cm_per_dot)
+    return next(scale * tens for scale in _ROUND_SCALES if scale * tens >= cm_per_dot)
 
 
 class View(NamedTuple):
@@ -76,16 +76,21 @@ class Sketch:
         self.way = Way(robot.body)
         self.view: View | None = None
         self.canvas = Canvas(0, 0)  # the way up to its last corner
-        self.joined = 0  # corners that `canvas` shows
+        self.drawn_corner_count = 0  # corners that `canvas` shows
         length_cm = robot.body.length_cm
-        self.seen = (-length_cm, length_cm, -length_cm, length_cm)  # x and y, from and to, in cm
+        self.seen_bounds_cm = (
+            -length_cm,
+            length_cm,
+            -length_cm,
+            length_cm,
+        )  # x and y, from and to, in cm
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.set_motors(now_ms, left, right)
         if len(self.way.corners) > MOST_CORNERS:
             self.way.thin_out(MOST_CORNERS // 2)
             self.canvas.clear()
-            self.joined = 0
+            self.drawn_corner_count = 0
 
     def ruler(self) -> str:
         """Return how long ten columns are."""
@@ -95,7 +100,7 @@ class Sketch:
         length = f"{cm:g} cm" if cm < 100 else f"{cm / 100:g} m" if cm < 1e5 else f"{cm / 1e5:g} km"
         return f" ├────────┤ {length} "
 
-    def columns(self, most_columns: int, rows: int) -> int:
+    def fit_columns(self, most_columns: int, rows: int) -> int:
         """Return how many columns of `most_columns` the picture takes: a way may go anywhere."""
         return most_columns
 
@@ -103,36 +108,36 @@ class Sketch:
         poses_ahead = self.way.points_ahead(now_ms)
         view = self._view(columns, rows, poses_ahead)
         corners = self.way.corners
-        self.canvas.lines(map(view.dot, corners[max(0, self.joined - 1) :]))
-        self.joined = len(corners)
+        self.canvas.draw_lines(map(view.dot, corners[max(0, self.drawn_corner_count - 1) :]))
+        self.drawn_corner_count = len(corners)
         full_canvas = self.canvas.copy()
-        full_canvas.lines(map(view.dot, [corners[-1], *poses_ahead]))
-        lines = merge_layers([(full_canvas, WAY)])
+        full_canvas.draw_lines(map(view.dot, [corners[-1], *poses_ahead]))
+        lines = merge_layers([(full_canvas, WAY_STYLE)])
         pose_now = self.way.pose(now_ms)
-        put_letter(lines, view.dot(START), "o", WAY)
-        put_letter(lines, view.dot(pose_now), ARROWS[round(pose_now.heading / 45) % 8], ROBOT)
+        put_letter(lines, view.dot(START), "o", WAY_STYLE)
+        put_letter(lines, view.dot(pose_now), ARROWS[round(pose_now.heading / 45) % 8], ROBOT_STYLE)
         return lines
 
     def _view(self, columns: int, rows: int, poses_ahead: Sequence[Pose]) -> View:
         """Return the view as it is, or one with more room where the way leaves it."""
-        for pose in (*self.way.corners[self.joined :], *poses_ahead):
-            low_x, high_x, low_y, high_y = self.seen
-            self.seen = (min(low_x, pose.x_cm), max(high_x, pose.x_cm),
+        for pose in (*self.way.corners[self.drawn_corner_count :], *poses_ahead):
+            low_x, high_x, low_y, high_y = self.seen_bounds_cm
+            self.seen_bounds_cm = (min(low_x, pose.x_cm), max(high_x, pose.x_cm),
                          min(low_y, pose.y_cm), max(high_y, pose.y_cm))  # fmt: skip
-        low_x, high_x, low_y, high_y = self.seen
+        low_x, high_x, low_y, high_y = self.seen_bounds_cm
         view = self.view
         if view and (view.columns, view.rows) == (columns, rows) and (
             view.holds(Pose(low_x, low_y, 0)) and view.holds(Pose(high_x, high_y, 0))
         ):  # fmt: skip
             return view
-        needed = max(
+        cm_per_dot = max(
             (high_x - low_x) / (DOTS_PER_ROW * rows - 3),
             (high_y - low_y) / (DOTS_PER_COLUMN * columns - 3),
         )
         if self.view is not None:
-            needed *= 1.2
-        scale = round_scale(needed)
+            cm_per_dot *= 1.2
+        scale = round_scale(cm_per_dot)
         self.view = View(columns, rows, scale, (low_x + high_x) / 2, (low_y + high_y) / 2)
         self.canvas = Canvas(columns, rows)
-        self.joined = 0
+        self.drawn_corner_count = 0
         return self.view

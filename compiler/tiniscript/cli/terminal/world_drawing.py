@@ -20,14 +20,14 @@ from tiniscript.cli.terminal.canvas import (
     put_letter,
 )
 from tiniscript.cli.terminal.run_drawing import Picture
-from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
+from tiniscript.cli.terminal.sketch import ARROWS, ROBOT_STYLE, WAY_STYLE, Sketch, round_scale
 from tiniscript.cli.texts import text
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
-WALLS, LAMP, RIVAL = "", "bold yellow", "bold magenta"
+WALL_STYLE, LAMP_STYLE, RIVAL_STYLE = "", "bold yellow", "bold magenta"
 RING_CORNERS = 48
 
 
@@ -36,29 +36,29 @@ class WorldPicture(Picture):
 
     def __init__(self, robot: VirtualRobot, language: str, footer: str = "") -> None:
         super().__init__(robot.profile, language)
-        self.virtual = robot
+        self.virtual_robot = robot
         self.footer = footer
         self.sketch: WorldSketch = WorldSketch(robot)
         self.began_ms = 0
         self.is_new = True  # nothing has run yet
 
     def take(self, event: Event) -> None:
-        if event.what == "START":
+        if event.kind == "START":
             self.began_ms, self.now_ms, self.ending = event.time_ms, 0, ""
             self.is_new = False
-            self.shown.clear()
-            self.settings = dict(self.virtual.actuators)
+            self.shown_values.clear()
+            self.settings = dict(self.virtual_robot.actuators)
             return
         super().take(event._replace(time_ms=event.time_ms - self.began_ms))
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns."""
-        robot = self.virtual
+        robot = self.virtual_robot
         if self.is_new:
             self.ending = text("robot_waits" if robot.is_lit else "robot_empty", self.language)
             self.now_ms = 0
         for number in range(len(robot.profile.kit.sensors)):
-            self.readings[number] = robot.sensing.look(number, robot.pose)
+            self.readings[number] = robot.sensing.peek(number, robot.pose)
         has_footer = bool(self.footer) and height > 4
         lines = super().lines(width, height - has_footer, now_ms - self.began_ms)
         if has_footer:
@@ -68,7 +68,7 @@ class WorldPicture(Picture):
 
     def _title(self, width: int) -> Text:
         text = super()._title(width)
-        name = f"── {self.labels['robot']} ── {self.virtual.world.labels[self.language]} "
+        name = f"── {self.labels['robot']} ── {self.virtual_robot.world.labels[self.language]} "
         if len(name) + len(self.sketch.ruler()) < width:
             text.plain = name + text.plain[len(name) :]
         return text
@@ -82,7 +82,11 @@ class WorldSketch(Sketch):
         self.robot = robot
         self.world = robot.world
         self.floor: Floor | None = None
-        self._room = (0, 0, 0)  # columns and rows that there were, and the columns that it takes
+        self._fitted_size = (
+            0,
+            0,
+            0,
+        )  # columns and rows that there were, and the columns that it takes
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.left, self.way.right = left, right
@@ -92,30 +96,37 @@ class WorldSketch(Sketch):
             return ""
         return f" ├────────┤ {10 * DOTS_PER_COLUMN * self.floor.cm_per_dot:g} cm "
 
-    def columns(self, most_columns: int, rows: int) -> int:
+    def fit_columns(self, most_columns: int, rows: int) -> int:
         """Return how many columns the floor takes; the values are beside it, not at the edge."""
-        if self._room[:2] != (most_columns, rows):
+        if self._fitted_size[:2] != (most_columns, rows):
             right, _ = Floor(self.world, most_columns, rows).dot(Point(self.world.width_cm, 0))
-            self._room = most_columns, rows, min(most_columns, right // DOTS_PER_COLUMN + 1)
-        return self._room[2]
+            self._fitted_size = most_columns, rows, min(most_columns, right // DOTS_PER_COLUMN + 1)
+        return self._fitted_size[2]
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
-        ground = self.floor
-        if ground is None or (ground.columns, ground.rows) != (columns, rows):
-            ground = self.floor = Floor(self.world, columns, rows)
+        floor = self.floor
+        if floor is None or (floor.columns, floor.rows) != (columns, rows):
+            floor = self.floor = Floor(self.world, columns, rows)
         driving = self.robot.driving
         pose = self.robot.pose
-        hull = Canvas(columns, rows)
+        hull_canvas = Canvas(columns, rows)
         outline = driving.hull.outline(pose, 16)
-        hull.lines(map(ground.dot, [*outline, outline[0]]))
-        rivals = Canvas(columns, rows)
-        for segment in driving.others():
-            rivals.lines(map(ground.dot, segment))
-        way = ground.way(driving.corners, pose)
-        lines = merge_layers([(hull, ROBOT), (rivals, RIVAL), (way, WAY), (ground.walls, WALLS)])
+        hull_canvas.draw_lines(map(floor.dot, [*outline, outline[0]]))
+        rival_canvas = Canvas(columns, rows)
+        for segment in driving.other_outlines():
+            rival_canvas.draw_lines(map(floor.dot, segment))
+        way_canvas = floor.way(driving.corners, pose)
+        lines = merge_layers(
+            [
+                (hull_canvas, ROBOT_STYLE),
+                (rival_canvas, RIVAL_STYLE),
+                (way_canvas, WAY_STYLE),
+                (floor.wall_canvas, WALL_STYLE),
+            ]
+        )
         for lamp in self.world.lamps:
-            put_letter(lines, ground.dot(lamp.place), "*", LAMP)
-        put_letter(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)
+            put_letter(lines, floor.dot(lamp.place), "*", LAMP_STYLE)
+        put_letter(lines, floor.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT_STYLE)
         return lines
 
 
@@ -131,15 +142,15 @@ class Floor:
             )
         )
         self.height_cm = world.height_cm
-        self.walls = Canvas(columns, rows)
-        self._way = Canvas(columns, rows)
-        self._last: Sequence[Pose] = []
+        self.wall_canvas = Canvas(columns, rows)
+        self._way_canvas = Canvas(columns, rows)
+        self._last_corners: Sequence[Pose] = []
         for segment in world.obstacles():
-            self.walls.lines(map(self.dot, segment))
+            self.wall_canvas.draw_lines(map(self.dot, segment))
         for line in world.lines:
-            self.walls.lines(map(self.dot, line.points))
+            self.wall_canvas.draw_lines(map(self.dot, line.points))
         for ring in world.rings:
-            self.walls.lines(map(self.dot, ring.outline(RING_CORNERS)))
+            self.wall_canvas.draw_lines(map(self.dot, ring.outline(RING_CORNERS)))
 
     def dot(self, point: Point | Pose) -> Dot:
         """Return where a place lies on the canvas."""
@@ -148,13 +159,13 @@ class Floor:
 
     def way(self, corners: Sequence[Pose], pose: Pose) -> Canvas:
         """Return the way up to `pose`; the corners that were there before are drawn already."""
-        drawn_count = len(self._last)
-        if drawn_count > 1 and corners[: drawn_count - 1] == self._last[: drawn_count - 1]:
-            self._way.lines(map(self.dot, corners[drawn_count - 2 :]))
+        drawn_count = len(self._last_corners)
+        if drawn_count > 1 and corners[: drawn_count - 1] == self._last_corners[: drawn_count - 1]:
+            self._way_canvas.draw_lines(map(self.dot, corners[drawn_count - 2 :]))
         else:
-            self._way.clear()
-            self._way.lines(map(self.dot, corners))
-        self._last = list(corners)
-        canvas = self._way.copy()
-        canvas.lines(map(self.dot, [corners[-1], pose]))
+            self._way_canvas.clear()
+            self._way_canvas.draw_lines(map(self.dot, corners))
+        self._last_corners = list(corners)
+        canvas = self._way_canvas.copy()
+        canvas.draw_lines(map(self.dot, [corners[-1], pose]))
         return canvas

@@ -33,10 +33,10 @@ class Sentence(str):
     def __str__(self) -> str:
         return self
 
-    def format(self, *values: object, **named: object) -> Sentence:
-        plain = {key: _printable(value) for key, value in named.items()}
+    def format(self, *values: object, **named_values: object) -> Sentence:
+        printable_values = {key: _printable(value) for key, value in named_values.items()}
         template = "".join(self)
-        for key, value in plain.items():
+        for key, value in printable_values.items():
             if isinstance(value, int | str) and str(value).isdecimal():
                 for noun_key in COUNTED_NOUNS:
                     placeholder, form = (
@@ -44,7 +44,7 @@ class Sentence(str):
                         for n in (SEVERAL_COUNT, int(value))
                     )
                     template = template.replace(placeholder, form)
-        return Sentence(template.format(*map(_printable, values), **plain))
+        return Sentence(template.format(*map(_printable, values), **printable_values))
 
 
 def _printable(value: object) -> object:
@@ -55,9 +55,9 @@ def _printable(value: object) -> object:
 
 def text(key: str, language: str) -> str:
     """Return the sentence with this key."""
-    result = Sentence(languages.text(CATALOGUE, key, language))
-    result.language = language
-    return result
+    sentence = Sentence(languages.text(CATALOGUE, key, language))
+    sentence.language = language
+    return sentence
 
 
 def say(key: str, language: str, /, **values: object) -> None:
@@ -82,8 +82,8 @@ def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.enviro
             value = arguments[k + 1]
         if value in languages.languages():
             return value
-    names = (environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
-    return languages.find_language(next(filter(None, names), None) or _system_language())
+    locale_names = (environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    return languages.find_language(next(filter(None, locale_names), None) or _system_language())
 
 
 def _system_language() -> str:

@@ -23,35 +23,35 @@ def sentences_of(
     finding: Finding, language: str, values: Mapping[str, str] | None = None
 ) -> Sentences:
     """Return what is said of a finding; `values`: instead of its own."""
-    filled = dict(finding.values if values is None else values)
-    if filled.get("reset") in dict(RESETS):
-        filled["reset"] = text(f"reset_{filled['reset']}", language)
+    gap_values = dict(finding.values if values is None else values)
+    if gap_values.get("reset") in dict(RESETS):
+        gap_values["reset"] = text(f"reset_{gap_values['reset']}", language)
     cause, row = finding.cause, CAUSES[finding.cause]
-    evidence_key, advice_key = f"seen_{cause}", f"next_{row.then or cause}"
-    if cause == "busy" and not filled["by"]:
+    evidence_key, advice_key = f"seen_{cause}", f"next_{row.next_key or cause}"
+    if cause == "busy" and not gap_values["by"]:
         evidence_key = "seen_busy_unknown"
-    if filled.get("count") == "1" and has_text(f"{evidence_key}_once"):
+    if gap_values.get("count") == "1" and has_text(f"{evidence_key}_once"):
         evidence_key += "_once"
-    if cause == "no_permission" and not filled["group"]:
+    if cause == "no_permission" and not gap_values["group"]:
         evidence_key, advice_key = "seen_no_permission_other", "next_no_permission_other"
-    if cause in ("no_port", "charging_cable") and filled.get("ports"):
+    if cause in ("no_port", "charging_cable") and gap_values.get("ports"):
         evidence_key, advice_key = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
-        meaning, advice = (Sentence(each) for each in foreign.sentence(cause, language))
+        meaning, advice = (Sentence(part) for part in foreign.sentence(cause, language))
         if cause == foreign.ECHO_SKETCH:
             evidence_key = "seen_echo_sketch"
-        elif cause == foreign.OTHER_SKETCH and not filled["said"]:
+        elif cause == foreign.OTHER_SKETCH and not gap_values["said"]:
             evidence_key = "seen_other_sketch_silent"
         else:
             evidence_key = "seen_foreign"
-        return Sentences(meaning, text(evidence_key, language).format(**filled), advice)
+        return Sentences(meaning, text(evidence_key, language).format(**gap_values), advice)
     # a part that is looked at whole has no `evidence_key`, and one that is right no next step
     keys = (
         f"found_{cause}",
         evidence_key if has_text(evidence_key) else "",
         advice_key if has_text(advice_key) else "",
     )
-    return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))
+    return Sentences(*(text(key, language).format(**gap_values) if key else "" for key in keys))
 
 
 def as_data(finding: Finding, language: str) -> dict[str, object]:
@@ -73,7 +73,7 @@ def label(finding: Finding, language: str) -> str:
     return text(f"part_{finding.part}", language).format(**finding.values)
 
 
-def rows(findings: Iterable[Finding], language: str) -> list[str]:
+def finding_lines(findings: Iterable[Finding], language: str) -> list[str]:
     """Return the lines of a conversation about parts: what came of each, and what to do."""
     lines = []
     for finding in findings:

@@ -30,7 +30,7 @@ class Option(NamedTuple):
 
     `kind` and `value` (its name in help) describe the option's value; a switch has none. `dest` is
     its name in the code, if it is not the last of its flags. `repeats`: each use adds one value.
-    `may_be_alone`: its value may be left out. `virtual`: only for the virtual robot. `silent`:
+    `may_be_alone`: its value may be left out. `is_virtual`: only for the virtual robot. `silent_verbs`:
     commands that take it without a row in help.
     """
 
@@ -40,9 +40,9 @@ class Option(NamedTuple):
     value: str = ""
     dest: str = ""
     repeats: bool = False
-    virtual: bool = False
+    is_virtual: bool = False
     may_be_alone: bool = False
-    silent: str = ""
+    silent_verbs: str = ""
 
     @property
     def is_argument(self) -> bool:
@@ -54,7 +54,7 @@ class Option(NamedTuple):
         return self.dest or self.flags.split()[-1].lstrip("-").replace("-", "_")
 
     @property
-    def unset(self) -> object:
+    def default(self) -> object:
         """Its value where nobody has given it."""
         return [] if self.repeats else False if self.kind is None else None
 
@@ -90,13 +90,13 @@ CHIP = Kind("chip")
 SENSOR = Kind("sensor")
 VERB = Kind("verb")
 HURRY = Kind("hurry")
-ACTION = Kind("action")  # of tsc lesson
+LESSON_ACTION = Kind("action")  # of tsc lesson
 LANGUAGE = Kind("choice", choices=languages())
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
 ON_OFF = Kind("choice", choices=("on", "off"))
 SETTING = Kind("choice", choices=settings())
-IN_CLASS = Kind("choice", choices=("list", "upload", "stop", "show"))
+CLASS_ACTION = Kind("choice", choices=("list", "upload", "stop", "show"))
 TRUST = Kind("file", reads="path_trust")
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
 LEVEL = Kind("choice", choices=tuple(LEVELS))
@@ -127,10 +127,10 @@ VERBS_WITHOUT_ROBOT = (
 # fmt: off
 OPTIONS: tuple[Option, ...] = (
     # arguments
-    Option("action", "lesson", ACTION, "ACTION"),
+    Option("action", "lesson", LESSON_ACTION, "ACTION"),
     Option("number", "lesson", TEXT, "N"),
     Option("program", "lesson", PROGRAM, "PROGRAM"),
-    Option("action", "class", IN_CLASS, "ACTION"),
+    Option("action", "class", CLASS_ACTION, "ACTION"),
     Option("program", "class", PROGRAM, "PROGRAM"),
     Option("program", "compile run show fmt upload", PROGRAM, "PROGRAM"),
     Option("programs", "check", PROGRAM, "PROGRAM", repeats=True),
@@ -140,7 +140,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("whether", "text", ON_OFF, "on|off"),
     Option("network", "wifi", TEXT, "NETWORK"),
     Option("about", "help", VERB, "COMMAND", repeats=True),
-    Option("words", "completion", TEXT, A_TEXT, repeats=True, silent="completion"),
+    Option("words", "completion", TEXT, A_TEXT, repeats=True, silent_verbs="completion"),
     # what chooses a step of a verb
     Option("--explain", "explain", CODE, "CODE", "code", may_be_alone=True),
     Option("--previous", "undo"),
@@ -281,36 +281,36 @@ OPTIONS: tuple[Option, ...] = (
     Option("--all", "upload undo"),
     Option("--all", "stop"),
     Option("--baud", "doctor", NUMBER, N),
-    Option("--baud", f"check {ONE_ROBOT_VERBS} upload stop undo identify", NUMBER, N, silent=VERBS_WITHOUT_BAUD),
+    Option("--baud", f"check {ONE_ROBOT_VERBS} upload stop undo identify", NUMBER, N, silent_verbs=VERBS_WITHOUT_BAUD),
     Option("--baud", "conform", NUMBER, N),
-    Option("--baud", "ports", NUMBER, N, silent="ports"),
+    Option("--baud", "ports", NUMBER, N, silent_verbs="ports"),
     Option("--baud", "robot", NUMBER, N),
     Option("--robot", "compile check run show fmt upload live class", ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports stop hold start monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent=VERBS_WITHOUT_ROBOT),
+    Option("--robot", "wiring ports stop hold start monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent_verbs=VERBS_WITHOUT_ROBOT),
     Option("--robot", "selftest doctor", ROBOT, A_ROBOT),
     Option("--robot", "firmware", ROBOT, A_ROBOT),
     Option("--virtual", "check"),
-    Option("--virtual", "doctor hold start monitor fetch name trim undo claim disown text wifi identify selftest", silent="hold disown text identify"),
+    Option("--virtual", "doctor hold start monitor fetch name trim undo claim disown text wifi identify selftest", silent_verbs="hold disown text identify"),
     Option("--virtual", "stop"),
     Option("--virtual", "upload"),
     Option("--virtual", "live"),
     # how it is said
-    Option("--json", "check show lesson ports keys doctor selftest conform", silent="keys"),
+    Option("--json", "check show lesson ports keys doctor selftest conform", silent_verbs="keys"),
     Option("--json", "upload class"),
-    Option("--json", "undo", silent="undo"),
-    Option("--json", "stop identify", silent="identify"),
-    Option("--json", "hold start monitor", silent="hold"),
-    Option("--json", "trim", silent="trim"),
+    Option("--json", "undo", silent_verbs="undo"),
+    Option("--json", "stop identify", silent_verbs="identify"),
+    Option("--json", "hold start monitor", silent_verbs="hold"),
+    Option("--json", "trim", silent_verbs="trim"),
     # a virtual robot of one's own
-    Option("--world", VIRTUAL_ROBOT_VERBS, WORLD, A_ROBOT, virtual=True),
-    Option("--plot", VIRTUAL_ROBOT_VERBS, PICTURE, "F.png", virtual=True, silent="live"),
-    Option("--for", VIRTUAL_ROBOT_VERBS, NUMBER, S, virtual=True, silent="live"),
-    Option("--hurry", VIRTUAL_ROBOT_VERBS, HURRY, "N|max", virtual=True),
-    Option("--sensor", VIRTUAL_ROBOT_VERBS, SENSOR, READINGS, repeats=True, virtual=True, silent="live"),
-    Option("--noise", VIRTUAL_ROBOT_VERBS, NUMBER, X, virtual=True, silent="live"),
-    Option("--motors", VIRTUAL_ROBOT_VERBS, NUMBER, "L,R", virtual=True, silent="live"),
-    Option("--faults", VIRTUAL_ROBOT_VERBS, NUMBER, X, virtual=True, silent="live"),
-    Option("--seed", VIRTUAL_ROBOT_VERBS, NUMBER, N, virtual=True, silent="live"),
+    Option("--world", VIRTUAL_ROBOT_VERBS, WORLD, A_ROBOT, is_virtual=True),
+    Option("--plot", VIRTUAL_ROBOT_VERBS, PICTURE, "F.png", is_virtual=True, silent_verbs="live"),
+    Option("--for", VIRTUAL_ROBOT_VERBS, NUMBER, S, is_virtual=True, silent_verbs="live"),
+    Option("--hurry", VIRTUAL_ROBOT_VERBS, HURRY, "N|max", is_virtual=True),
+    Option("--sensor", VIRTUAL_ROBOT_VERBS, SENSOR, READINGS, repeats=True, is_virtual=True, silent_verbs="live"),
+    Option("--noise", VIRTUAL_ROBOT_VERBS, NUMBER, X, is_virtual=True, silent_verbs="live"),
+    Option("--motors", VIRTUAL_ROBOT_VERBS, NUMBER, "L,R", is_virtual=True, silent_verbs="live"),
+    Option("--faults", VIRTUAL_ROBOT_VERBS, NUMBER, X, is_virtual=True, silent_verbs="live"),
+    Option("--seed", VIRTUAL_ROBOT_VERBS, NUMBER, N, is_virtual=True, silent_verbs="live"),
     # every verb
     Option("--lang", "*", LANGUAGE, "|".join(LANGUAGE.choices)),
     Option("-h --help", "*"),
@@ -324,13 +324,14 @@ def options_of(verb: str) -> list[Option]:
     return [option for option in OPTIONS if option.is_taken_by(verb)]
 
 
-def choosers_of(command: str) -> list[Option]:
+def selecting_options_of(command: str) -> list[Option]:
     """Return the options that make another command of this one."""
     return [
         option
         for name in steps_of(command)
         for option in options_of(name)
-        if STEPS[name].head == command_words(command) and option.flags in STEPS[name].choosers
+        if STEPS[name].head == command_words(command)
+        and option.flags in STEPS[name].selecting_flags
     ]
 
 
@@ -341,34 +342,36 @@ def command_of(verb: str, words: list[str]) -> tuple[str, list[str]]:
     """
     own_words = words[: words.index("--")] if "--" in words else words
     flags = {word.partition("=")[0] for word in own_words if word.startswith("-")}
-    at = first_word(verb, own_words)
-    text = f"{verb} {words[at]}" if at is not None else verb
-    fitting_steps = [name for name in steps_of(verb) if STEPS[name].head in (verb, text)]
-    result = next((name for name in fitting_steps if flags & {*STEPS[name].choosers}), None)
-    result = result or next((name for name in fitting_steps if STEPS[name].typed == text), verb)
-    if result == verb or STEPS[result].head == verb:
-        return result, words
-    return result, [word for k, word in enumerate(words) if k != at]
+    word_index = first_word(verb, own_words)
+    verb_and_word = f"{verb} {words[word_index]}" if word_index is not None else verb
+    fitting_steps = [name for name in steps_of(verb) if STEPS[name].head in (verb, verb_and_word)]
+    command = next((name for name in fitting_steps if flags & {*STEPS[name].selecting_flags}), None)
+    command = command or next(
+        (name for name in fitting_steps if STEPS[name].command_text == verb_and_word), verb
+    )
+    if command == verb or STEPS[command].head == verb:
+        return command, words
+    return command, [word for k, word in enumerate(words) if k != word_index]
 
 
 def first_word(verb: str, words: list[str]) -> int | None:
     """Return where the first word is that is neither an option nor the value of one."""
     commands = (verb, *steps_of(verb))
-    valued = {flag for command in commands for option in options_of(command)
+    flags_with_value = {flag for command in commands for option in options_of(command)
               if option.kind is not None for flag in option.flags.split()}  # fmt: skip
     is_option_value = False
     for k, word in enumerate(words):
         if not is_option_value and not word.startswith("-"):
             return k
-        is_option_value = not is_option_value and word in valued
+        is_option_value = not is_option_value and word in flags_with_value
     return None
 
 
 def shown_of(verb: str) -> list[Option]:
     """Return the options of a verb, or of `tsc` itself, that help and documents show."""
-    return [option for option in options_of(verb) if verb not in option.silent.split()]
+    return [option for option in options_of(verb) if verb not in option.silent_verbs.split()]
 
 
 def virtual_names() -> list[str]:
     """Return the names in the code of the options for a virtual robot of the command."""
-    return [option.name for option in OPTIONS if option.virtual]
+    return [option.name for option in OPTIONS if option.is_virtual]

@@ -36,22 +36,22 @@ VERBS: dict[str, str] = {
 class Step(NamedTuple):
     """What a verb does besides, where it is followed by more: `tsc doctor --ports`.
 
-    `typed` is that command; the last of its flags chooses the step, and so do `flags`.
+    `command_text` is that command; the last of its flags chooses the step, and so do `flags`.
     """
 
-    typed: str
+    command_text: str
     flags: str = ""
 
     @property
     def head(self) -> str:
         """The words that come first, without a flag: `set owner`."""
-        return self.typed.partition(" -")[0]
+        return self.command_text.partition(" -")[0]
 
     @property
-    def choosers(self) -> list[str]:
+    def selecting_flags(self) -> list[str]:
         """The flags of which one chooses the step; none where its words do."""
-        own = [word for word in self.typed.split() if word.startswith("-")]
-        return [*own, *self.flags.split()]
+        own_flags = [word for word in self.command_text.split() if word.startswith("-")]
+        return [*own_flags, *self.flags.split()]
 
 
 # Each command is a module of `cli/commands/`: a verb, or a step of one by its name there.
@@ -106,16 +106,16 @@ def verb_text(key: str, language: str) -> str:
 
 def command_words(command: str) -> str:
     """Return what is typed after `tsc` for a command: `doctor --ports`."""
-    return STEPS[command].typed if command in STEPS else command
+    return STEPS[command].command_text if command in STEPS else command
 
 
 def steps_of(command: str) -> list[str]:
     """Return what begins with a command: the steps of a verb, `set owner --list` of `set owner`."""
-    begin = f"{command_words(command)} "
+    prefix = f"{command_words(command)} "
     return [
         name
         for name, step in STEPS.items()
-        if name != command and f"{step.head} ".startswith(begin)
+        if name != command and f"{step.head} ".startswith(prefix)
     ]
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from tiniscript.base.kit import Device
-from tiniscript.robots.driver import Plan
+from tiniscript.robots.driver import DriverPlan
 from tiniscript.robots.drivers import actuator_of, motors_of, sensor_of
 from tiniscript.robots.profile import Robot, Wiring
 
 
-class SketchPlan(Plan):
+class SketchPlan(DriverPlan):
     """Writes what the program uses of a robot."""
 
     def __init__(self, robot: Robot, label: Callable[[str], str], is_exact: bool) -> None:

@@ -304,7 +304,7 @@ class _Sketch:
 
     def setup_lines(self) -> list[str]:
         """Return what setup() does first."""
-        lines = list(self.plan.begin)
+        lines = list(self.plan.begin_lines)
         if self.needs_serial():
             lines.append(f"Serial.begin({self.robot.board.baud});")
         lines.append("pinMode($START_BUTTON_$PIN, INPUT_PULLUP);")
@@ -327,7 +327,7 @@ class _Sketch:
         )
 
     def halt_code(self) -> str:
-        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off, "while (true) {"]
+        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off_lines, "while (true) {"]
         body = "\n".join(f"  {line}" for line in lines)
         code = f"void $halt() {{\n{body}\n  }}\n}}"
         return code if self.robot.board.buzzer is not None else _silent(code)
@@ -380,10 +380,10 @@ class _Sketch:
         return "\n".join(comment_lines) + "\n"
 
     def constants(self) -> str:
-        if not self.plan.constants:
+        if not self.plan.constant_lines:
             return ""
         heading = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
-        return "\n".join([heading, *self.plan.constants]) + "\n"
+        return "\n".join([heading, *self.plan.constant_lines]) + "\n"
 
     def number_struct(self) -> str:
         return self.with_comment(

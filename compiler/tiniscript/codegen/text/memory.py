@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import read_literal
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
-from tiniscript.base.words import FUNCTIONS, TASKS, WAYS, WORDS, Word
+from tiniscript.base.words import EXTENTS, FUNCTIONS, TASKS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
@@ -392,7 +392,7 @@ class Reader:
                 self.take()
                 self.binary(*BINARY[token.text])
                 return True
-            if token.kind is WORD and token.text in WAYS:
+            if token.kind is WORD and token.text in EXTENTS:
                 self.take()
                 self.has_extent_unit = True
             self.reduce(OPEN + 1)

@@ -19,7 +19,7 @@ from typing import IO, NamedTuple
 from zlib import crc32
 
 from tiniscript.base import files
-from tiniscript.base.files import contents
+from tiniscript.base.files import read_limited
 from tiniscript.link.port_names import canonical_port
 
 FILE_BYTES = 4096
@@ -210,7 +210,7 @@ def _read(path: Path) -> Registration | None:
             about = path.parent.stat()
             if about.st_uid != os.geteuid() or about.st_mode & 0o077:
                 return None
-        fields = json.loads(contents(path, FILE_BYTES))
+        fields = json.loads(read_limited(path, FILE_BYTES))
         fields.setdefault("is_alias", False)  # older versions have no aliases
         registration = Registration(*(fields[name] for name in Registration._fields))
     except (OSError, ValueError, TypeError, KeyError, AttributeError,

@@ -11,16 +11,16 @@ from tiniscript.robots.driver import (
     FULL_COUNT,
     MOTOR_BATTERY,
     PULL_DOWN,
-    Part,
+    DriverPlan,
+    HeaderPart,
     PinKey,
-    Plan,
     SensorDriver,
     Setting,
     Shape,
     Terminal,
-    in_limits,
-    module,
-    photoresistor,
+    limit_lines,
+    module_shape,
+    photoresistor_shape,
 )
 from tiniscript.robots.profile import Wiring
 
@@ -32,7 +32,7 @@ class Analog(SensorDriver):
     """
 
     name = "analog"
-    profile = "pin; zero and full: what 0 V and the highest voltage mean (0 and 1023)"
+    profile_help = "pin; zero and full: what 0 V and the highest voltage mean (0 and 1023)"
     used_by = "sensors number"
     pins = (PinKey("pin", "analog"),)
     settings = (
@@ -40,27 +40,27 @@ class Analog(SensorDriver):
         Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000),
     )
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         zero, full = wiring.settings["zero"], wiring.settings["full"]
-        step, rest = divmod(full - zero, FULL_COUNT)
+        step, remainder = divmod(full - zero, FULL_COUNT)
         lowest, highest = sorted((zero, full))
         return [
             part.analog_read(wiring),
-            f"      *value = analog_scaled(*value, {zero}, {step}, {rest});",
-            *in_limits(device, lowest, highest),
+            f"      *value = analog_scaled(*value, {zero}, {step}, {remainder});",
+            *limit_lines(device, lowest, highest),
             "      return true;",
         ]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         if self.is_count(device, wiring):
             return [f"{name} = analogRead({pin});"]
         zero_volts, full_volts = wiring.settings["zero"], wiring.settings["full"]
-        step, rest = divmod(full_volts - zero_volts, FULL_COUNT)
+        step, remainder = divmod(full_volts - zero_volts, FULL_COUNT)
         lowest, highest = sorted((zero_volts, full_volts))
-        value = f"{zero_volts} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
+        value = f"{zero_volts} + $counted * {step} + ($counted * {remainder} + 511) / {FULL_COUNT}"
         if device.low <= lowest and highest <= device.high:
             return [f"long $counted = analogRead({pin});", f"{name} = {plan.value(value)};"]
         limits = f"constrain($value, {device.low}, {device.high})"
@@ -71,16 +71,18 @@ class Analog(SensorDriver):
         ]
 
     def is_count(self, device: Device, wiring: Wiring) -> bool:
-        is_plain = (wiring.settings["zero"], wiring.settings["full"]) == (0, FULL_COUNT * ONE)
-        return is_plain and device.low <= 0 and device.high >= FULL_COUNT * ONE
+        is_raw = (wiring.settings["zero"], wiring.settings["full"]) == (0, FULL_COUNT * ONE)
+        return is_raw and device.low <= 0 and device.high >= FULL_COUNT * ONE
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
-        if sensed == "light":
-            return photoresistor()
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
+        if sensed_kind == "light":
+            return photoresistor_shape()
         full = wiring.settings["full"]
         if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:
             return _divided_voltage(device, full, pin_volts)
-        return module("OUT", "need_analog", "mind_analog")
+        return module_shape("OUT", "need_analog", "mind_analog")
 
 
 def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
@@ -88,8 +90,8 @@ def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
     upper = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
     is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
-    source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)
-    return Shape("voltage", "", (source,), notes=("mind_voltage",))
+    source = Terminal(name, "pin", ground_resistor=PULL_DOWN, far_resistor=upper)
+    return Shape("voltage", "", (source,), note_keys=("mind_voltage",))
 
 
 DRIVER = Analog()

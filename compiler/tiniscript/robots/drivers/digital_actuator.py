@@ -3,37 +3,47 @@
 from __future__ import annotations
 
 from tiniscript.base.kit import Device
-from tiniscript.robots.driver import ActuatorDriver, Part, PinKey, Plan, Setting, Shape, lamp
+from tiniscript.robots.driver import (
+    ActuatorDriver,
+    DriverPlan,
+    HeaderPart,
+    PinKey,
+    Setting,
+    Shape,
+    lamp_shape,
+)
 from tiniscript.robots.profile import Wiring
 
 
 class DigitalActuator(ActuatorDriver):
     name = "digital"
-    profile = "pin; yes_is_low = true"
+    profile_help = "pin; yes_is_low = true"
     used_by = "actuators yes/no"
     pins = (PinKey("pin", "output"),)
     settings = (Setting("yes_is_low", "yes/no"),)
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, is_on_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
         off = "true" if is_on_low else "false"
-        part.begin.append(f"begin_output({pin}, {off});")
-        part.off.append(f"write({pin}, {off});  // {device.name}")
+        part.begin_lines.append(f"begin_output({pin}, {off});")
+        part.off_lines.append(f"write({pin}, {off});  // {device.name}")
         condition = "value == 0" if is_on_low else "value != 0"
         return [f"      write({pin}, {condition});", "      return;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
-        plan.off.append(f"digitalWrite({pin}, {off});")
+        plan.off_lines.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
-            plan.begin.insert(-1, f"digitalWrite({pin}, {off});")
+            plan.begin_lines.insert(-1, f"digitalWrite({pin}, {off});")
         return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
-        return lamp(bool(wiring.settings.get("yes_is_low")))
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
+        return lamp_shape(bool(wiring.settings.get("yes_is_low")))
 
 
 DRIVER = DigitalActuator()

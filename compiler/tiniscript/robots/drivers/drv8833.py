@@ -15,14 +15,14 @@ from tiniscript.robots.drivers.two_wire import TwoWire
 
 class DRV8833(TwoWire):
     name = "drv8833"
-    looks = Shape(
+    fixed_shape = Shape(
         "bridge",
         "need_drv8833",
         (
-            Terminal("IN1", "left_forward", to_ground=PULL_DOWN),
-            Terminal("IN2", "left_backward", to_ground=PULL_DOWN),
-            Terminal("IN3", "right_forward", to_ground=PULL_DOWN),
-            Terminal("IN4", "right_backward", to_ground=PULL_DOWN),
+            Terminal("IN1", "left_forward", ground_resistor=PULL_DOWN),
+            Terminal("IN2", "left_backward", ground_resistor=PULL_DOWN),
+            Terminal("IN3", "right_forward", ground_resistor=PULL_DOWN),
+            Terminal("IN4", "right_backward", ground_resistor=PULL_DOWN),
             Terminal("EEP", rail=BOARD_5V),
             Terminal("VCC", rail=MOTOR_BATTERY),
             Terminal("GND", rail=GROUND),
@@ -31,7 +31,7 @@ class DRV8833(TwoWire):
         "DRV8833",
         ("OUT1, OUT2", "OUT3, OUT4"),
         ("mind_drv8833",),
-        power="power_volts_drv8833",
+        power_key="power_volts_drv8833",
     )
 
 

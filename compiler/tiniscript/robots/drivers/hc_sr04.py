@@ -7,25 +7,25 @@ from tiniscript.base.kit import Device
 from tiniscript.robots.driver import (
     BOARD_5V,
     GROUND,
-    Part,
+    DriverPlan,
+    HeaderPart,
     PinKey,
-    Plan,
     SensorDriver,
     Shape,
     Terminal,
-    in_limits,
+    limit_lines,
 )
 from tiniscript.robots.profile import Wiring
 
-FARTHEST = 400 * ONE  # reading without an echo
+FARTHEST_DISTANCE = 400 * ONE  # reading without an echo
 
 
 class HcSr04(SensorDriver):
     name = "hc_sr04"
-    profile = "trigger, echo; in cm"
+    profile_help = "trigger, echo; in cm"
     used_by = "sensors number"
     pins = (PinKey("trigger", "output"), PinKey("echo", "echo"))
-    looks = Shape(
+    fixed_shape = Shape(
         "sonar",
         "need_hc_sr04",
         (
@@ -35,22 +35,22 @@ class HcSr04(SensorDriver):
             Terminal("GND", rail=GROUND),
         ),
         "HC-SR04",
-        notes=("mind_hc_sr04",),
+        note_keys=("mind_hc_sr04",),
         needs_5v=True,
     )
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         trigger = part.pins.pin(wiring.pins["trigger"])
-        part.begin.append(f"begin_output({trigger}, false);")
-        part.ultrasonics.append(f"{{{trigger}, {part.pins.echo(wiring.pins['echo'])}}}")
+        part.begin_lines.append(f"begin_output({trigger}, false);")
+        part.ultrasonic_texts.append(f"{{{trigger}, {part.pins.echo(wiring.pins['echo'])}}}")
         return [
-            f"      if (!ultrasonic_read({len(part.ultrasonics) - 1}, value)) return false;",
-            *in_limits(device, 0, FARTHEST),
+            f"      if (!ultrasonic_read({len(part.ultrasonic_texts) - 1}, value)) return false;",
+            *limit_lines(device, 0, FARTHEST_DISTANCE),
             "      return true;",
         ]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         trigger = f"{device.name}_$TRIGGER_$PIN"
         plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", comment)
@@ -61,7 +61,7 @@ class HcSr04(SensorDriver):
             first_lines = ["static unsigned long $own_ping = -60;"]
             own_condition = " && millis() - $own_ping < 58"
             last_lines = ["$own_ping = $last_ping;"]
-        farthest = min(FARTHEST, device.high)
+        farthest = min(FARTHEST_DISTANCE, device.high)
         return [
             *first_lines,
             f"if (millis() - $last_ping < 30{own_condition}) return {name};",

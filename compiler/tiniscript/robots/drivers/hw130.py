@@ -14,10 +14,10 @@ from tiniscript.robots.driver import (
     GROUND,
     MOTOR_BATTERY,
     SIDES,
+    DriverPlan,
+    HeaderPart,
     MotorDriver,
-    Part,
     PinKey,
-    Plan,
     Setting,
     Shape,
     Terminal,
@@ -47,13 +47,16 @@ REGISTER = {"latch": 12, "enable": 7, "data": 8, "clock": 4}
 
 class Hw130(MotorDriver):
     name = "hw130"
-    profile = (
+    profile_help = (
         'left, right: one motor of M1 to M4, or two, "M1 M2" (M3 and M4); the shield has pins 4, '
         "7, 8 and 12, and of its motors M1 11, M2 3, M3 6, M4 5"
     )
     module = "motors_shift_register"
     pins = (
-        *(PinKey(key, "output", fixed=pin, name=key.upper()) for key, pin in REGISTER.items()),
+        *(
+            PinKey(key, "output", fixed_number=pin, name=key.upper())
+            for key, pin in REGISTER.items()
+        ),
         *(
             PinKey(f"{side}_{name.lower()}", "pwm", True, channel.pwm, name)
             for side in SIDES
@@ -71,17 +74,17 @@ void $drive_motor(int pwmPin, int percent) {
   analogWrite(pwmPin, abs(percent) * 255L / 100);
 }"""
 
-    def chosen_by(self, key: str, settings: Mapping[str, int]) -> str:
+    def choosing_key(self, key: str, settings: Mapping[str, int]) -> str:
         if key in REGISTER:
             return "driver"
         side, _, motor = key.partition("_")
-        return side if motor.upper() in _at(side, settings) else ""
+        return side if motor.upper() in _motors_of_side(side, settings) else ""
 
-    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         pins = ", ".join(part.pins.pin(wiring.pins[key]) for key in REGISTER)
         lines = [f"constexpr ShiftRegister kDirections = {{{pins}}};"]
         for side in SIDES:
-            motors = _at(side, wiring.settings)
+            motors = _motors_of_side(side, wiring.settings)
             pwms = [part.pins.pwm(CHANNELS[motor].pwm) for motor in motors]
             pwms += ["kNoPwm"] * (2 - len(pwms))
             bits = ", ".join(f"0x{bits:02x}" for bits in _bits(motors))
@@ -89,25 +92,27 @@ void $drive_motor(int pwmPin, int percent) {
             lines.append(f"    {{{', '.join(pwms)}, {bits}}};")
         return lines
 
-    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         names = {key: plan.pin(f"$SHIELD_{key.upper()}_$PIN", wiring.pins[key], "OUTPUT")
                  for key in REGISTER}  # fmt: skip
-        ways, lines = [], []
+        direction_terms, lines = [], []
         for side in SIDES:
-            motors = _at(side, wiring.settings)
+            motors = _motors_of_side(side, wiring.settings)
             forward, backward = (f"0x{bits:02x}" for bits in _bits(motors))
-            ways.append(f"({side} < 0 ? {backward} : {forward})")
+            direction_terms.append(f"({side} < 0 ? {backward} : {forward})")
             for motor in motors:
                 pwm = plan.pin(f"{motor}_$PIN", CHANNELS[motor].pwm, "OUTPUT")
                 lines.append(f"  $drive_motor({pwm}, {side});")
         return [
             f"  digitalWrite({names['latch']}, LOW);",
-            f"  shiftOut({names['data']}, {names['clock']}, MSBFIRST, {' | '.join(ways)});",
+            f"  shiftOut({names['data']}, {names['clock']}, MSBFIRST, {' | '.join(direction_terms)});",
             f"  digitalWrite({names['latch']}, HIGH);",
             *lines,
         ]
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
         wired_pins = [pin for pin in self.pins if pin.key in wiring.pins]
         return Shape(
             "bridge",
@@ -118,14 +123,14 @@ void $drive_motor(int pwmPin, int percent) {
                 Terminal("EXT_PWR GND", rail=GROUND),
             ),
             "L293D",
-            tuple(", ".join(_at(side, wiring.settings)) for side in SIDES),
+            tuple(", ".join(_motors_of_side(side, wiring.settings)) for side in SIDES),
             ("mind_hw130", "mind_hw130_power"),
             ("check_hw130",),
-            power="power_volts_bridge",
+            power_key="power_volts_bridge",
         )
 
 
-def _at(side: str, settings: Mapping[str, int]) -> list[str]:
+def _motors_of_side(side: str, settings: Mapping[str, int]) -> list[str]:
     """Return the motors of a side, `["M1", "M2"]`."""
     return CHOICES[settings[side]].split()
 

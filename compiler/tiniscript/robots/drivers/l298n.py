@@ -7,16 +7,16 @@ from tiniscript.robots.driver import GROUND, MOTOR_BATTERY, PULL_DOWN, Bridge, S
 
 class L298N(Bridge):
     name = "l298n"
-    looks = Shape(
+    fixed_shape = Shape(
         "bridge",
         "need_l298n",
         (
-            Terminal("ENA", "left_pwm", to_ground=PULL_DOWN),
+            Terminal("ENA", "left_pwm", ground_resistor=PULL_DOWN),
             Terminal("IN1", "left_forward"),
             Terminal("IN2", "left_backward"),
             Terminal("IN3", "right_forward"),
             Terminal("IN4", "right_backward"),
-            Terminal("ENB", "right_pwm", to_ground=PULL_DOWN),
+            Terminal("ENB", "right_pwm", ground_resistor=PULL_DOWN),
             Terminal("+12V", rail=MOTOR_BATTERY),
             Terminal("GND", rail=GROUND),
             Terminal("5V"),

@@ -3,30 +3,30 @@
 from __future__ import annotations
 
 from tiniscript.base.kit import Device
-from tiniscript.robots.driver import ActuatorDriver, Part, PinKey, Plan, lamp
+from tiniscript.robots.driver import ActuatorDriver, DriverPlan, HeaderPart, PinKey, lamp_shape
 from tiniscript.robots.profile import Wiring
 
 
 class PwmActuator(ActuatorDriver):
     name = "pwm"
-    profile = "pin"
+    profile_help = "pin"
     used_by = "actuators number"
     pins = (PinKey("pin", "pwm"),)
-    looks = lamp(is_on_low=False)
+    fixed_shape = lamp_shape(is_on_low=False)
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, pwm = part.pins.pin(wiring.pins["pin"]), part.pins.pwm(wiring.pins["pin"])
         begin = f"begin_pwm(Pwm{pwm});" if part.is_esp32 else f"begin_output({pin}, false);"
-        part.begin.append(begin)
-        part.off.append(f"disconnect(Pwm{pwm});  // {device.name}")
+        part.begin_lines.append(begin)
+        part.off_lines.append(f"disconnect(Pwm{pwm});  // {device.name}")
         share = part.part_of_range(device, 0, 255)
         return [f"      connect(Pwm{pwm}, {share});", "      return;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)
-        plan.off.append(f"analogWrite({pin}, 0);")
+        plan.off_lines.append(f"analogWrite({pin}, 0);")
         share = plan.part_of(device, 0, 255)
         return f"void {function}(long value) {{\n  analogWrite({pin}, {share});\n}}"
 

@@ -24,7 +24,7 @@ class PwmDir(Bridge):
     """A pin for forward that is high turns the motor forward, and backward while it is low."""
 
     name = "pwm_dir"
-    profile = (
+    profile_help = (
         "left_pwm, left_forward and the same for right: high is forward, low is backward; "
         "standby, if it is wired"
     )
@@ -43,19 +43,21 @@ void $drive_motor(int pwmPin, int forwardPin, int percent) {
   analogWrite(pwmPin, abs(percent) * 255L / 100);
 }"""
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
         has_standby = "standby" in wiring.pins
         enable = "" if has_standby else PULL_DOWN
-        standby = [Terminal("STBY", "standby", to_ground=PULL_DOWN)] if has_standby else []
+        standby = [Terminal("STBY", "standby", ground_resistor=PULL_DOWN)] if has_standby else []
         return Shape(
             "bridge",
             "need_pwm_dir",
             (
-                Terminal("PWMA", "left_pwm", to_ground=enable),
+                Terminal("PWMA", "left_pwm", ground_resistor=enable),
                 Terminal("DIRA", "left_forward"),
                 *standby,
                 Terminal("DIRB", "right_forward"),
-                Terminal("PWMB", "right_pwm", to_ground=enable),
+                Terminal("PWMB", "right_pwm", ground_resistor=enable),
                 Terminal("VM", rail=MOTOR_BATTERY),
                 Terminal("VCC", rail=BOARD_5V),
                 Terminal("GND", rail=GROUND),
@@ -63,7 +65,7 @@ void $drive_motor(int pwmPin, int forwardPin, int percent) {
             "PWM, DIR",
             ("AO1, AO2", "BO1, BO2"),
             ("mind_pwm_dir",),
-            power="power_volts_pwm_dir",
+            power_key="power_volts_pwm_dir",
         )
 
 

@@ -6,12 +6,12 @@ from tiniscript.base.kit import Device
 from tiniscript.robots.driver import (
     AT_STOP,
     GROUND,
-    HOLD,
+    HOLD_CHOICE,
     SERVO_SUPPLY,
     ActuatorDriver,
-    Part,
+    DriverPlan,
+    HeaderPart,
     PinKey,
-    Plan,
     Setting,
     Shape,
     Terminal,
@@ -21,7 +21,7 @@ from tiniscript.robots.profile import Wiring
 
 class Servo(ActuatorDriver):
     name = "servo"
-    profile = (
+    profile_help = (
         'pin; low_us and high_us: the pulse at the ends of its range; at_stop = "release", or '
         '"hold" where it shall stay as it is when a program is stopped'
     )
@@ -32,7 +32,7 @@ class Servo(ActuatorDriver):
         Setting("high_us", "whole", 2000, 500, 2500),
         Setting(AT_STOP, "choice", words=("release", "hold")),
     )
-    looks = Shape(
+    fixed_shape = Shape(
         "servo",
         "need_servo",
         (
@@ -40,26 +40,26 @@ class Servo(ActuatorDriver):
             Terminal("plus", rail=SERVO_SUPPLY),
             Terminal("minus", rail=GROUND),
         ),
-        notes=("mind_servo_supply",),
+        note_keys=("mind_servo_supply",),
     )
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
-        part.servos.append(wiring.pins["pin"])
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+        part.servo_pins.append(wiring.pins["pin"])
         pulse = part.part_of_range(device, wiring.settings["low_us"], wiring.settings["high_us"])
-        number = len(part.servos) - 1
-        condition = "if (is_stalled) " if wiring.settings[AT_STOP] == HOLD else ""
-        part.off.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
+        number = len(part.servo_pins) - 1
+        condition = "if (is_stalled) " if wiring.settings[AT_STOP] == HOLD_CHOICE else ""
+        part.off_lines.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
         return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         number = plan.servo(pin)
-        first, last = wiring.settings["low_us"], wiring.settings["high_us"]
-        if wiring.settings[AT_STOP] != HOLD:
-            plan.off.append(f"$servo_pulse({number}, 0, 0);")
-        call = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
+        low_us, high_us = wiring.settings["low_us"], wiring.settings["high_us"]
+        if wiring.settings[AT_STOP] != HOLD_CHOICE:
+            plan.off_lines.append(f"$servo_pulse({number}, 0, 0);")
+        call = f"$servo_pulse({number}, {plan.part_of(device, low_us, high_us)}, 0);"
         return f"void {function}(long value) {{\n  {call}\n}}"
 
 

@@ -6,22 +6,22 @@ from tiniscript.robots.driver import (
     GROUND,
     SERVO_SUPPLY,
     SIDES,
+    DriverPlan,
+    HeaderPart,
     MotorDriver,
-    Part,
     PinKey,
-    Plan,
     Setting,
     Shape,
     Terminal,
 )
 from tiniscript.robots.profile import Wiring
 
-_STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
+_STILL_SETTING = Setting("left_still_us", "whole", 1500, 1000, 2000)
 
 
 class Servos(MotorDriver):
     name = "servos"
-    profile = (
+    profile_help = (
         "left_pin, right_pin of servos that turn without end; left_reversed, right_reversed, "
         "left_still_us, right_still_us"
     )
@@ -30,8 +30,8 @@ class Servos(MotorDriver):
     settings = (
         Setting("left_reversed", "yes/no"),
         Setting("right_reversed", "yes/no", 1),
-        _STILL,
-        _STILL._replace(key="right_still_us"),
+        _STILL_SETTING,
+        _STILL_SETTING._replace(key="right_still_us"),
     )
     drive = """\
 void $drive_motor(byte servo, int percent, unsigned int stillUs) {
@@ -41,7 +41,7 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
     $servo_pulse(servo, stillUs, 50);
   }
 }"""
-    looks = Shape(
+    fixed_shape = Shape(
         "servo",
         "need_servos",
         (
@@ -52,25 +52,27 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
             Terminal("right_plus", rail=SERVO_SUPPLY),
             Terminal("right_minus", rail=GROUND),
         ),
-        notes=("mind_servo_supply", "mind_servos"),
+        note_keys=("mind_servo_supply", "mind_servos"),
     )
 
-    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         lines = []
         for number, side in enumerate(SIDES):
-            part.servos.append(wiring.pins[f"{side}_pin"])
-            still, name = wiring.settings[f"{side}_still_us"], f"k{side.capitalize()}Motor"
-            reverse = "true" if wiring.settings[f"{side}_reversed"] else "false"
-            lines.append(f"constexpr TurningServo {name} = {{{number}, {still}, {reverse}}};")
+            part.servo_pins.append(wiring.pins[f"{side}_pin"])
+            still_us, name = wiring.settings[f"{side}_still_us"], f"k{side.capitalize()}Motor"
+            is_reversed = "true" if wiring.settings[f"{side}_reversed"] else "false"
+            lines.append(
+                f"constexpr TurningServo {name} = {{{number}, {still_us}, {is_reversed}}};"
+            )
         return lines
 
-    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         lines = []
         for side in SIDES:
-            wheel = plan.servo(plan.pin(f"${side.upper()}_$PIN", wiring.pins[f"{side}_pin"]))
+            servo_number = plan.servo(plan.pin(f"${side.upper()}_$PIN", wiring.pins[f"{side}_pin"]))
             sign = "-" if wiring.settings[f"{side}_reversed"] else ""
-            still = wiring.settings[f"{side}_still_us"]
-            lines.append(f"  $drive_motor({wheel}, {sign}{side}, {still});")
+            still_us = wiring.settings[f"{side}_still_us"]
+            lines.append(f"  $drive_motor({servo_number}, {sign}{side}, {still_us});")
         return lines
 
 

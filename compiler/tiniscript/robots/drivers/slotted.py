@@ -7,11 +7,11 @@ from tiniscript.robots.driver import BOARD_5V, GROUND, DiscDriver, Shape, Termin
 
 class Slotted(DiscDriver):
     name = "slotted"
-    profile = (
+    profile_help = (
         "left, right: pins that count, on an uno and a nano 2 and 3, on a mega also 18 to 21; "
         "holes of a disc, 20; wheel_cm, the diameter of a wheel, 6.5"
     )
-    looks = Shape(
+    fixed_shape = Shape(
         "disc",
         "need_slotted",
         (
@@ -21,8 +21,8 @@ class Slotted(DiscDriver):
             Terminal("GND", rail=GROUND),
         ),
         "FC-03",
-        notes=("mind_slotted", "mind_no_text"),
-        checks=("check_slotted",),
+        note_keys=("mind_slotted", "mind_no_text"),
+        check_keys=("check_slotted",),
     )
 
 

@@ -18,14 +18,16 @@ from tiniscript.robots.profile import Wiring
 
 class TB6612(Bridge):
     name = "tb6612"
-    profile = f"{Bridge.profile}; standby, if it is wired"
+    profile_help = f"{Bridge.profile_help}; standby, if it is wired"
     pins = (*Bridge.pins, PinKey("standby", "output", True))
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
         has_standby = "standby" in wiring.pins
         enable = "" if has_standby else PULL_DOWN
         standby = (
-            Terminal("STBY", "standby", to_ground=PULL_DOWN)
+            Terminal("STBY", "standby", ground_resistor=PULL_DOWN)
             if has_standby
             else Terminal("STBY", rail=BOARD_5V)
         )
@@ -33,13 +35,13 @@ class TB6612(Bridge):
             "bridge",
             "need_tb6612",
             (
-                Terminal("PWMA", "left_pwm", to_ground=enable),
+                Terminal("PWMA", "left_pwm", ground_resistor=enable),
                 Terminal("AIN1", "left_forward"),
                 Terminal("AIN2", "left_backward"),
                 standby,
                 Terminal("BIN1", "right_forward"),
                 Terminal("BIN2", "right_backward"),
-                Terminal("PWMB", "right_pwm", to_ground=enable),
+                Terminal("PWMB", "right_pwm", ground_resistor=enable),
                 Terminal("VM", rail=MOTOR_BATTERY),
                 Terminal("VCC", rail=BOARD_5V),
                 Terminal("GND", rail=GROUND),
@@ -47,7 +49,7 @@ class TB6612(Bridge):
             "TB6612",
             ("AO1, AO2", "BO1, BO2"),
             ("mind_tb6612_standby" if has_standby else "mind_tb6612_no_standby", "mind_tb6612"),
-            power="power_volts_tb6612",
+            power_key="power_volts_tb6612",
         )
 
 

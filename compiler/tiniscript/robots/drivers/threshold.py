@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from tiniscript.base.kit import Device
 from tiniscript.robots.driver import (
-    Part,
+    DriverPlan,
+    HeaderPart,
     PinKey,
-    Plan,
     SensorDriver,
     Setting,
     Shape,
-    module,
-    photoresistor,
+    module_shape,
+    photoresistor_shape,
 )
 from tiniscript.robots.profile import Wiring
 
 
 class Threshold(SensorDriver):
     name = "threshold"
-    profile = "pin, analog; threshold of 1023, yes_is_low = true"
+    profile_help = "pin, analog; threshold of 1023, yes_is_low = true"
     used_by = "sensors yes/no"
     pins = (PinKey("pin", "analog"),)
     settings = (
@@ -26,20 +26,26 @@ class Threshold(SensorDriver):
         Setting("yes_is_low", "yes/no"),
     )
 
-    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
-        compare = "<" if wiring.settings["yes_is_low"] else ">="
-        settled = f"      *value = *value {compare} {wiring.settings['threshold']};"
-        return [part.analog_read(wiring), settled, "      return true;"]
+    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+        operator = "<" if wiring.settings["yes_is_low"] else ">="
+        comparison = f"      *value = *value {operator} {wiring.settings['threshold']};"
+        return [part.analog_read(wiring), comparison, "      return true;"]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
+        self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
-        sign = "<" if wiring.settings["yes_is_low"] else ">="
-        return [f"{name} = analogRead({pin}) {sign} {wiring.settings['threshold']};"]
+        operator = "<" if wiring.settings["yes_is_low"] else ">="
+        return [f"{name} = analogRead({pin}) {operator} {wiring.settings['threshold']};"]
 
-    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
-        return photoresistor() if sensed == "light" else module("A0", "need_threshold")
+    def shape(
+        self, wiring: Wiring, device: Device | None, sensed_kind: str, pin_volts: int
+    ) -> Shape:
+        return (
+            photoresistor_shape()
+            if sensed_kind == "light"
+            else module_shape("A0", "need_threshold")
+        )
 
 
 DRIVER = Threshold()

@@ -7,12 +7,12 @@ from tiniscript.robots.driver import BOARD_5V, GROUND, DiscDriver, PinKey, Shape
 
 class TwoChannel(DiscDriver):
     name = "two_channel"
-    profile = (
+    profile_help = (
         "what slotted has, and left_b, right_b: it sees a wheel that turns back; holes are pulses"
     )
     pins = (*DiscDriver.pins, PinKey("left_b", "input"), PinKey("right_b", "input"))
-    has_two = True
-    looks = Shape(
+    has_two_channels = True
+    fixed_shape = Shape(
         "disc",
         "need_two_channel",
         (
@@ -24,8 +24,8 @@ class TwoChannel(DiscDriver):
             Terminal("GND", rail=GROUND),
         ),
         "A, B",
-        notes=("mind_two_channel", "mind_no_text"),
-        checks=("check_slotted",),
+        note_keys=("mind_two_channel", "mind_no_text"),
+        check_keys=("check_slotted",),
     )
 
 

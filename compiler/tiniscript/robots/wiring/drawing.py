@@ -13,12 +13,12 @@ from unicodedata import east_asian_width
 from tiniscript.robots.driver import GROUND
 from tiniscript.robots.wiring import layout as places
 from tiniscript.robots.wiring.headers import ROW_AT_THE_END, SIDES
-from tiniscript.robots.wiring.layout import LEFT, RIGHT, STEP, ZONE, Box, Layout, Pin, Route
+from tiniscript.robots.wiring.layout import LEFT, RIGHT, STEP, ZONE_WIDTH, Box, Layout, Pin, Route
 from tiniscript.robots.wiring.parts import BOARD_RAILS, ICONS, RAILS
 from tiniscript.robots.wiring.plan import End, Plan, Wire
 from tiniscript.robots.wiring.texts import text
 
-INKS = {
+WIRE_COLOURS = {
     "orange": "#e67300",
     "green": "#1a8f3c",
     "blue": "#1f5fd0",
@@ -27,15 +27,21 @@ INKS = {
     "grey": "#777777",
     "brown": "#7a4a21",
 }
-RAIL_INKS = {"5V": "#c81e1e", "3V3": "#e0702c", "GND": "#111111", "M+": "#a03060", "S+": "#a06000"}
-LINE = "#333333"
+RAIL_COLOURS = {
+    "5V": "#c81e1e",
+    "3V3": "#e0702c",
+    "GND": "#111111",
+    "M+": "#a03060",
+    "S+": "#a06000",
+}
+LINE_COLOUR = "#333333"
 LEGEND_STEP = 24
 FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
 # How far from a part's edge things are, in the zone beside it.
-AT_TAG, AT_NEAR, AT_DOT, AT_FAR = 26, 65, 94, 118
-SMALLEST = 0.65  # a text is made smaller to this part of its size, and then cut
-NARROW = frozenset("iljtfrI1.,:;'|()[] ")
-WIDE = frozenset("WFA")
+TAG_DISTANCE, NEAR_DISTANCE, DOT_DISTANCE, FAR_DISTANCE = 26, 65, 94, 118
+LEAST_SCALE = 0.65  # a text is made smaller to this part of its size, and then cut
+NARROW_LETTERS = frozenset("iljtfrI1.,:;'|()[] ")
+WIDE_CLASSES = frozenset("WFA")
 
 
 def drawing_of(plan: Plan) -> str:
@@ -78,15 +84,15 @@ def svg_of(plan: Plan, title_key: str, size: tuple[int, int], parts: Iterable[st
 
 def _width(text: str, size: float) -> float:
     """Return about how wide a text is, rather too wide."""
-    return sum(size * _part_of_size(sign) for sign in text)
+    return sum(size * _part_of_size(letter) for letter in text)
 
 
-def _part_of_size(sign: str) -> float:
-    if sign in NARROW:
+def _part_of_size(letter: str) -> float:
+    if letter in NARROW_LETTERS:
         return 0.4
-    if east_asian_width(sign) in WIDE:
+    if east_asian_width(letter) in WIDE_CLASSES:
         return 1.1
-    return 0.78 if sign.isupper() or sign in "mw%…" else 0.67
+    return 0.78 if letter.isupper() or letter in "mw%…" else 0.67
 
 
 def text_at(
@@ -94,18 +100,19 @@ def text_at(
     style: str = "",
 ) -> str:  # fmt: skip
     """Return a text that takes at most `room`: smaller where it must be, and cut at the least."""
-    label = "".join(sign for sign in label if sign.isprintable())
-    while _width(label, size) * SMALLEST > room:
+    label = "".join(letter for letter in label if letter.isprintable())
+    while _width(label, size) * LEAST_SCALE > room:
         label = label.rstrip("…")[:-1] + "…"
     size = min(size, size * room / (_width(label, size) or 1))
-    smaller = f' font-size="{size:.3g}"' if size != 14 else ""
+    size_attribute = f' font-size="{size:.3g}"' if size != 14 else ""
     return (
-        f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{smaller}{style}>{escape(label)}</text>'
+        f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{size_attribute}{style}>'
+        f"{escape(label)}</text>"
     )
 
 
-BOLD = ' font-weight="bold"'
-FAINT = ' fill="#666666"'
+BOLD_STYLE = ' font-weight="bold"'
+FAINT_STYLE = ' fill="#666666"'
 
 
 # -- the board
@@ -116,12 +123,18 @@ def _board(plan: Plan, layout: Layout) -> list[str]:
     middle = left + width / 2
     lines = [
         f'<rect x="{left}" y="{top}" width="{width}" height="{height}" rx="8" '
-        f'fill="#eef4f6" stroke="{LINE}" stroke-width="2"/>',
+        f'fill="#eef4f6" stroke="{LINE_COLOUR}" stroke-width="2"/>',
         f'<rect x="{middle - 22:g}" y="{top - 14}" width="44" height="24" rx="3" fill="#dddddd" '
-        f'stroke="{LINE}"/>',
+        f'stroke="{LINE_COLOUR}"/>',
         text_at("USB", middle, top + 3, 40, "middle", 13),
         text_at(
-            SIDES[plan.chip.name].name, middle, top + height - 14, width - 12, "middle", 15, BOLD
+            SIDES[plan.chip.name].name,
+            middle,
+            top + height - 14,
+            width - 12,
+            "middle",
+            15,
+            BOLD_STYLE,
         ),
     ]
     return lines
@@ -138,11 +151,11 @@ def _is_used(pin: Pin, plan: Plan) -> bool:
 
 def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
     """Return the marks of pins or terminals: those that are used, and those that stay free."""
-    result = sorted(outlines, reverse=True)
+    sorted_outlines = sorted(outlines, reverse=True)
     return [
-        f'<path d="{"".join(each for _, each in group)}" '
-        f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
-        for is_used, group in groupby(result, key=lambda each: each[0])
+        f'<path d="{"".join(path for _, path in group)}" '
+        f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE_COLOUR}"{style}/>'
+        for is_used, group in groupby(sorted_outlines, key=lambda path: path[0])
     ]
 
 
@@ -163,19 +176,21 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
         label = f"13 {text('lamp_on_board', plan.language)}"
         is_used = True
     anchor = "start" if pin.side == LEFT else "end"
-    style = BOLD if is_used else FAINT
+    style = BOLD_STYLE if is_used else FAINT_STYLE
     lines.append(text_at(label, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
     if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _tag_pin(pin.name, layout):
-        near, far = edge - 5 * inward, edge - 12 * inward
-        lines.append(line_to(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
+        near_x, far_x = edge - 5 * inward, edge - 12 * inward
+        lines.append(line_to(near_x, pin.y, far_x, pin.y, RAIL_COLOURS[pin.name]))
         lines.append(_tag(pin.name, edge - 29 * inward, pin.y))
     if pin.number in ROW_AT_THE_END and plan.chip.name == "mega":
-        first = min(
+        first_y = min(
             pin.y for pin in layout.pins if pin.number in ROW_AT_THE_END and pin.side == RIGHT
         )
-        if pin.y == first:
-            words = text("row_at_the_end", plan.language)
-            lines.append(text_at(words, edge - 10, pin.y - STEP + 5, 100, "end", 11, FAINT))
+        if pin.y == first_y:
+            sentence = text("row_at_the_end", plan.language)
+            lines.append(
+                text_at(sentence, edge - 10, pin.y - STEP + 5, 100, "end", 11, FAINT_STYLE)
+            )
     return lines
 
 
@@ -189,7 +204,7 @@ def _tag_pin(name: str, layout: Layout) -> Pin:
 
 def _wire(route: Route) -> str:
     points = " ".join(f"{x},{y}" for x, y in route.points)
-    ink = INKS[route.wire.colour]
+    ink = WIRE_COLOURS[route.wire.colour]
     return (
         f'<polyline points="{points}" fill="none" stroke="#ffffff" stroke-width="6"/>'
         f'<polyline points="{points}" fill="none" stroke="{ink}" stroke-width="2.5" '
@@ -200,9 +215,9 @@ def _wire(route: Route) -> str:
 def _numbers(route: Route) -> list[str]:
     """Return a wire's number at both of its ends."""
     (start, start_y), (end, end_y) = route.points[0], route.points[-1]
-    before = route.points[-2][0]
+    corner_x = route.points[-2][0]
     outward = 1 if route.points[1][0] > start else -1
-    onward = 1 if end > before else -1
+    onward = 1 if end > corner_x else -1
     return [
         _number(route.wire, start + 17 * outward, start_y),
         _number(route.wire, end + 10 * onward, end_y),
@@ -210,7 +225,7 @@ def _numbers(route: Route) -> list[str]:
 
 
 def _number(wire: Wire, x: int, y: int) -> str:
-    ink = INKS[wire.colour]
+    ink = WIRE_COLOURS[wire.colour]
     return (
         f'<circle cx="{x}" cy="{y}" r="9" fill="#ffffff" stroke="{ink}" stroke-width="2"/>'
         f'<text x="{x}" y="{y + 4}" text-anchor="middle" font-size="11">{wire.number}</text>'
@@ -228,20 +243,20 @@ def line_to(
 
 def _tag(rail: str, x: float, y: float) -> str:
     """Return the tag of a rail around a point. Ground is filled, so that it is told apart."""
-    ink = RAIL_INKS[rail]
-    fill, letters = (ink, "#ffffff") if rail == GROUND else ("#ffffff", ink)
+    ink = RAIL_COLOURS[rail]
+    fill, text_colour = (ink, "#ffffff") if rail == GROUND else ("#ffffff", ink)
     return (
         f'<rect x="{x - 17:g}" y="{y - 9:g}" width="34" height="18" rx="9" fill="{fill}" '
         f'stroke="{ink}" stroke-width="2"/>'
         f'<text x="{x:g}" y="{y + 4:g}" text-anchor="middle" font-size="11" font-weight="bold" '
-        f'fill="{letters}">{rail}</text>'
+        f'fill="{text_colour}">{rail}</text>'
     )
 
 
 def _resistor(value: str, x: float, y: float) -> str:
     return (
         f'<rect x="{x - 20:g}" y="{y - 8:g}" width="40" height="16" fill="#fdf6e3" '
-        f'stroke="{LINE}" stroke-width="1.5"/>'
+        f'stroke="{LINE_COLOUR}" stroke-width="1.5"/>'
         f'<text x="{x:g}" y="{y + 4:g}" text-anchor="middle" font-size="11">{value}</text>'
     )
 
@@ -253,18 +268,18 @@ def _box(box: Box, language: str) -> list[str]:
     part, icon = box.part, ICONS[box.part.shape.icon]
     outer = box.x + (32 if box.side == LEFT else places.PART_WIDTH - 32)
     middle = box.y + box.height - 30
-    inside = places.PART_WIDTH - 16
+    inner_width = places.PART_WIDTH - 16
     model = part.shape.model if part.is_device else ""
     title = f"{part.title} ({model})" if model else part.title
     lines = [
         f'<rect x="{box.x}" y="{box.y}" width="{places.PART_WIDTH}" height="{box.height}" rx="6" '
-        f'fill="#fafafa" stroke="{LINE}" stroke-width="2"/>',
-        text_at(title, box.x + 8, box.y + 18, inside, size=15, style=BOLD),
-        text_at(part.label, box.x + 8, box.y + 36, inside, size=13) if part.label else "",
-        f'<g transform="translate({outer} {middle:g})" fill="#ffffff" stroke="{LINE}" '
+        f'fill="#fafafa" stroke="{LINE_COLOUR}" stroke-width="2"/>',
+        text_at(title, box.x + 8, box.y + 18, inner_width, size=15, style=BOLD_STYLE),
+        text_at(part.label, box.x + 8, box.y + 36, inner_width, size=13) if part.label else "",
+        f'<g transform="translate({outer} {middle:g})" fill="#ffffff" stroke="{LINE_COLOUR}" '
         f'stroke-width="1.5">{icon}</g>',
     ]
-    if part.shape.motors:
+    if part.shape.motor_terminals:
         lines += _motors(box, language)
     for end, y in zip(part.ends, box.rows, strict=True):
         lines += _end(end, y, box)
@@ -275,36 +290,36 @@ def _end(end: End, y: int, box: Box) -> list[str]:
     """Return a terminal, its name, and what is in its wire on the way through the zone."""
     edge, outward = box.edge, (1 if box.side == LEFT else -1)
 
-    def at(distance: float) -> float:
+    def x_at(distance: float) -> float:
         """Return how far a point is from the part's edge, towards the board."""
         return edge + outward * distance
 
     lines = []
     anchor = "end" if box.side == LEFT else "start"
     if end.wire:
-        ink = INKS[end.wire.colour]
-        lines.append(line_to(at(ZONE - 19), y, at(0), y, ink))
-        if end.to_ground:
-            below = y + STEP
+        ink = WIRE_COLOURS[end.wire.colour]
+        lines.append(line_to(x_at(ZONE_WIDTH - 19), y, x_at(0), y, ink))
+        if end.ground_resistor:
+            ground_y = y + STEP
             lines += [
-                line_to(at(AT_DOT), y, at(AT_DOT), below, ink),
-                line_to(at(AT_DOT + 1), below, at(AT_TAG), below, ink),
-                f'<circle cx="{at(AT_DOT):g}" cy="{y}" r="4.5" fill="{ink}"/>',
-                _resistor(end.to_ground, at(AT_NEAR), below),
-                _tag(GROUND, at(AT_TAG), below),
+                line_to(x_at(DOT_DISTANCE), y, x_at(DOT_DISTANCE), ground_y, ink),
+                line_to(x_at(DOT_DISTANCE + 1), ground_y, x_at(TAG_DISTANCE), ground_y, ink),
+                f'<circle cx="{x_at(DOT_DISTANCE):g}" cy="{y}" r="4.5" fill="{ink}"/>',
+                _resistor(end.ground_resistor, x_at(NEAR_DISTANCE), ground_y),
+                _tag(GROUND, x_at(TAG_DISTANCE), ground_y),
             ]
-        if end.series:
-            lines.append(_resistor(end.series, at(AT_FAR), y))
-        if end.beyond:
-            lines.append(_resistor(end.beyond, at(AT_NEAR), y))
+        if end.series_resistor:
+            lines.append(_resistor(end.series_resistor, x_at(FAR_DISTANCE), y))
+        if end.far_resistor:
+            lines.append(_resistor(end.far_resistor, x_at(NEAR_DISTANCE), y))
     elif end.rail:
-        lines.append(line_to(at(AT_TAG), y, at(0), y, RAIL_INKS[end.rail]))
-        lines.append(_tag(end.rail, at(AT_TAG), y))
+        lines.append(line_to(x_at(TAG_DISTANCE), y, x_at(0), y, RAIL_COLOURS[end.rail]))
+        lines.append(_tag(end.rail, x_at(TAG_DISTANCE), y))
     if end.name in RAILS and end.wire:
-        lines.append(_tag(end.name, at(-28), y))
+        lines.append(_tag(end.name, x_at(-28), y))
     else:
-        style = "" if end.wire or end.rail else FAINT
-        lines.append(text_at(end.name, at(-10), y + 4.5, 90, anchor, 13, style))
+        style = "" if end.wire or end.rail else FAINT_STYLE
+        lines.append(text_at(end.name, x_at(-10), y + 4.5, 90, anchor, 13, style))
     return lines
 
 
@@ -324,15 +339,17 @@ def _motors(box: Box, language: str) -> list[str]:
     lines = []
     outward = -1 if box.side == LEFT else 1
     outer = box.x if box.side == LEFT else box.x + places.PART_WIDTH
-    top, step = box.y + places.HEAD + 12, 100
-    for k, (key, terminals) in enumerate(zip(("left_motor", "right_motor"), box.part.shape.motors,
-                                             strict=True)):  # fmt: skip
+    top, step = box.y + places.HEAD_HEIGHT + 12, 100
+    for k, (key, terminals) in enumerate(
+        zip(("left_motor", "right_motor"), box.part.shape.motor_terminals, strict=True)
+    ):
         x, y = outer + outward * 62, top + k * step + 18
-        for rise in (-8, 8):
-            lines.append(line_to(outer, y + rise, x, y + rise, LINE))
+        for offset in (-8, 8):
+            lines.append(line_to(outer, y + offset, x, y + offset, LINE_COLOUR))
         lines += [
-            f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE}" stroke-width="2"/>',
-            text_at("M", x, y + 6, 40, "middle", 17, BOLD),
+            f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE_COLOUR}" '
+            f'stroke-width="2"/>',
+            text_at("M", x, y + 6, 40, "middle", 17, BOLD_STYLE),
             text_at(text(key, language), x - outward * 10, y + 42, 98, "middle", 12),
             text_at(
                 terminals, outer - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11
@@ -346,14 +363,14 @@ def _motors(box: Box, language: str) -> list[str]:
 
 def _legend(plan: Plan, top: int) -> list[str]:
     lines = [
-        f'<g><circle cx="29" cy="{top + 8}" r="9" fill="#ffffff" stroke="{LINE}" '
+        f'<g><circle cx="29" cy="{top + 8}" r="9" fill="#ffffff" stroke="{LINE_COLOUR}" '
         f'stroke-width="2"/><text x="29" y="{top + 12}" text-anchor="middle" font-size="11">7'
         f"</text>{text_at(text('legend_number', plan.language), 58, top + 13, 900)}</g>"
     ]
     for rail in plan.rails:
         y = top + 8 + LEGEND_STEP * len(lines)
-        words = text(f"legend_{rail}", plan.language)
-        lines.append(f"<g>{_tag(rail, 29, y)}{text_at(words, 58, y + 5, 900)}</g>")
+        sentence = text(f"legend_{rail}", plan.language)
+        lines.append(f"<g>{_tag(rail, 29, y)}{text_at(sentence, 58, y + 5, 900)}</g>")
     for key in ("legend_same", "legend_dot"):
         y = top + 8 + LEGEND_STEP * len(lines)
         lines.append(text_at(text(key, plan.language), 10, y + 5, 900))

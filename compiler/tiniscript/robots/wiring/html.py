@@ -55,7 +55,7 @@ td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em;
 def html_of(plan: Plan) -> str:
     """Return the page of a plan, with its drawing inside."""
     blocks = page_of(plan)
-    title = escape(blocks[0].words)
+    title = escape(blocks[0].text)
     body = "\n".join(_block(block, plan) for block in blocks)
     return (
         f'<!DOCTYPE html>\n<html lang="{plan.language}">\n<head>\n<meta charset="utf-8">\n'
@@ -66,34 +66,34 @@ def html_of(plan: Plan) -> str:
     )
 
 
-def _words(words: str) -> str:
-    return re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", escape(words))
+def _bold_html(sentence: str) -> str:
+    return re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", escape(sentence))
 
 
 def _block(block: Block, plan: Plan) -> str:
     if block.kind in ("drawing", "finished"):
         svg = drawing_of(plan) if block.kind == "drawing" else finished_of(plan)
-        words = f"<p>{_words(block.words)}</p>\n"
+        paragraphs = f"<p>{_bold_html(block.text)}</p>\n"
         if block.kind == "drawing":  # of which a phone shows a part
-            words += f'<p class="slide">{escape(text("slide", plan.language))}</p>\n'
-        return f'{words}<div class="{block.kind}">\n{svg}</div>'
+            paragraphs += f'<p class="slide">{escape(text("slide", plan.language))}</p>\n'
+        return f'{paragraphs}<div class="{block.kind}">\n{svg}</div>'
     if block.kind == "ticks":
         head, *rows = block.rows
         lines = "\n".join(_row(row, head) for row in rows)
-        heads = "".join(f"<th>{_words(cell)}</th>" for cell in head)
+        heads = "".join(f"<th>{_bold_html(cell)}</th>" for cell in head)
         return f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
     if block.kind in ("list", "checks"):
-        items = "\n".join(f"<li>{_words(item)}</li>" for (item,) in block.rows)
+        items = "\n".join(f"<li>{_bold_html(item)}</li>" for (item,) in block.rows)
         mark = ' class="checks"' if block.kind == "checks" else ""
         return f"<ul{mark}>\n{items}\n</ul>"
     tag = {"title": "h1", "heading": "h2"}.get(block.kind, "p")
-    return f"<{tag}>{_words(block.words)}</{tag}>"
+    return f"<{tag}>{_bold_html(block.text)}</{tag}>"
 
 
 def _row(cells: tuple[str, ...], head: tuple[str, ...]) -> str:
     """Return a row; each cell knows its column, which a narrow screen shows beside it."""
-    result = (
-        f'<td data-head="{escape(name)}">{_words(cell)}</td>'
+    html_cells = (
+        f'<td data-head="{escape(name)}">{_bold_html(cell)}</td>'
         for cell, name in zip(cells, head, strict=True)
     )
-    return f"<tr>{''.join(result)}</tr>"
+    return f"<tr>{''.join(html_cells)}</tr>"

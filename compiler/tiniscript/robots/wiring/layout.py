@@ -14,16 +14,16 @@ from tiniscript.robots.wiring.plan import Part, Plan, Wire
 
 LEFT, RIGHT = 0, 1
 STEP = 22  # from pin to pin
-TRACK = 9  # from wire to wire
-HEAD = 44  # the title of a part
+TRACK_WIDTH = 9  # from wire to wire
+HEAD_HEIGHT = 44  # the title of a part
 BOARD_WIDTH = 136
-BOARD_NAME = 44  # below its pins
+BOARD_NAME_HEIGHT = 44  # below its pins
 PART_WIDTH = 160
-ZONE = 158  # beside a part, where its resistors are
-NEAR_BOARD = (54, 26)  # left: what the board's 5V and GND are joined to; right: only numbers
+ZONE_WIDTH = 158  # beside a part, where its resistors are
+BOARD_GAPS = (54, 26)  # left: what the board's 5V and GND are joined to; right: only numbers
 MOTORS_WIDTH = 100
 MARGIN = 10
-GAP = 16  # at least, from part to part
+PART_GAP = 16  # at least, from part to part
 
 
 class Pin(NamedTuple):
@@ -70,16 +70,16 @@ class Layout(NamedTuple):
 
 def _rows_of(part: Part) -> list[int]:
     """Return the heights of a part's terminals, from its top. A resistor to ground takes a row."""
-    rows, y = [], HEAD + STEP // 2
+    rows, y = [], HEAD_HEIGHT + STEP // 2
     for end in part.ends:
         rows.append(y)
-        y += STEP * (2 if end.to_ground else 1)
+        y += STEP * (2 if end.ground_resistor else 1)
     return rows
 
 
 def _height_of(part: Part) -> int:
-    last = _rows_of(part)[-1] + (STEP if part.ends[-1].to_ground else 0)
-    return max(last, HEAD + STEP + STEP // 2) + STEP // 2 + 6
+    bottom = _rows_of(part)[-1] + (STEP if part.ends[-1].ground_resistor else 0)
+    return max(bottom, HEAD_HEIGHT + STEP + STEP // 2) + STEP // 2 + 6
 
 
 class _Channel:
@@ -94,29 +94,29 @@ class _Channel:
     def tracks(self) -> dict[int, int]:
         """Return the track of each wire (0 is next to the board), chosen for few crossings."""
         order = sorted(self.spans, key=lambda wire: self.spans[wire])
-        improved = True
-        while improved:
-            improved = False
+        has_improved = True
+        while has_improved:
+            has_improved = False
             for wire in tuple(order):
                 k = order.index(wire)
-                rest = order[:k] + order[k + 1 :]
-                costs = [self._cost(rest, wire, at) for at in range(len(order))]
-                best = costs.index(min(costs))
-                if costs[best] < costs[k]:
-                    order = [*rest[:best], wire, *rest[best:]]
-                    improved = True
+                other_wires = order[:k] + order[k + 1 :]
+                costs = [self._cost(other_wires, wire, place) for place in range(len(order))]
+                best_track = costs.index(min(costs))
+                if costs[best_track] < costs[k]:
+                    order = [*other_wires[:best_track], wire, *other_wires[best_track:]]
+                    has_improved = True
         return {wire: track for track, wire in enumerate(order)}
 
-    def _cost(self, other_wires: Sequence[int], wire: int, at: int) -> int:
-        crossing_count = sum(self._crossings(other, wire) for other in other_wires[:at])
-        return crossing_count + sum(self._crossings(wire, other) for other in other_wires[at:])
+    def _cost(self, other_wires: Sequence[int], wire: int, track: int) -> int:
+        crossing_count = sum(self._crossings(other, wire) for other in other_wires[:track])
+        return crossing_count + sum(self._crossings(wire, other) for other in other_wires[track:])
 
     def _crossings(self, near_wire: int, far_wire: int) -> int:
         """Count where two wires cross if `near_wire` has the track that is nearer to the board."""
         near_from, near_to = self.spans[near_wire]
         far_from, far_to = self.spans[far_wire]
-        first = min(near_from, near_to) < far_from < max(near_from, near_to)
-        return first + (min(far_from, far_to) < near_to < max(far_from, far_to))
+        crosses_from = min(near_from, near_to) < far_from < max(near_from, near_to)
+        return crosses_from + (min(far_from, far_to) < near_to < max(far_from, far_to))
 
 
 def layout_of(plan: Plan) -> Layout:
@@ -132,15 +132,15 @@ class _Layout:
         self.pin_side = {pin: side for side in (LEFT, RIGHT) for pin in columns[side]}
         # A column that has a rail of its own needs room for its tag, as the left one has.
         has_rail = set(columns[RIGHT]) & set(plan.rails) - set(columns[LEFT])
-        self.near = (NEAR_BOARD[LEFT], NEAR_BOARD[LEFT if has_rail else RIGHT])
+        self.board_gaps = (BOARD_GAPS[LEFT], BOARD_GAPS[LEFT if has_rail else RIGHT])
         parts: list[list[Part]] = [[], []]
         for part in plan.parts:
             parts[self._side_of(part)].append(part)
-        tall = max(len(column) for column in columns) * STEP + BOARD_NAME
-        heights = [sum(_room(part) for part in item) for item in parts]
-        full_height = max(tall, *heights)
-        self.board_top = MARGIN + STEP + _snap((full_height - tall) // 2)
-        self.board_height = tall
+        column_height = max(len(column) for column in columns) * STEP + BOARD_NAME_HEIGHT
+        heights = [sum(_room(part) for part in column_parts) for column_parts in parts]
+        full_height = max(column_height, *heights)
+        self.board_top = MARGIN + STEP + _snap((full_height - column_height) // 2)
+        self.board_height = column_height
         self.pins: list[Pin] = []
         for side, column in enumerate(columns):
             for k, slot in enumerate(column):
@@ -149,19 +149,19 @@ class _Layout:
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
         self.tops: dict[int, int] = {}  # of parts, by their place in the plan
         bottom = MARGIN + STEP + full_height
-        for item in parts:
-            self._stack(item, bottom)
+        for column_parts in parts:
+            self._stack(column_parts, bottom)
 
     # -- the board
 
     def _slots(self, side: int) -> list[Slot]:
         sides = SIDES[self.plan.chip.name]
         slots: list[Slot] = list(sides.left if side == LEFT else sides.right)
-        printed = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
+        printed_pins = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
         if side == RIGHT:
-            others = sorted(pin for pin in self.wires if pin not in printed)
-            assert all(pin in ROW_AT_THE_END for pin in others)
-            slots += [None, *others] if others else []
+            row_end_pins = sorted(pin for pin in self.wires if pin not in printed_pins)
+            assert all(pin in ROW_AT_THE_END for pin in row_end_pins)
+            slots += [None, *row_end_pins] if row_end_pins else []
         return slots
 
     def _pin(self, side: int, y: int, slot: int | str) -> Pin:
@@ -193,12 +193,12 @@ class _Layout:
 
     def _stack(self, parts: Sequence[Part], bottom: int) -> None:
         """Put the parts of a side below each other, each as near to its pins as there is room."""
-        ordered = sorted(parts, key=self._center_y)
+        sorted_parts = sorted(parts, key=self._center_y)
         y = MARGIN + STEP
-        for k, part in enumerate(ordered):
-            latest = bottom - sum(_room(part) for part in ordered[k:])
-            expected = min(self._wanted_y(part), latest)
-            y = max(y, _snap(int(expected)))
+        for k, part in enumerate(sorted_parts):
+            latest_y = bottom - sum(_room(part) for part in sorted_parts[k:])
+            wanted_y = min(self._wanted_y(part), latest_y)
+            y = max(y, _snap(int(wanted_y)))
             self.tops[id(part)] = y
             y += _room(part)
 
@@ -213,38 +213,46 @@ class _Layout:
             for end, row in zip(part.ends, _rows_of(part), strict=True):
                 if end.wire:
                     ends[end.wire.number] = (self._side_of(part), top + row)
-        below = self._free_y()
-        lanes: dict[int, int] = {}
+        first_lane_y = self._free_y()
+        lane_y_of_wire: dict[int, int] = {}
         for wire in self.plan.wires:
             side, y = ends[wire.number]
-            home = self.pin_side[wire.pin]
-            if side == home:
+            pin_side = self.pin_side[wire.pin]
+            if side == pin_side:
                 channels[side].spans[wire.number] = (self.pin_y[wire.pin], y)
                 continue
-            lanes[wire.number] = below + STEP * len(crossing_wires)
+            lane_y_of_wire[wire.number] = first_lane_y + STEP * len(crossing_wires)
             crossing_wires.append(wire.number)
-            channels[home].spans[wire.number] = (self.pin_y[wire.pin], lanes[wire.number])
-            channels[side].spans[wire.number] = (lanes[wire.number], y)
-        widths = [TRACK * (len(channel.spans) + 1) for channel in channels]
+            channels[pin_side].spans[wire.number] = (
+                self.pin_y[wire.pin],
+                lane_y_of_wire[wire.number],
+            )
+            channels[side].spans[wire.number] = (lane_y_of_wire[wire.number], y)
+        widths = [TRACK_WIDTH * (len(channel.spans) + 1) for channel in channels]
         has_motors = [
-            any(part.shape.motors and self._side_of(part) == side for part in self.plan.parts)
+            any(
+                part.shape.motor_terminals and self._side_of(part) == side
+                for part in self.plan.parts
+            )
             for side in (LEFT, RIGHT)
         ]
         left_part = MARGIN + MOTORS_WIDTH * has_motors[LEFT]
-        board_left = left_part + PART_WIDTH + ZONE + widths[LEFT] + self.near[LEFT]
+        board_left = left_part + PART_WIDTH + ZONE_WIDTH + widths[LEFT] + self.board_gaps[LEFT]
         board_right = board_left + BOARD_WIDTH
-        right_zone = board_right + self.near[RIGHT] + widths[RIGHT]
-        right_part = right_zone + ZONE
+        right_zone = board_right + self.board_gaps[RIGHT] + widths[RIGHT]
+        right_part = right_zone + ZONE_WIDTH
         edges = (board_left, board_right)
-        zones = (left_part + PART_WIDTH + ZONE, right_zone)
+        zones = (left_part + PART_WIDTH + ZONE_WIDTH, right_zone)
         tracks = [channel.tracks() for channel in channels]
 
         def x_of(side: int, number: int) -> int:
-            distance = self.near[side] + TRACK * (tracks[side][number] + 1)
+            distance = self.board_gaps[side] + TRACK_WIDTH * (tracks[side][number] + 1)
             return edges[side] + (distance if side == RIGHT else -distance)
 
         routes = tuple(
-            self._route(wire, ends[wire.number], lanes.get(wire.number), edges, zones, x_of)
+            self._route(
+                wire, ends[wire.number], lane_y_of_wire.get(wire.number), edges, zones, x_of
+            )
             for wire in self.plan.wires
         )
         boxes = tuple(self._box(part, (left_part, right_part)) for part in self.plan.parts)
@@ -271,9 +279,9 @@ class _Layout:
         zones: tuple[int, int], x_of: Callable[[int, int], int],
     ) -> Route:  # fmt: skip
         side, y = end
-        home = self.pin_side[wire.pin]
-        start, x = self.pin_y[wire.pin], x_of(home, wire.number)
-        points = [(edges[home], start), (x, start)]
+        pin_side = self.pin_side[wire.pin]
+        start, x = self.pin_y[wire.pin], x_of(pin_side, wire.number)
+        points = [(edges[pin_side], start), (x, start)]
         if lane is not None:
             points += [(x, lane), (x_of(side, wire.number), lane)]
         points += [(points[-1][0], y), (zones[side], y)]
@@ -282,7 +290,7 @@ class _Layout:
 
 def _room(part: Part) -> int:
     """Return the height that a part takes in its column, a multiple of STEP."""
-    return _snap(_height_of(part) + GAP + STEP - 1)
+    return _snap(_height_of(part) + PART_GAP + STEP - 1)
 
 
 def _snap(y: int) -> int:

@@ -22,7 +22,7 @@ class Block(NamedTuple):
     """
 
     kind: str
-    words: str = ""
+    text: str = ""
     rows: tuple[tuple[str, ...], ...] = ()
 
 
@@ -49,9 +49,9 @@ def wire_rows(plan: Plan) -> list[tuple[str, ...]]:
                     (name, end.wire.pin_name, part.title, end.name, _route_text(end, language))
                 )
     if plan.has_lamp:
-        lamp = text("part_lamp", language)
+        lamp_title = text("part_lamp", language)
         on_board = text("on_board", language)
-        rows.append(("–", str(LAMP_PIN), lamp, text("lamp_on_board", language), on_board))
+        rows.append(("–", str(LAMP_PIN), lamp_title, text("lamp_on_board", language), on_board))
     return rows
 
 
@@ -70,13 +70,17 @@ def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
                 for end in part.ends
                 if end.rail == rail or (end.name == rail and end.wire)
             ]
-        rows += [(rail, colour, item) for item in ends]
+        rows += [(rail, colour, end_text) for end_text in ends]
     return rows
 
 
 def _route_text(end: End, language: str) -> str:
-    to_ground = "to_ground_pin" if end.beyond else "to_ground"
-    pairs = (("series", end.series), ("beyond", end.beyond), (to_ground, end.to_ground))
+    ground_key = "to_ground_pin" if end.far_resistor else "to_ground"
+    pairs = (
+        ("series", end.series_resistor),
+        ("beyond", end.far_resistor),
+        (ground_key, end.ground_resistor),
+    )
     return "; ".join(text(key, language).format(value=value) for key, value in pairs if value)
 
 
@@ -84,7 +88,7 @@ class _Page:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.language = plan.language
-        self.board = SIDES[plan.chip.name].name
+        self.board_name = SIDES[plan.chip.name].name
 
     def say(self, key: str, **values: object) -> str:
         return text(key, self.language).format(**values)
@@ -93,7 +97,7 @@ class _Page:
         say = self.say
         return [
             Block("title", say("title", robot=self.plan.robot)),
-            Block("paragraph", say("intro", board=self.board)),
+            Block("paragraph", say("intro", board=self.board_name)),
             Block("drawing", say("drawing")),
             Block("heading", say("finished", robot=self.plan.robot)),
             Block("finished", say("finished_drawing")),
@@ -105,8 +109,8 @@ class _Page:
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
             Block("ticks", rows=tuple(rail_rows(self.plan))),
-            *(Block("paragraph", words) for words in self._unconnected()),
-            Block("list", rows=_column(self._power())),
+            *(Block("paragraph", sentence) for sentence in self._unconnected()),
+            Block("list", rows=_column(self._power_lines())),
             Block("heading", say("mind")),
             Block("list", rows=_column(self._warnings())),
             Block("heading", say("bluetooth" if self.plan.has_radio else "usb")),
@@ -121,7 +125,7 @@ class _Page:
         for part in self.plan.parts:
             if part.shape.need_key:
                 parts_by_need.setdefault(part.shape.need_key, []).append(part)
-        need_texts = [self.say("need_board", board=self.board)]
+        need_texts = [self.say("need_board", board=self.board_name)]
         for key, parts in parts_by_need.items():
             need_text = f"{len(parts)} × {self.say(key)}"
             if any(part.is_device for part in parts):
@@ -131,8 +135,8 @@ class _Page:
             need_texts.append(need_text)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
         need_texts.append(self.say("need_resistors", values=values))
-        joins = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
-        need_texts.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
+        join_count = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
+        need_texts.append(self.say("need_breadboard", count=join_count + SPARE_WIRES))
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
         need_texts += [self.say("need_plate", size=size), self.say("need_power_bank")]
@@ -140,14 +144,14 @@ class _Page:
 
     def _unconnected(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""
-        result = []
-        motors = self.plan.parts[0].shape.motors
+        sentences = []
+        motors = self.plan.parts[0].shape.motor_terminals
         if motors:
             ends = [
                 self.say("motors_join", motor=self.say(key), terminals=terminals)
                 for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
             ]
-            result.append(self.say("motor_wires", ends=", ".join(ends)))
+            sentences.append(self.say("motor_wires", ends=", ".join(ends)))
         free_pins = [
             f"{part.title} {end.name}"
             for part in self.plan.parts
@@ -155,35 +159,37 @@ class _Page:
             if not end.wire and not end.rail
         ]
         if free_pins:
-            result.append(self.say("free", ends=", ".join(free_pins)))
-        return result
+            sentences.append(self.say("free", ends=", ".join(free_pins)))
+        return sentences
 
-    def _power(self) -> list[str]:
-        result = [
+    def _power_lines(self) -> list[str]:
+        sentences = [
             self.say("power_own"),
             self.say("power_common"),
             self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
         ]
-        shapes = [part.shape for part in self.plan.parts if part.shape.power]
-        result += [self.say(shape.power, model=shape.model) for shape in shapes]
-        return result
+        shapes = [part.shape for part in self.plan.parts if part.shape.power_key]
+        sentences += [self.say(shape.power_key, model=shape.model) for shape in shapes]
+        return sentences
 
     def _pull_downs(self) -> str:
         ends = self.plan.parts[0].ends
-        return ", ".join(end.name for end in ends if end.to_ground == PULL_DOWN)
+        return ", ".join(end.name for end in ends if end.ground_resistor == PULL_DOWN)
 
     def _warnings(self) -> list[str]:
-        result = []
+        sentences = []
         if self._pull_downs():
-            result.append(self.say("mind_floating", ends=self._pull_downs()))
+            sentences.append(self.say("mind_floating", ends=self._pull_downs()))
         is_5v = self.plan.chip.pin_volts == FIVE_VOLTS
-        board = {"rail": BOARD_5V, "volts": "5"} if is_5v else {"rail": BOARD_3V3, "volts": "3.3"}
+        board_values = (
+            {"rail": BOARD_5V, "volts": "5"} if is_5v else {"rail": BOARD_3V3, "volts": "3.3"}
+        )
         for part in self.plan.parts:
-            for key in part.shape.notes:
-                sentence = self.say(key, part=part.title, **board)
-                if sentence not in result:
-                    result.append(sentence)
-        return result
+            for key in part.shape.note_keys:
+                sentence = self.say(key, part=part.title, **board_values)
+                if sentence not in sentences:
+                    sentences.append(sentence)
+        return sentences
 
     def _connection_rows(self) -> list[str]:
         if not self.plan.has_radio:
@@ -198,27 +204,27 @@ class _Page:
         ]
 
     def _checks(self) -> list[str]:
-        grounded = ", ".join(part.title for part in self.plan.parts if _is_grounded(part))
-        texts = [
+        grounded_titles = ", ".join(part.title for part in self.plan.parts if _is_grounded(part))
+        sentences = [
             self.say("check_wheels"),
             self.say("check_polarity"),
-            self.say("check_ground", parts=grounded),
+            self.say("check_ground", parts=grounded_titles),
             self.say("check_5v" if self.plan.has_radio else "check_3v3"),
         ]
         if self._pull_downs():
-            texts.append(self.say("check_pull_downs", ends=self._pull_downs()))
-        texts += [self.say(key) for part in self.plan.parts for key in part.shape.checks]
+            sentences.append(self.say("check_pull_downs", ends=self._pull_downs()))
+        sentences += [self.say(key) for part in self.plan.parts for key in part.shape.check_keys]
         keys: tuple[str, ...] = ("check_bare",)
         if self.plan.has_radio:
             keys = ("check_divider", "check_bare", "check_unplugged")
-        elif any(end.series == "1 kΩ" for part in self.plan.parts for end in part.ends):
+        elif any(end.series_resistor == "1 kΩ" for part in self.plan.parts for end in part.ends):
             keys = ("check_echo", "check_bare")
-        texts += [self.say(key) for key in keys]
-        return [*texts, self.say("check_hot"), self.say("check_way")]
+        sentences += [self.say(key) for key in keys]
+        return [*sentences, self.say("check_hot"), self.say("check_way")]
 
 
 def _is_grounded(part: Part) -> bool:
-    return any(end.rail == GROUND or end.to_ground for end in part.ends)
+    return any(end.rail == GROUND or end.ground_resistor for end in part.ends)
 
 
 def _column(lines: list[str]) -> tuple[tuple[str, ...], ...]:

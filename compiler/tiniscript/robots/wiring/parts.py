@@ -39,19 +39,21 @@ def _adapt_to_3v3(shape: Shape) -> Shape:
     it answers with them: its middle is the pin.
     """
     if shape.needs_5v:
-        ends = (
-            terminal._replace(to_ground="2 kΩ", beyond="1 kΩ")
+        terminals = (
+            terminal._replace(ground_resistor="2 kΩ", far_resistor="1 kΩ")
             if terminal.pin_key == "echo"
             else terminal
             for terminal in shape.terminals
         )
     else:
-        ends = (
+        terminals = (
             terminal._replace(rail=BOARD_3V3) if terminal.rail == BOARD_5V else terminal
             for terminal in shape.terminals
         )
-    notes = tuple(key_for_3v3(note) for note in shape.notes)
-    return shape._replace(need_key=key_for_3v3(shape.need_key), terminals=tuple(ends), notes=notes)
+    notes = tuple(key_for_3v3(note) for note in shape.note_keys)
+    return shape._replace(
+        need_key=key_for_3v3(shape.need_key), terminals=tuple(terminals), note_keys=notes
+    )
 
 
 def key_for_3v3(key: str) -> str:
@@ -64,14 +66,14 @@ def key_for_3v3(key: str) -> str:
 BUZZER = Shape(
     "buzzer",
     "need_buzzer",
-    (Terminal("plus", "pin", series="220 Ω"), Terminal("minus", rail=GROUND)),
+    (Terminal("plus", "pin", series_resistor="220 Ω"), Terminal("minus", rail=GROUND)),
 )
 BLUETOOTH = Shape(
     "bluetooth",
     "need_bluetooth",
     (
         Terminal("STATE", "state"),
-        Terminal("RXD", "tx", series="1 kΩ", to_ground="2 kΩ"),
+        Terminal("RXD", "tx", series_resistor="1 kΩ", ground_resistor="2 kΩ"),
         Terminal("TXD", "rx"),
         Terminal("GND", rail=GROUND),
         Terminal("VCC", rail=BOARD_5V),
@@ -91,7 +93,7 @@ SUPPLY_OF_SERVOS = Shape(
 )
 
 
-_WAVE = '<path d="M-12,0 l4,-7 l6,14 l6,-14 l4,7" fill="none"/>'
+_WAVE_PATH = '<path d="M-12,0 l4,-7 l6,14 l6,-14 l4,7" fill="none"/>'
 
 ICONS = {
     "bridge": '<rect x="-17" y="-17" width="34" height="34" rx="2"/>'
@@ -99,7 +101,8 @@ ICONS = {
     '<circle cx="0" cy="7" r="5"/>',
     "servo": '<rect x="-22" y="-8" width="34" height="22" rx="2"/>'
     '<circle cx="2" cy="-8" r="6"/><rect x="-1" y="-17" width="25" height="6" rx="3"/>',
-    "light": f'<circle cx="2" cy="5" r="13"/><g transform="translate(2 5) scale(0.8)">{_WAVE}</g>'
+    "light": '<circle cx="2" cy="5" r="13"/><g transform="translate(2 5) scale(0.8)">'
+    f"{_WAVE_PATH}</g>"
     '<path d="M-24,-16 l10,8 m-6,0 h6 v-6 M-10,-19 l8,9 m-6,-1 l6,1 l0,-6" fill="none"/>',
     "module": '<rect x="-22" y="-13" width="44" height="26" rx="2"/>'
     '<circle cx="-10" cy="0" r="6"/><rect x="2" y="-6" width="12" height="12"/>',

@@ -16,8 +16,8 @@ from tiniscript.robots.driver import (
     SERVO_SUPPLY,
     Shape,
     Terminal,
-    lamp,
-    switch,
+    lamp_shape,
+    switch_shape,
 )
 from tiniscript.robots.profile import Body, Robot
 from tiniscript.robots.wiring import parts
@@ -43,9 +43,9 @@ class End(NamedTuple):
     name: str
     wire: Wire | None
     rail: str
-    series: str
-    to_ground: str
-    beyond: str
+    series_resistor: str
+    ground_resistor: str
+    far_resistor: str
 
 
 class Part(NamedTuple):
@@ -85,9 +85,9 @@ class Plan(NamedTuple):
     @property
     def rails(self) -> list[str]:
         """The rails that are used, in the order of parts.RAILS."""
-        used = {end.rail for part in self.parts for end in part.ends}
-        used |= {end.name for part in self.parts for end in part.ends}
-        return [rail for rail in parts.RAILS if rail in used]
+        used_rails = {end.rail for part in self.parts for end in part.ends}
+        used_rails |= {end.name for part in self.parts for end in part.ends}
+        return [rail for rail in parts.RAILS if rail in used_rails]
 
     @property
     def resistors(self) -> dict[str, int]:
@@ -95,10 +95,10 @@ class Plan(NamedTuple):
         counts: dict[str, int] = {}
         for part in self.parts:
             for end in part.ends:
-                for value in (end.series, end.to_ground, end.beyond):
+                for value in (end.series_resistor, end.ground_resistor, end.far_resistor):
                     if value:
                         counts[value] = counts.get(value, 0) + 1
-        return dict(sorted(counts.items(), key=lambda each: _ohms(each[0])))
+        return dict(sorted(counts.items(), key=lambda item: _ohms(item[0])))
 
 
 def _ohms(value: str) -> float:
@@ -106,13 +106,13 @@ def _ohms(value: str) -> float:
     return float(number) * (1000 if unit == "kΩ" else 1)
 
 
-class _Counter:
+class _WireCounter:
     """Numbers the wires, and gives neighbours different colours."""
 
     def __init__(self, chip: Chip, language: str) -> None:
         self._chip = chip
         self._language = language
-        self._last = 0
+        self._wire_count = 0
 
     def part(
         self, title: str, label: str, shape: Shape, pins: Mapping[str, int],
@@ -122,35 +122,35 @@ class _Counter:
         return Part(title, label, is_device, shape, tuple(ends))
 
     def _end(self, terminal: Terminal, pins: Mapping[str, int]) -> End:
-        name, pin_key, *rest = terminal
+        name, pin_key, *rail_and_resistors = terminal
         pin = pins.get(pin_key)
         wire = None
         if pin is not None:
-            self._last += 1
-            colour = COLOURS[(self._last - 1) % len(COLOURS)]
-            wire = Wire(self._last, colour, pin, self._chip.pin_name(pin))
-        return End(text(f"terminal_{name}", self._language, name), wire, *rest)
+            self._wire_count += 1
+            colour = COLOURS[(self._wire_count - 1) % len(COLOURS)]
+            wire = Wire(self._wire_count, colour, pin, self._chip.pin_name(pin))
+        return End(text(f"terminal_{name}", self._language, name), wire, *rail_and_resistors)
 
 
 def plan_of(robot: Robot, language: str) -> Plan:
     """Return the plan of a robot, in a language. The robot's chip is one that has firmware."""
     kit, board, body = robot.kit, robot.board, robot.body
     chip = CHIPS[board.chip]
-    counter = _Counter(chip, language)
+    counter = _WireCounter(chip, language)
 
     def label_of(key: str) -> str:
         return text(key, language)
 
     wired_parts = []
-    motors = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
-    title, label = motors.model, label_of("part_motors")
-    if not motors.model:
+    motor_shape = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
+    title, label = motor_shape.model, label_of("part_motors")
+    if not motor_shape.model:
         title, label = label_of("part_servos"), ""
-    wired_parts.append(counter.part(title, label, motors, board.motors.pins))
+    wired_parts.append(counter.part(title, label, motor_shape, board.motors.pins))
     if board.discs:
-        discs = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
+        disc_shape = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
         wired_parts.append(
-            counter.part(discs.model, label_of("part_discs"), discs, board.discs.pins)
+            counter.part(disc_shape.model, label_of("part_discs"), disc_shape, board.discs.pins)
         )
     groups = (
         ("sensors", kit.sensors, board.sensors),
@@ -162,27 +162,29 @@ def plan_of(robot: Robot, language: str) -> Plan:
             shape = parts.shape_of(
                 f"{used_by} {device.kind}", wiring, device, place, chip.pin_volts
             )
-            if any(terminal.rail == SERVO_SUPPLY for terminal in motors.terminals):
+            if any(terminal.rail == SERVO_SUPPLY for terminal in motor_shape.terminals):
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label
             wired_parts.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
     wired_parts.append(
-        counter.part(label_of("part_button"), "SB", switch(), {"pin": board.start_button})
+        counter.part(label_of("part_button"), "SB", switch_shape(), {"pin": board.start_button})
     )
     if board.buzzer is not None:
-        beep = {"pin": board.buzzer}
-        wired_parts.append(counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, beep))
+        buzzer_pins = {"pin": board.buzzer}
+        wired_parts.append(counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, buzzer_pins))
     has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
         pin = {"pin": board.status_led}
-        wired_parts.append(counter.part(label_of("part_lamp"), "", lamp(is_on_low=False), pin))
-    radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
+        wired_parts.append(
+            counter.part(label_of("part_lamp"), "", lamp_shape(is_on_low=False), pin)
+        )
+    radio_pins = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
-        radio["state"] = board.bluetooth_state
+        radio_pins["state"] = board.bluetooth_state
     if has_radio:
-        wired_parts.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
+        wired_parts.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio_pins))
     rails = {end.rail for part in wired_parts for end in part.ends}
     rails |= {end.name for part in wired_parts for end in part.ends}
     for rail, key, supply in (
@@ -199,8 +201,8 @@ def plan_of(robot: Robot, language: str) -> Plan:
 
 def _with_servo_supply(shape: Shape) -> Shape:
     """Driving servos share one supply: a battery sensor measures that supply."""
-    renamed = (
+    terminals = (
         terminal._replace(name=SERVO_SUPPLY) if terminal.name == MOTOR_BATTERY else terminal
         for terminal in shape.terminals
     )
-    return shape._replace(terminals=tuple(renamed))
+    return shape._replace(terminals=tuple(terminals))
