@@ -1,0 +1,20 @@
+// node said_in_node.mjs SOURCES MADE: reads rows of JSON on its standard input, each with a robot, a sentence, and what each
+// code in it is as a block. Prints for each the sentence's parts, and whether a part is what the page shows on a block.
+
+import { readFileSync } from 'node:fs';
+import { freshPage, learns } from './page_in_node.mjs';
+
+const page = freshPage();
+await learns(page);
+const { pageState } = await page.load('page/page_state.js');
+const { labelOfBlock, labelOfWord } = await page.load('blocks/said.js');
+for (const line of readFileSync(0, 'utf-8').split('\n').filter(Boolean)) {
+  const { robot, sentence, spoken } = JSON.parse(line);
+  pageState.robotName.set(robot);
+  console.log(JSON.stringify(sentence.split(/(`[^`]+`)/).filter(Boolean).map((part) => {
+    if (!part.startsWith('`')) return [false, part];
+    const code = part.slice(1, -1), block = spoken[code];
+    const label = block ? labelOfBlock(block) : labelOfWord(code);
+    return [label !== null, label?.said ?? code];
+  })));
+}

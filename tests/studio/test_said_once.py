@@ -1,0 +1,135 @@
+"""What names a block takes the place of words for what it does: nobody reads them twice."""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.studio.test_second_time_page import made
+from tests.support.node import in_node
+from tests.support.texts import LANGUAGES
+from tiniscript.base.languages import texts
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.forms import BLOCKS, TEXT
+from tiniscript.lessons.sentences import EXAMPLES, sentence
+from tiniscript.studio import page_lessons
+from tiniscript.studio.checking import profile_of
+from tools.builds.page_texts import page_texts
+
+SCRIPT = Path(__file__).with_name("said_in_node.mjs")
+CODE = re.compile("`([^`]+)`")
+WORD = re.compile(r"[^\W\d_]+|\d+")
+NEAR = 2  # words beside a block
+STEM = 4  # letters that the forms of a word share
+AGAIN = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
+
+__all__ = ["made"]
+
+Parts = list[tuple[bool, str]]
+
+
+def words(said: str) -> list[str]:
+    plain = unicodedata.normalize("NFD", said.lower())
+    return WORD.findall("".join(each for each in plain if not unicodedata.combining(each)))
+
+
+def stem(word: str) -> str:
+    return word[:STEM]
+
+
+def twice(parts: Parts) -> list[str]:
+    """Return what is said again at once: a word after itself, or one of a block beside it."""
+    said = "".join(part for _, part in parts)
+    found = [
+        again for again in re.findall(r"\b(\w+)[ (%]{1,3}\1\b", said, re.I) if not again.isdigit()
+    ]
+    for k, (is_block, label) in enumerate(parts):
+        if not is_block:
+            continue
+        own = {stem(word) for word in words(label) if len(word) >= STEM}
+        before, after = (
+            parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
+        )
+        near = words(re.split(r"[.?!:;]", before)[-1])[-NEAR:]
+        near += words(re.split(r"[.?!:;]", after)[0])[:NEAR]
+        found += [word for word in near if stem(word) in own]
+    return found
+
+
+def sentences_of(number: int, language: str, form: str) -> list[str]:
+    steps = page_lessons.steps(number, language, form)
+    parts = [block for step in steps for block in step["blocks"] if block["kind"] != "program"]
+    return [*(row[0] for block in parts for row in block["rows"] if row),
+            *(step["hint"] for step in steps)]  # fmt: skip
+
+
+def found_sentences(language: str) -> Iterator[str]:
+    """Each sentence that a check says, with the words and the examples that it may have."""
+    names = re.findall(r"{(\w+)}", "".join(texts("lessons", language).values()))
+    values = {**dict.fromkeys(names, "3"), "truth": "✓", "name": "HOP", "what": "DISTANCE"}
+    for key in texts("lessons", language):
+        if not key.startswith("said/"):
+            continue
+        for word in ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",):
+            own = {"word": word, "question": "DISTANCE < 15"}
+            yield sentence(
+                Finding("", key.removeprefix("said/"), {**values, **own}, {language: "X"}),
+                language,
+                BLOCKS,
+            )
+
+
+def seen(made: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
+    """Return the parts of sentences as a page in a language shows them."""
+    (made / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
+    given = "\n".join(json.dumps(row) for row in rows)
+    lines = in_node(SCRIPT, str(made), given=given)
+    assert len(lines) == len(rows)
+    return [[(bool(is_block), said) for is_block, said in json.loads(line)] for line in lines]
+
+
+def spoken_in(found: str) -> dict[str, dict[str, Any]]:
+    return page_lessons.blocks_of(CODE.findall(found), profile_of("tinibot").kit)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language: str) -> None:
+    rows = []
+    for number in range(1, len(catalogue.folders()) + 1):
+        robot = catalogue.load(catalogue.folder_of(str(number))).robot
+        spoken = page_lessons.spoken(number, language)
+        rows += [{"robot": robot, "sentence": each, "spoken": spoken}
+                 for each in sentences_of(number, language, BLOCKS)]  # fmt: skip
+    rows += [{"robot": "tinibot", "sentence": each, "spoken": spoken_in(each)}
+             for each in found_sentences(language)]  # fmt: skip
+    parts = seen(made, language, rows)
+    assert sum(is_block for row in parts for is_block, _ in row) > 100
+    wrong = {"".join(f"[{said}]" if is_block else said for is_block, said in row): found
+             for row in parts if (found := twice(row))}  # fmt: skip
+    assert wrong == {}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_text_has_a_word_twice(language: str) -> None:
+    for number in range(1, len(catalogue.folders()) + 1):
+        for each in sentences_of(number, language, TEXT):
+            assert twice([(False, each.replace("`", ""))]) == [], each
+
+
+@pytest.mark.parametrize("parts, again", [
+    ([(True, "repeat forever"), (False, " repeats forever. Which?")], ["repeats", "forever"]),
+    ([(False, "The "), (True, "bumper"), (False, " is the bumper.")], []),
+    ([(True, "motors: left left %, right 5 %")], ["left"]),
+    ([(True, "yes"), (False, " (yes) or "), (True, "no"), (False, ".")], ["yes"]),
+    ([(True, "gira a la izquierda"), (False, " gira.")], ["gira"]),
+    ([(True, "turn left"), (False, ". Turn the key.")], []),
+])  # fmt: skip
+def test_what_is_twice_is_found(parts: Parts, again: list[str]) -> None:
+    assert twice(parts) == again
