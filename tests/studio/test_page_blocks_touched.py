@@ -318,12 +318,20 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     ("language", "words"),
     [
         ("en", {"repeat": "repeat", "WHILE": "repeat while", "beep": "beep", "distance": "distance",
-                "LEFT": "turn left", "hertz": "beep"}),
-        ("es", {"repite": "repite", "SÍ": "sí", "si": "si", "gira derecha": "gira a la derecha"}),
+                "LEFT": "turn left", "hertz": "beep", "music": "beep", "event": "each time",
+                "spin": "turn right", "wait": "wait"}),
+        ("es", {"repite": "repite", "SÍ": "sí", "si": "si", "gira derecha": "gira a la derecha",
+                "girar": "gira a la izquierda", "avanzar": "avanza", "esperar": "espera",
+                "repetir": "repite", "bucle": "repite para siempre", "sonido": "pita",
+                "música": "pita", "evento": "cada vez que", "variable": "=",
+                "girar derecha": "gira a la derecha"}),
+        ("pt", {"girar": "vire", "avançar": "avance", "esperar": "espere", "repetir": "repita",
+                "som": "apite"}),
     ],
 )  # fmt: skip
 def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[str, str]) -> None:
-    """At every level; with and without accents, by a word of the text, and by what it does."""
+    """At every level; with and without accents, by a word of the text, by what it does, by what
+    people call it, and by its group."""
     speak(page, language)
     start(page, "SI|S;\n", "few")
     for typed, said in words.items():

@@ -219,6 +219,31 @@ def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
     assert not ana.locator("#side_class").is_visible()
 
 
+@pytest.mark.parametrize("size", [(1366, 768), (390, 844)], ids=str)
+def test_who_opens_the_address_of_a_class_joins_it_at_once(
+    pages: Pages, taught: Class, size: tuple[int, int]
+) -> None:
+    """Code and name are before all else; the code is where one types."""
+    page = pages.open("blocks", viewport={"width": size[0], "height": size[1]}, locale="es-AR")
+    page.locator("#class_entry").wait_for()
+    assert page.inner_text("#class_entry h2") == "Entra a la clase"
+    page.wait_for_function("document.activeElement.matches('#class_entry input')")
+    for each in page.locator("#class_entry :is(input, [data-text=class_join]):visible").all():
+        box = each.bounding_box()
+        assert (
+            box and box["y"] + box["height"] <= size[1] / 2 and box["x"] + box["width"] <= size[0]
+        )
+    assert axe(page) == []
+    page.keyboard.type(taught.room.code)
+    page.keyboard.press("Tab")
+    page.keyboard.type("Ana")
+    page.keyboard.press("Enter")
+    page.locator("#class_entry").wait_for(state="hidden")
+    page.click("#side_real" if size[0] > size[1] else "#other")
+    page.click("#side_real")
+    said(page, "Estás en la clase, Ana")
+
+
 def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     pages: Pages, taught: Class, teacher: Page
 ) -> None:

@@ -14,7 +14,7 @@ from tests.support.studio import SETTLED, Pages, axe, shown, speak
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio import page_lessons
-from tiniscript.studio.block_kinds import KINDS
+from tiniscript.studio.block_kinds import KINDS, piece_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -44,32 +44,66 @@ def open_lesson(page: Page, number: int, step: int = 0) -> None:
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(language: str) -> None:
+    """Each lesson has a block to look for; what one has brought, no later one takes away."""
     seen: set[str] = set()
     for number in LESSONS:
         taught, new = (f(number, language) for f in (page_lessons.taught, page_lessons.new))
-        assert set(new) == set(taught) - seen
+        kinds = {piece.partition(" ")[0] for piece in new}
+        assert new and kinds <= set(taught)
+        assert set(taught) - seen <= kinds
         assert set(page_lessons.needed(number, language)) <= set(taught) <= KINDS.keys()
         seen |= set(taught)
+        assert set(page_lessons.offered(number, language)) == seen
 
 
-def test_the_level_rises_to_what_a_lesson_needs_and_no_further(
+def test_a_piece_is_what_somebody_looks_for() -> None:
+    assert piece_of("move", "L DEG") == "move L"
+    assert piece_of("sensor", "KEY_A") == piece_of("sensor", "KEY_UP") == "sensor KEY"
+    assert piece_of("sensor", "BUTTON") == "sensor BUTTON"
+    assert piece_of("compare", "LT") == "compare"
+
+
+def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
     """Each kind that it needs is there without the lesson, one level below some are missing. Who
-    has chosen more keeps it."""
+    has more keeps it, after a reload, too."""
     kinds: dict[str, set[str]] = {}
     for level in LEVELS:
         page.select_option("#level", level)
         kinds[level] = offered(page)
     page.select_option("#level", "few")
+    level = "few"
     for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed = set(page_lessons.needed(number, "en")) & kinds["all"]
-        level = page.input_value("#level")
-        assert level == next(each for each in LEVELS if needed <= kinds[each] | {"set"}), number
-    page.select_option("#level", "all")
+        least = next(each for each in LEVELS if needed <= kinds[each] | {"set"})
+        level = max(level, least, key=LEVELS.index)
+        assert page.input_value("#level") == level, number
+    page.select_option("#level", "few")
     open_lesson(page, 1)
-    assert page.input_value("#level") == "all"
+    assert page.input_value("#level") == "few"
+    open_lesson(page, 5)
+    open_lesson(page, 1)
+    assert page.input_value("#level") == "usual"
+    page.reload()
+    page.locator("#lesson").wait_for(state="attached")
+    assert page.input_value("#level") == "usual"
+
+
+def test_each_lesson_has_a_block_that_glows_at_a_first_visit(page: Page) -> None:
+    for number in LESSONS:
+        open_lesson(page, number)
+        page.locator(FRESH).first.wait_for()
+        page.locator(FRESH).first.click()
+        page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh").first.wait_for()
+
+
+def test_a_lesson_takes_no_block_away(page: Page) -> None:
+    """Lesson 13 is solved best by what lesson 7 has brought."""
+    open_lesson(page, 13)
+    page.select_option("#level", "few")
+    assert "endless" in offered(page)
 
 
 @drawn

@@ -365,3 +365,49 @@ def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
     page.click("#start_lessons")
     page.locator("#lesson_next:enabled").wait_for()
     assert page.locator("#writing").is_visible()
+
+
+@pytest.mark.parametrize("number", [1, 11])
+def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, number: int) -> None:
+    """It brings its own robot and an empty program; the other one comes back after the lesson."""
+    robot, own = (
+        ("liner", "SI|IF(LINE_L);S;END_IF") if number == 1 else ("tinibot", "SI|SHOW(DISTANCE)")
+    )
+    page.click("#side_virtual")
+    page.select_option("#robot", robot)
+    write(page, own)
+    page.click("#side_lessons")
+    choose(page, 2)
+    choose(page, number)
+    lesson = catalogue.load(FOLDERS[number - 1])
+    noted(page, "Your program is kept, and comes back after the lesson.")
+    assert page.input_value("#robot") == lesson.robot
+    checked(page)
+    assert page.locator("#messages li").count() == 0
+    page.click("#side_virtual")  # where nothing was done, nothing is lost
+    page.locator(".cm-content", has_text=own).wait_for()
+    assert page.input_value("#robot") == robot
+    page.click("#side_lessons")
+    noted(page, "Your program is kept, and comes back after the lesson.")
+    write(page, "SI|F(1, 80)")
+    page.click("#side_virtual")
+    checked(page)
+    assert "F(1, 80)" in page.inner_text(".cm-content")  # the lesson goes on
+    page.click("#home")
+    page.click("#start_write")
+    page.locator(".cm-content", has_text=own).wait_for()
+    assert page.input_value("#robot") == robot
+    assert page.locator("#world option", has_text="Lesson").count() == 0
+    page.click("#my_programs")
+    names = page.locator("#versions strong").all_inner_texts()
+    page.click("#programs_close")
+    assert lesson.title("en").replace(":", "") in names
+
+
+def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
+    """And one that was wrong before stays as it is, too, and one that names its robot."""
+    for own in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
+        write(page, own)
+        for number in (1, 11):
+            choose(page, number)
+        assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]

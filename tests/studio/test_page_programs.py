@@ -14,7 +14,7 @@ import pytest
 
 from tests.studio.programs import programs
 from tests.support.rows import each_row
-from tests.support.studio import Pages, asked, axe, checked, image, in_phase, noted, write
+from tests.support.studio import SETTLED, Pages, asked, axe, checked, image, in_phase, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
@@ -477,17 +477,26 @@ def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
 
 def test_a_stop_is_in_reach(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
-    for stop in ("click", "Escape"):
-        page.click("#run")
+    page.click("#run")
+    in_phase(page, "running")
+    page.click("#my_programs")
+    page.click("#programs_stop")
+    in_phase(page, "ended")
+    page.click("#programs_close")
+
+
+def test_escape_closes_a_window_and_only_then_stops(page: Page) -> None:
+    write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    page.click("#run")
+    in_phase(page, "running")
+    for opens, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
+        page.click(opens)
+        page.keyboard.press("Escape")
+        page.locator(window).wait_for(state="hidden")
+        page.evaluate(SETTLED)
         in_phase(page, "running")
-        page.click("#my_programs")
-        if stop == "click":
-            page.click("#programs_stop")
-        else:
-            page.keyboard.press("Escape")
-        in_phase(page, "ended")
-        if page.locator("#programs").is_visible():
-            page.click("#programs_close")
+    page.keyboard.press("Escape")
+    in_phase(page, "ended")
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

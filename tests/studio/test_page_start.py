@@ -30,6 +30,13 @@ drawn = pytest.mark.sampled(of="details of the start", keep=2)
 
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music", "drive")
 START = "html[data-screen=start]"
+NOTES_CONFETTI = """() => {
+  window.thrown = 0;
+  new MutationObserver((all) => {
+    const added = all.flatMap(({ addedNodes }) => [...addedNodes]);
+    window.thrown += added.filter((each) => each.className === 'confetti').length;
+  }).observe(document.body, { childList: true });
+}"""
 
 
 SIZES = ((1366, 768), (1024, 600), (820, 1180), (390, 844))
@@ -220,6 +227,56 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     assert screen(start) == "program"
     assert start.evaluate("document.documentElement.dataset.phase") != "running"
     assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
+
+
+def test_a_program_without_a_name_is_called_by_its_first_block(start: Page) -> None:
+    start.click("#start_write")
+    start.click("#view_text")
+    for program in ("SI|F(2.5, 80)", "// a\nSB|LOOP(FOREVER); F(20 CM, 50); END_LOOP", "A = 3"):
+        start.click("#bar_new")
+        write(start, program)
+    start.click("#home")
+    names = start.locator("#start_programs strong")
+    assert names.all_inner_texts() == [
+        "A = 3",
+        "// a SB|LOOP(FOREVER); F(20 CM, 50); END_LOOP",
+        "SI|F(2.5, 80)",
+    ]
+    start.click("#start_write")
+    start.click("#view_blocks")
+    start.click("#home")
+    assert names.all_inner_texts() == ["Program 3", "repeat forever", "forward 2.5 s at 80 %"]
+    speak(start, "es")
+    assert names.all_inner_texts() == ["Programa 3", "repite para siempre", "avanza 2.5 s al 80 %"]
+
+
+def test_a_world_that_is_solved_is_celebrated_and_its_stars_are_kept(start: Page) -> None:
+    start.evaluate(NOTES_CONFETTI)
+    start.click("[data-begin=line]")
+    start.select_option("#speed", "20")
+    start.locator("#score.whole").wait_for()
+    stars = start.inner_text("#score").count("★")
+    assert stars > 0 and start.evaluate("window.thrown") == 1
+    start.click("#stop")
+    assert ("★" * stars) in str(start.locator("#world option[value=line]").text_content())
+    start.click("#home")
+    assert start.locator("#start_badge").inner_text().startswith(f"★ {stars}")
+
+
+def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
+    """Neither a way on the floor nor a crash is of the program before."""
+    start.click("[data-begin=obstacle]")
+    start.locator("#values dd").first.filter(has_text="1.").wait_for()
+    before = start.locator("#arena").screenshot()
+    start.click("#bar_new")
+    start.wait_for_function("document.documentElement.dataset.phase === 'off'")
+    assert set(start.locator("#values dd").all_inner_texts()) == {"–"}
+    start.evaluate(SETTLED)
+    fresh = start.locator("#arena").screenshot()
+    assert fresh != before
+    start.click("#erase_ways")
+    start.evaluate(SETTLED)
+    assert start.locator("#arena").screenshot() == fresh
 
 
 @drawn

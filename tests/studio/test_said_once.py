@@ -72,7 +72,7 @@ def sentences_of(number: int, language: str, form: str) -> list[str]:
 
 def found_sentences(language: str) -> Iterator[str]:
     """Each sentence that a check says, with the words and the examples that it may have."""
-    names = re.findall(r"{(\w+)}", "".join(texts("lessons", language).values()))
+    names = re.findall(r"{(\w+)}", str(texts("lessons", language)))
     values = {**dict.fromkeys(names, "3"), "truth": "✓", "name": "HOP", "what": "DISTANCE"}
     for key in texts("lessons", language):
         if not key.startswith("said/"):

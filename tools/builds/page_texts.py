@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from tiniscript.base.languages import Texts, language_info, texts
+from tiniscript.base.languages import Texts, language_info, table, texts
+from tiniscript.base.words import WORDS
+from tiniscript.robots import load, names
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
@@ -22,6 +24,20 @@ COMMAND_TEXTS = {
 }  # fmt: skip
 
 
+def looked_for(language: str) -> dict[str, str]:
+    """Return by which words somebody may look for a block: those of the lexicon, by what they mean.
+
+    The key is a word of the text, or `turn` for those of them that turn.
+    """
+    wanted = {"turn", *WORDS, *(each for name in names() for each in load(name).kit.names)}
+    result: dict[str, str] = {}
+    for row in table(language, "lexicon.txt").split("\n"):
+        meaning, bar, words = (part.strip() for part in row.partition("|"))
+        if bar and meaning in wanted:
+            result[f"words/{meaning}"] = words.lower().replace("_", " ")
+    return result
+
+
 def page_texts(language: str) -> dict[str, str | list[str]]:
     """Return the page's texts by key; of one with a plural, its forms.
 
@@ -34,6 +50,7 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     }
     return {
         "": info.form_digits,
+        **looked_for(language),
         **{
             key: value if isinstance(value, str)
             else [value.get(form, value["other"]) for form in info.forms]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from tiniscript.studio.block_kinds import KIND_OF
+from tiniscript.studio.block_kinds import KIND_OF, KINDS, piece_of
 
 # A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; else what is done to the parts
 # before, with an empty text. `BRACKETS` stand around a lone number; `NOTHING` is an empty place.
@@ -98,6 +98,22 @@ def kinds_in(form: Form) -> set[str]:
         kinds.add(block.kind)
         kinds.update(KIND_OF[op] for value in block.values for op, _ in value if op != "NUMBER")
     return kinds
+
+
+def pieces_in(form: Form) -> set[tuple[str, str]]:
+    """Return what a program's blocks are to who looks for them, and how each is used: with a unit,
+    or a word of one's own with values."""
+    items: set[tuple[str, str]] = set()
+    for block in in_order(form.body):
+        use = block.word.partition(" ")[2] if KINDS[block.kind].units else ""
+        if block.kind in ("def", "call") and block.values:
+            use = "values"
+        items.add((piece_of(block.kind, block.word), use))
+        items.update(
+            (piece_of(KIND_OF[op], text or op), "")
+            for value in block.values for op, text in value if op != "NUMBER"
+        )  # fmt: skip
+    return items
 
 
 def lone_block(form: Form) -> Block | None:

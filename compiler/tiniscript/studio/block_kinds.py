@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import MOVES, UNIT_OF, WORDS, Word
 
 
@@ -20,8 +21,8 @@ class Kind(NamedTuple):
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
     to choose from instead, and `units` of those the units after the first value, instead of
     seconds. `is_hat`: it begins a stack, which is its body. `gives` is what a block gives that is a
-    value, and `part` which part of an expression it is, where its words are none. `says` is what it
-    says in all languages.
+    value, and `part` which part of an expression it is, where its words are none. `is_each_word`:
+    whoever builds finds one for each word. `says` is what it says in all languages.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Kind(NamedTuple):
     is_hat: bool = False
     gives: str = ""
     part: str = ""
+    is_each_word: bool = False
     field: str = ""
     words: tuple[str, ...] = ()
     units: Mapping[str, str] = {}
@@ -56,7 +58,7 @@ def kind_of(word: Word) -> str:
 SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
 COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
 KINDS = {kind.name: kind for kind in (
-    Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF),
+    Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF, is_each_word=True),
     Kind("move_until", "move", ("number", "number", "truth"), words=MOVES, units=UNIT_OF),
     Kind("wait", "time", ("number",)),
     Kind("wait_until", "time", ("number", "truth")),
@@ -66,7 +68,7 @@ KINDS = {kind.name: kind for kind in (
     Kind("beep", "time", ("number", "number")),
     Kind("show", "time", ("any",)),
     Kind("read", "sensors", field="sensor"),
-    Kind("set", "sensors", ("any",), field="actuator"),
+    Kind("set", "sensors", ("any",), field="actuator", is_each_word=True),
     Kind("call", "words", field="name"),
     Kind("assign", "names", ("any",), field="name", says="%1 = %2"),
     Kind("if", "control"),
@@ -81,7 +83,7 @@ KINDS = {kind.name: kind for kind in (
     Kind("grey", "grey", field="line", says="%1"),
     Kind("number", "numbers", gives="number", part="NUMBER", says="%1"),
     Kind("name", "names", gives="any", part="NAME", field="name", says="%1"),
-    Kind("sensor", "sensors", gives="any", part="SENSOR", field="sensor", says="%1"),
+    Kind("sensor", "sensors", gives="any", part="SENSOR", field="sensor", is_each_word=True, says="%1"),
     Kind("truth", "decide", gives="truth", words=("TRUE", "FALSE"), says="%1"),
     Kind("time", "time", gives="number", part="TIME"),
     Kind("endless", "time", gives="number", part="FOREVER"),
@@ -106,7 +108,7 @@ PLAIN = {
 }
 KINDS |= {kind.name: kind for kind in (
     Kind(
-        plain_kind(count), "time", ("number",) * count,
+        plain_kind(count), "time", ("number",) * count, is_each_word=True,
         words=tuple(word.text for word in _PLAIN if len(word.arguments) == count),
         says=" ".join(f"%{k + 1}" for k in range(count + 1)),
     )
@@ -118,6 +120,20 @@ KINDS |= {kind.name: kind for kind in (
 KIND_OF = {name.upper(): name for name in KINDS}
 for _kind in reversed(KINDS.values()):
     KIND_OF.update((word, _kind.name) for word in (_kind.part, *_kind.words) if word)
+_SETS = {device.name: device.name.partition("_")[0] for device in REMOTE}  # KEY, PAD
+
+
+def piece_of(kind: str, word: str) -> str:
+    """Return what a block is to who looks for it: its kind, and its word if each has its own.
+
+    A set of keys is one. `page/words.js` says the same.
+    """
+    if kind not in KINDS or not KINDS[kind].is_each_word:
+        return kind
+    name = word.partition(" ")[0]
+    return f"{kind} {_SETS.get(name, name)}"
+
+
 SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **PLAIN}
 
 

@@ -7,6 +7,7 @@ this when lessons are first looked at.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,8 +27,9 @@ from tiniscript.lessons.variation import is_mirrored, point_of, vary
 from tiniscript.library.compiling import compile_source, fit_to_robot, image_maker
 from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.link.session import Session
-from tiniscript.studio.block_form import kinds_in, lone_block
-from tiniscript.studio.block_kinds import KIND_OF
+from tiniscript.studio.block_form import Form as BlockForm
+from tiniscript.studio.block_form import kinds_in, lone_block, pieces_in
+from tiniscript.studio.block_kinds import KIND_OF, piece_of
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import NONCE, Marks, Simulation
@@ -87,24 +89,42 @@ def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
 @cache
 def taught(number: int, language: str) -> list[str]:
     """Return the kinds of blocks that a lesson speaks of, and those that its task asks for."""
-    words = {word for code in _codes(number, language) for word in WORD.findall(code)}
-    return sorted({*needed(number, language), *_kinds_of(words)})
+    return sorted({*needed(number, language), *_kinds_of(_words(number, language))})
+
+
+def offered(number: int, language: str) -> list[str]:
+    """Return the kinds of blocks that lessons have spoken of, this one included."""
+    return sorted({kind for each in range(1, number + 1) for kind in taught(each, language)})
 
 
 @cache
 def needed(number: int, language: str) -> list[str]:
     """Return the kinds of blocks of a lesson's programs, and those that its task asks for."""
-    lesson = _lesson(number)
-    kit = profile_of(lesson.robot).kit
-    words = {word for criterion in lesson.criteria for word in criterion.words}
-    kinds = (kinds_in(read(text, kit)) for text in _programs(number, language))
-    return sorted(_kinds_of(words).union(*kinds))
+    kinds = (kinds_in(form) for form in _forms(number, language))
+    return sorted(_kinds_of(_asked(number)).union(*kinds))
 
 
 def new(number: int, language: str) -> list[str]:
-    """Return the kinds of blocks that a lesson speaks of and no lesson before it."""
-    before = (kind for other in range(1, number) for kind in taught(other, language))
-    return sorted({*taught(number, language)}.difference(before))
+    """Return the blocks that a lesson speaks of and no lesson before it.
+
+    Where it has none, those that the fewest lessons before it speak of: they are the newest.
+    """
+    before = Counter(item for other in range(1, number) for item in _items(other, language))
+    own = _items(number, language)
+    least = min((before[each] for each in own), default=0)
+    return sorted({item for item, use in own if before[item, use] == least})
+
+
+@cache
+def _items(number: int, language: str) -> frozenset[tuple[str, str]]:
+    """Return the blocks that a lesson speaks of, and how each is used."""
+    kit = profile_of(_lesson(number).robot).kit
+    words = _asked(number) | _words(number, language)
+    items = {piece_of(KIND_OF[word], word) for word in words & WORDS.keys() & KIND_OF.keys()}
+    items |= {piece_of("sensor", device.name) for device in kit.readings if device.name in words}
+    items |= {piece_of("set", device.name) for device in kit.actuators if device.name in words}
+    in_programs = set[tuple[str, str]]().union(*map(pieces_in, _forms(number, language)))
+    return frozenset(in_programs.union((item, "") for item in items))
 
 
 def spoken(number: int, language: str) -> dict[str, dict[str, Any]]:
@@ -129,6 +149,22 @@ def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
 
 def _kinds_of(words: set[str]) -> set[str]:
     return {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()}
+
+
+def _asked(number: int) -> set[str]:
+    """Return the words that a lesson's task asks for."""
+    return {word for criterion in _lesson(number).criteria for word in criterion.words}
+
+
+def _words(number: int, language: str) -> set[str]:
+    """Return the words of the code in a lesson's sentences and hints."""
+    return {word for code in _codes(number, language) for word in WORD.findall(code)}
+
+
+def _forms(number: int, language: str) -> list[BlockForm]:
+    """Return the programs of a lesson's steps as blocks."""
+    kit = profile_of(_lesson(number).robot).kit
+    return [read(text, kit) for text in _programs(number, language)]
 
 
 def _programs(number: int, language: str) -> list[str]:

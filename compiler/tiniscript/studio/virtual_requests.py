@@ -178,7 +178,7 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "lesson_steps": lambda fields, data: {
         "steps": _lessons().steps(fields["number"], fields["language"]),
         "block_steps": _lessons().steps(fields["number"], fields["language"], "blocks"),
-        "taught": _lessons().taught(fields["number"], fields["language"]),
+        "offered": _lessons().offered(fields["number"], fields["language"]),
         "needed": _lessons().needed(fields["number"], fields["language"]),
         "new": _lessons().new(fields["number"], fields["language"]),
         "spoken": _lessons().spoken(fields["number"], fields["language"]),

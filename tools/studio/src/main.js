@@ -116,9 +116,14 @@ const panel = new RobotPanel({
   python,
   goTo: (place) => views.goTo(place),
 });
-new Lessons({
+const lessons = new Lessons({
   python,
-  put: (program) => programs.replace({ ...program, name: '' }),
+  work,
+  put: (program) => programs.replace(program),
+  exchange: (program) => {
+    programs.keep();
+    fill(program);
+  },
   driving,
 });
 chooseSide();
@@ -150,6 +155,7 @@ new Start({
     element('programs', HTMLDialogElement).close();
     driving.leave();
     programs.keep();
+    lessons.leave();
   },
 });
 if ('class' in document.documentElement.dataset) {
@@ -238,13 +244,19 @@ robots.addEventListener('change', async () => {
 
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {
-  pageState.note.set('');
   showScreen('program');
   phone.show('program');
+  fill(program);
+}
+
+/** @param {{text: string, robot: string, name: string}} program begins anew, whatever is seen */
+function fill(program) {
+  pageState.note.set('');
   if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
   views.begin();
   editor.replace(program.text);
+  driving.beginAnew();
   remember();
 }
 

@@ -3,7 +3,7 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, isLoose, formOfOne, keepPlaces, kindsIn, knownPlaces, makeRoom, showForm } from './form.js';
+import { clear, drawForm, formOf, isLoose, formOfOne, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
 import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setNarrow, setNew, setRobot } from './shapes.js';
@@ -51,10 +51,12 @@ export class Blocks {
   #used = { names: [], words: [] };
   /** @type {string[]} */
   #taught = [];
-  /** Kinds that the open lesson is the first to speak of. @type {string[]} */
+  /** Blocks that are the newest of the open lesson. @type {string[]} */
   #new = [];
-  /** Kinds that have been in the program. @type {Set<string>} */
+  /** Blocks that somebody has used. @type {Set<string>} */
   #tried = new Set();
+  /** Those of the program that the page has brought. @type {string[]} */
+  #given = [];
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
@@ -319,7 +321,7 @@ export class Blocks {
   }
 
   #offered() {
-    const fresh = this.#new.filter((kind) => !this.#tried.has(kind));
+    const fresh = this.#new.filter((item) => !this.#tried.has(item));
     setNew(fresh);
     this.#place.style.setProperty('--new', JSON.stringify(text('block_new')));
     return toolbox(this.#level, this.#used, this.#taught, fresh);
@@ -358,6 +360,11 @@ export class Blocks {
   /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
   #seeBeginning() {
     if (!this.#isTouched) this.#workspace.scroll(0, 0);
+  }
+
+  /** What is shown next has been brought by the page, so nobody has used its blocks. @param {Form | null} form null where somebody made it */
+  setGiven(form) {
+    this.#given = form ? piecesIn(blocksOf(form)) : [];
   }
 
   /** The next blocks are of another program, which is seen from its beginning. */
@@ -431,13 +438,14 @@ export class Blocks {
 
   /** Offers the names that the program has. @param {Form} form */
   #use(form) {
-    const blocks = inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+    const blocks = blocksOf(form);
     const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
     const counts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
     const used = { names: of('assign'), words: [...counts].sort() };
-    const tried = kindsIn(blocks).filter((kind) => !this.#tried.has(kind));
-    for (const kind of tried) this.#tried.add(kind);
-    const isTried = tried.some((kind) => this.#new.includes(kind));
+    const items = piecesIn(blocks);
+    const tried = [...new Set(items)].filter((item) => !this.#tried.has(item) && countOf(items, item) > countOf(this.#given, item));
+    for (const item of tried) this.#tried.add(item);
+    const isTried = tried.some((item) => this.#new.includes(item));
     if (!isTried && JSON.stringify(used) === JSON.stringify(this.#used)) return;
     this.#used = used;
     if (!this.#workspace.isDragging()) this.#offer();
@@ -635,4 +643,14 @@ function withoutSound(make) {
   } finally {
     page.AudioContext = AudioContext;
   }
+}
+
+/** @param {Form} form @returns {import('./form.js').FormBlock[]} */
+function blocksOf(form) {
+  return inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+}
+
+/** @param {string[]} items @param {string} wanted */
+function countOf(items, wanted) {
+  return items.filter((item) => item === wanted).length;
 }

@@ -8,7 +8,7 @@ import { calledEarly, inTextOrder } from './hats.js';
 import { wordOf, wordOn } from './places.js';
 import { Checker } from './shapes.js';
 import { atOnce, slowly } from './slices.js';
-import { KINDS } from '../page/words.js';
+import { KINDS, pieceOf } from '../page/words.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
 /** @typedef {[string, string][]} Value */
@@ -278,9 +278,12 @@ function partOf(block) {
   return part ? [part, word] : [word, ''];
 }
 
-/** @param {FormBlock[]} blocks @returns {string[]} their kinds, and those of their values */
-export function kindsIn(blocks) {
-  return blocks.flatMap(({ kind, values }) => [kind, ...values.flatMap((value) => value.flatMap(([op]) => KIND_OF.get(op) ?? []))]);
+/** @param {FormBlock[]} blocks @returns {string[]} they and those of their values, as `pieceOf` has them */
+export function piecesIn(blocks) {
+  return blocks.flatMap(({ kind, word, values }) => [pieceOf(kind, word), ...values.flatMap((value) => value.flatMap(([op, name]) => {
+    const inside = KIND_OF.get(op);
+    return inside ? pieceOf(inside, name || op) : [];
+  }))]);
 }
 
 // -- a form to blocks ------------------------------------------------------------------------------

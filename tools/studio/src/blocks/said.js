@@ -66,6 +66,22 @@ export function labelOfBlock({ kind, word, values }) {
   return labelOf(kind === 'set' && !deviceCalled(word) ? 'call' : kind, word, places.map(({ said }) => said));
 }
 
+/**
+ * @param {string} line of a text, an instruction with its values in brackets
+ * @returns {string} what its block says, with gaps for values that are no numbers; nothing where no block has it
+ */
+export function labelOfLine(line) {
+  const [, word = '', inside = ''] = /^(\w+)\s*(?:\((.*)\))?/.exec(line) ?? [];
+  const found = kindOf(word.toUpperCase()), isEndless = /^FOREVER$/i.test(inside.trim());
+  const kind = found === 'loop' && isEndless ? 'forever' : found;
+  if (!kind) return '';
+  const parts = inside.split(',').map((part) => /^\s*(-?\d+(?:\.\d+)?)\s*(CM|DEG)?\s*$/i.exec(part));
+  const unit = parts[0]?.[2]?.toUpperCase() ?? '';
+  /** @type {Value[]} */
+  const values = parts.map((part, k) => (part ? [['NUMBER', part[1] ?? '']] : k === 0 && /^\s*FOREVER\b/i.test(inside) ? [['FOREVER', '']] : []));
+  return labelOfBlock({ kind, word: `${word.toUpperCase()} ${unit}`.trim(), values }).said;
+}
+
 /** @param {string} word alone @returns {Label | null} what is on its block; null where it has none */
 export function labelOfWord(word) {
   const device = deviceCalled(word);

@@ -6,7 +6,7 @@ import { ArrowField, LineField, NameField, NumberField, UnitField } from './fiel
 import { CALL, DEF } from './own_words.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
-import { devicesOf, KINDS, nameOf, onBlock, REMOTE, tipOf } from '../page/words.js';
+import { devicesOf, KINDS, nameOf, onBlock, pieceOf, REMOTE, tipOf } from '../page/words.js';
 
 /** @import { Place, Kind } from '../page/words.js' */
 
@@ -156,7 +156,10 @@ function fold(block, is) {
 
 /** @param {any} block @param {string} kind */
 function glow(block, kind) {
-  if (block.isInFlyout && fresh.includes(kind)) block.addClass('fresh');
+  if (!block.isInFlyout) return;
+  queueMicrotask(() => { // once it has its word
+    if (!block.isDisposed() && fresh.includes(pieceOf(kind, String(block.getFieldValue('WORD') ?? '')))) block.addClass('fresh');
+  });
 }
 
 /** @param {Blockly.Block} block @param {string} kind @param {Kind} shape */

@@ -4,8 +4,8 @@
 
 import { labelOf } from './said.js';
 import { devices } from './shapes.js';
-import { known, text } from '../page/texts.js';
-import { KINDS, onBlock, PLAIN, plainKind, tipOf } from '../page/words.js';
+import { hasText, known, text } from '../page/texts.js';
+import { KINDS, onBlock, pieceOf, PLAIN, plainKind, tipOf, writtenOn } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
 /** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
@@ -128,6 +128,11 @@ function groups(used) {
   ];
 }
 
+/** @param {Item} each */
+function wordOf(each) {
+  return /** @type {{WORD?: string}} */ (each.fields ?? {}).WORD ?? '';
+}
+
 const MOST_FOUND = 8; // are seen at once
 
 /** @param {string} said @returns {string} in small letters without accents */
@@ -135,20 +140,32 @@ function plainly(said) {
   return said.toLowerCase().normalize('NFD').replace(/[\u0300-\u036f]/g, '');
 }
 
+/** Where a word that somebody looks for may be, the best first; in no place of them a block is not found. */
+const PLACES = 5;
+
 /**
  * @param {string} words that somebody looks for
  * @param {Used} used
- * @returns {object[]} blocks whose label has them, or their word in the text, or what is said of what they do
+ * @returns {object[]} blocks whose label has them, or their word in the text, or what people call it, what is said of what they do, or their group
  */
 export function found(words, used) {
   const wanted = plainly(words).split(/\s+/).filter(Boolean);
-  const rows = groups(used).flatMap(([, items]) => items.map(([, each]) => {
-    const word = /** @type {{WORD?: string}} */ (each.fields ?? {}).WORD ?? '';
+  const rows = groups(used).flatMap(([group, items]) => items.map(([, each]) => {
+    const word = wordOf(each);
     const choices = word ? [] : (KINDS[each.type]?.words ?? []).map(onBlock);
-    const names = plainly([labelOf(each.type, word, null).said, word, each.type, ...choices].join(' ')), tip = plainly(tipOf(each.type));
-    return { each, rank: wanted.every((part) => names.includes(part)) ? Number(!names.startsWith(wanted[0] ?? '')) : wanted.every((part) => tip.includes(part)) ? 2 : 3 };
+    const label = plainly([labelOf(each.type, word, null).said, word, each.type, ...choices].join(' '));
+    const called = ` ${peopleSay(each.type, word)}`, tip = plainly(tipOf(each.type)), over = ` ${plainly(text(known(`group/${group}`)))}`;
+    const ranks = wanted.map((part) => [label.startsWith(part), label.includes(part), called.includes(` ${part}`), tip.includes(part), over.includes(` ${part}`), true].indexOf(true));
+    return { each, rank: Math.max(...ranks) };
   }));
-  return rows.filter(({ rank }) => rank < 3).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ each }) => ({ ...each, gap: 8 }));
+  return rows.filter(({ rank }) => rank < PLACES).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ each }) => ({ ...each, gap: 8 }));
+}
+
+/** What people say for the words that a block stands for, by the lexicon of their language. @param {string} kind @param {string} word @returns {string} */
+function peopleSay(kind, word) {
+  const words = word ? [word] : KINDS[kind]?.words ?? [];
+  const meant = [...words, ...[kind, ...words].flatMap((each) => writtenOn(each)), ...words.some((each) => KINDS['move']?.units[each] === 'DEG') ? ['turn'] : []];
+  return plainly(meant.map((each) => (hasText(`words/${each}`) ? text(known(`words/${each}`)) : '')).join(' '));
 }
 
 /**
@@ -168,8 +185,8 @@ export function levelOf(kinds, used) {
 /**
  * @param {Level} level
  * @param {Used} used
- * @param {string[]} taught kinds of blocks that the open lesson speaks of
- * @param {string[]} fresh those of them that glow
+ * @param {string[]} taught kinds of blocks that lessons have spoken of
+ * @param {string[]} fresh blocks that glow, as `pieceOf` has them
  * @returns {any}
  */
 export function toolbox(level, used, taught, fresh) {
@@ -182,7 +199,7 @@ export function toolbox(level, used, taught, fresh) {
       kind: 'category',
       name: text(known(`group/${name}`)),
       categorystyle: name,
-      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, { type }]) => fresh.includes(type)) ? ' fresh' : ''}` },
+      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, each]) => fresh.includes(pieceOf(each.type, wordOf(each)))) ? ' fresh' : ''}` },
       contents: items.map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };

@@ -2,6 +2,7 @@
 
 import { button, labelled, made } from '../page/made.js';
 import { element, say } from '../page/elements.js';
+import { whenEscaped } from '../page/escape.js';
 import { bugSaid } from '../page/faults.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
@@ -51,9 +52,7 @@ export class Group {
     box.append(this.#box);
     element('run', HTMLButtonElement).addEventListener('click', () => this.#member.finish());
     element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
-    addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.#stop();
-    }, { capture: true });
+    whenEscaped(() => this.#stop());
     this.#show('');
   }
 

@@ -46,6 +46,8 @@ export class Pupil {
   #work;
   #page;
   #box = element('class_pupil', HTMLElement);
+  /** Where the box is until the pupil has joined: whoever opens the class's address sees nothing before it. */
+  #entry = element('class_entry', HTMLElement);
   #code = made('input');
   #name = made('input');
   #join = made('form', '', labelled('class_code', this.#code), labelled('class_name', this.#name), made('button', 'class_join'));
@@ -94,7 +96,10 @@ export class Pupil {
     this.#group = new Group(page, this.#box);
     const token = kept(PLACE, 'sessionStorage');
     if (token) this.#begin(token);
-    else this.#leave('class_welcome');
+    else {
+      this.#leave('class_welcome');
+      this.#code.focus();
+    }
   }
 
   async #enter() {
@@ -115,7 +120,8 @@ export class Pupil {
     askAs(token);
     keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
     keepAt(BEFORE, token);
-    this.#join.hidden = true;
+    this.#join.hidden = this.#entry.hidden = true;
+    element('class_place', HTMLElement).append(this.#box);
     this.#hands.hidden = false;
     this.#group.enter();
     this.#look();
@@ -129,7 +135,8 @@ export class Pupil {
     this.#group.exit();
     askAs('');
     keepAt(PLACE, '', 'sessionStorage');
-    this.#join.hidden = false;
+    this.#join.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
+    this.#entry.append(this.#box);
     this.#ask.hidden = this.#quit.hidden = this.#connect.hidden = this.#hands.hidden = true;
     this.#say(why);
   }
@@ -247,7 +254,7 @@ export class Pupil {
   /** The class is over. @param {boolean} isErased */
   #end(isErased) {
     this.#leave(isErased ? 'class_erased' : 'class_kept');
-    this.#join.hidden = true;
+    this.#join.hidden = element('class_entry_title', HTMLElement).hidden = true;
     if (!isErased) return;
     forgetAll();
     this.#page.empty();

@@ -17,6 +17,7 @@ import { currentLanguage, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 
 /** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
+/** @typedef {{text: string, robot: string, name: string}} Program */
 /** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
@@ -32,7 +33,9 @@ import { isSecond } from '../page/twice.js';
 /**
  * @typedef {object} Page what the lessons need of the page
  * @property {import('../python.js').Python} python
- * @property {(program: {text: string, robot: string}) => void} put another program into the editor
+ * @property {import('../programs/work.js').Work} work
+ * @property {(program: Program) => void} put another program into the editor, which is seen then
+ * @property {(program: Program) => void} exchange it, whatever is seen
  * @property {import('../virtual/simulator_panel.js').SimulatorPanel} driving
  */
 
@@ -76,6 +79,9 @@ export class Lessons {
   #found = { said: [], block_said: [] };
   #hasPassed = false;
   #isPlaying = false;
+  /** This person's program, which comes back after the lesson. @type {Program | null} */
+  #own = null;
+  #ownName = ''; // of the lesson's program
 
   /** @param {Page} page */
   constructor(page) {
@@ -113,6 +119,9 @@ export class Lessons {
       this.#fill();
     });
     pageState.robotName.subscribe(() => this.#fill());
+    pageState.side.subscribe((side) => {
+      if (side !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
+    });
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
       if (this.#isShown) this.#forget();
     });
@@ -126,7 +135,7 @@ export class Lessons {
 
   #show() {
     if (this.#isShown) {
-      if (this.#steps.length) this.#seeWorld(1);
+      if (this.#steps.length) this.#enter().catch((why) => this.#fail(why));
       return;
     }
     this.#isShown = true;
@@ -196,7 +205,7 @@ export class Lessons {
     const asked = ++this.#asked;
     const language = currentLanguage();
     this.#forget();
-    const { steps, block_steps, taught, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
+    const { steps, block_steps, offered, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     const isOther = number !== this.#number || !this.#steps.length;
     this.#number = number; // from now on: until then the one before is seen and checked
@@ -204,9 +213,9 @@ export class Lessons {
     this.#steps = steps;
     this.#blockSteps = block_steps;
     this.#spoken = spoken;
-    pageState.taughtBlocks.set({ offered: taught, needed, fresh });
+    pageState.taughtBlocks.set({ offered, needed, fresh });
     this.#go(isOther ? 0 : this.#step);
-    if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
+    if (isOther && !element('lessons', HTMLElement).hidden) await this.#enter();
     this.#setReady(true);
   }
 
@@ -255,7 +264,7 @@ export class Lessons {
   #readerOf(lesson) {
     return {
       use: (program) => {
-        this.#page.put({ text: program, robot: lesson.robot });
+        this.#page.put(this.#lend(lesson, program));
         pageState.note.set(text('lesson_used'));
       },
       say: (code) => {
@@ -276,6 +285,45 @@ export class Lessons {
     this.#next.hidden = isTask && !(this.#hasPassed && this.#number < this.#lessons.length);
     this.#next.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
     if (activeElement instanceof HTMLElement && activeElement.hidden) element('lesson_page', HTMLElement).focus();
+  }
+
+  /** Has the lesson's robot and world seen. */
+  async #enter() {
+    const asked = this.#asked, lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    const isForOther = await this.#isForOther(lesson);
+    if (asked !== this.#asked) return;
+    if (isForOther) {
+      this.#page.exchange(this.#lend(lesson, ''));
+      pageState.note.set(text('lesson_own'));
+    }
+    await this.#seeWorld(1);
+  }
+
+  /** Whether the program in the editor is right on its robot and wrong on a lesson's. @param {Lesson} lesson */
+  async #isForOther(lesson) {
+    const now = pageState.programText.value, robot = pageState.robotName.value;
+    if (robot === lesson.robot || pageState.isRobotNamed.value || pageState.group.value || !now.trim()) return false;
+    const program = new TextEncoder().encode(now), language = currentLanguage();
+    /** @param {string} each */
+    const isRight = async (each) => Boolean((await this.#page.python.ask({ do: 'check', robot: each, language }, program)).image);
+    return await isRight(robot) && !(await isRight(lesson.robot)) && now === pageState.programText.value;
+  }
+
+  /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} program @returns {Program} */
+  #lend(lesson, program) {
+    const { text: whole, robot, name } = this.#page.work;
+    if (!this.#own || name !== this.#ownName) this.#own = { text: whole, robot, name };
+    this.#ownName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
+    return { text: program, robot: lesson.robot, name: this.#ownName };
+  }
+
+  /** The lesson is over: this person's own program comes back, unless another one has been opened since. */
+  leave() {
+    const own = this.#own;
+    this.#own = null;
+    if (!own || this.#page.work.name !== this.#ownName || pageState.group.value) return;
+    this.#page.exchange(own);
+    this.#page.driving.leaveLesson();
   }
 
   /** @param {number} seed */

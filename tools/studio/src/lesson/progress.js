@@ -1,4 +1,4 @@
-// Which lessons are done, and the stars for each, kept on this device.
+// Which lessons are done, and the stars for each and for each world with a task, kept on this device.
 //
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
@@ -36,7 +36,12 @@ export function keepStars(name, count) {
   return keepAt(STARS_PLACE, JSON.stringify(Object.fromEntries(stars.set(name, count))));
 }
 
-/** All stars of all lessons. */
+/** @param {string} name of a shipped world @returns {string} how its stars are kept; no lesson is called so */
+export function worldStars(name) {
+  return `world_${name}`;
+}
+
+/** All stars of all lessons and worlds. */
 export function starsInAll() {
   return [...lessonStars().values()].reduce((sum, count) => sum + count, 0);
 }

@@ -5,10 +5,10 @@
 /** @typedef {{line: number, column: number, point: object}} Breakpoint */
 
 /**
- * @typedef {object} Taught kinds of blocks of the open lesson
- * @property {string[]} offered that it speaks of
- * @property {string[]} needed in its programs, or by its task
- * @property {string[]} fresh that no lesson before it speaks of
+ * @typedef {object} Taught blocks of the open lesson
+ * @property {string[]} offered kinds that it speaks of, or a lesson before it
+ * @property {string[]} needed kinds in its programs, or by its task
+ * @property {string[]} fresh its newest, as `pieceOf` has them
  */
 
 /** @template T */

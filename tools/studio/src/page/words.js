@@ -4,7 +4,7 @@
 import blocks from '../../made/blocks.json';
 import description from '../../made/description.json';
 import { pageState } from './page_state.js';
-import { called, hasText, text } from './texts.js';
+import { called, hasText, known, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, example: string}} Word */
 
@@ -53,11 +53,23 @@ export function nameOf(device) {
 }
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, is_hat: boolean, gives: '' | Place, part: string, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
+/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, is_hat: boolean, gives: '' | Place, part: string, is_each_word: boolean, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
 
 export const KINDS = /** @type {Record<string, Kind>} */ (blocks.kinds);
 /** @type {Record<string, string>} */
 const SAYS = blocks.says;
+
+const SETS = new Map(REMOTE.map(({ text: name }) => [name, name.split('_')[0] ?? '']));
+
+/**
+ * What a block is to who looks for it: its kind, and its word if each has its own. A set of keys is one; `block_kinds.py`
+ * says the same.
+ * @param {string} kind @param {string} word @returns {string}
+ */
+export function pieceOf(kind, word) {
+  const name = word.split(' ')[0] ?? '';
+  return KINDS[kind]?.is_each_word ? `${kind} ${SETS.get(name) ?? name}` : kind;
+}
 
 /** @param {number} count of values @returns {string} the kind of the words that have none of their own, as `block_kinds.py` calls it */
 export const plainKind = (count) => (count ? `plain_${count}` : 'plain');
@@ -67,6 +79,12 @@ export const PLAIN = description.words.filter(({ text: word, arguments: values }
 export function onBlock(name) {
   const key = `block/${name}`;
   return labelled(hasText(key) ? text(key) : SAYS[name] ?? '');
+}
+
+/** @param {string} name of a kind of block, or of what may be chosen @returns {string[]} the words of the text that stand on it */
+export function writtenOn(name) {
+  const key = `block/${name}`;
+  return [...(hasText(key) ? text(known(key)) : SAYS[name] ?? '').matchAll(/\{(\S+?)\}/g)].map(([, word]) => word ?? '');
 }
 
 /** @param {string} name of a kind of block @returns {string} what it does, said when a pointer rests on it, or nothing */

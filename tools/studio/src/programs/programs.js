@@ -219,12 +219,12 @@ export class Programs {
   #showVersions() {
     const language = currentLanguage();
     const time = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
-    const rows = versions().map((version) => {
+    const rows = versions().map((version, k, all) => {
       const at = new Date(version.at_ms);
       const said = time.format(at);
       const when = made('time', '', said);
       when.dateTime = at.toISOString();
-      const title = titleOf(version), robot = called(robotOf(version.robot)?.labels ?? {}) || version.robot;
+      const title = titleOf(version, all.length - k), robot = called(robotOf(version.robot)?.labels ?? {}) || version.robot;
       const open = button('', () => {
         this.replace(version);
         this.#window.close();

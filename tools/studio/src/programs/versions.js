@@ -2,6 +2,9 @@
 //
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
+import { labelOfLine } from '../blocks/said.js';
+import { pageState } from '../page/page_state.js';
+import { text as said } from '../page/texts.js';
 import { isRobot } from '../page/words.js';
 import { keepAt, keptForm } from '../page/kept.js';
 
@@ -34,9 +37,18 @@ export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
   return all.length > 0;
 }
 
-/** Its name, or else how it begins. @param {Version} version @returns {string} */
-export function titleOf({ name, text }) {
-  return name.replace(/\.\w+$/, '') || beginOf(text);
+/**
+ * Its name; else its first block in words for who sees blocks, and for who sees text its first lines.
+ * @param {Version} version @param {number} number @returns {string}
+ */
+export function titleOf({ name, text }, number) {
+  const begin = pageState.view.value === 'blocks' ? labelOfLine(firstLine(text)) || said('program_unnamed', { number }) : beginOf(text);
+  return name.replace(/\.\w+$/, '') || begin;
+}
+
+/** Its first instruction. @param {string} text @returns {string} */
+function firstLine(text) {
+  return text.replace(/\/\/.*$/gm, '').replace(/^\s*(?:SI|SB|PING)\s*\|/i, '').split(/[;\n]/).map((line) => line.trim()).find(Boolean) ?? '';
 }
 
 /** Its first lines as one, with no character cut in two. @param {string} text @returns {string} */

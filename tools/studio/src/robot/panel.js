@@ -2,6 +2,7 @@
 // Everything that a robot says is put there as text, never as markup.
 
 import { element } from '../page/elements.js';
+import { whenEscaped } from '../page/escape.js';
 import { faultSaid } from '../page/faults.js';
 import { bytesOf, whenChosen } from '../page/files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
@@ -132,9 +133,7 @@ export class RobotPanel {
       meet: (port) => this.#bySerial(Promise.resolve(port)),
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
-    addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.stop();
-    }, { capture: true });
+    whenEscaped(() => this.stop());
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') this.#hide();
     });

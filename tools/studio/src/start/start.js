@@ -47,7 +47,7 @@ export class Start {
       this.#showPrograms();
       element(screen === 'start' ? 'start' : 'home', HTMLElement).focus({ preventScroll: true });
     });
-    pageState.language.subscribe(() => this.#showPrograms());
+    for (const each of [pageState.language, pageState.view]) each.subscribe(() => this.#showPrograms());
     if (isStart()) this.#showPrograms();
     else page.see();
   }
@@ -82,8 +82,8 @@ export class Start {
     if (!isStart()) return;
     this.#showProgress();
     const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
-    const rows = versions().slice(0, MOST).map((version) => {
-      const title = made('strong', '', titleOf(version)), when = made('time', '', time.format(new Date(version.at_ms)));
+    const rows = versions().map((version, k, all) => /** @type {const} */ ([version, all.length - k])).slice(0, MOST).map(([version, number]) => {
+      const title = made('strong', '', titleOf(version, number)), when = made('time', '', time.format(new Date(version.at_ms)));
       return made('li', '', button('', () => this.#page.put(version), thumbnail(version.text, version.robot), title, when));
     });
     element('start_programs_title', HTMLElement).hidden = !rows.length;

@@ -2,6 +2,7 @@
 
 import { Arena } from './arena.js';
 import { element, hide, say } from '../page/elements.js';
+import { whenEscaped } from '../page/escape.js';
 import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { rangeAt, Stops } from '../writing/parts.js';
@@ -20,6 +21,8 @@ import { known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 import { devicesOf, nameOf } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
+import { celebrate } from '../lesson/celebration.js';
+import { keepStars, worldStars } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, written } from '../page/rows.js';
 import { howEnded, starsShown, Where } from './where.js';
@@ -66,6 +69,7 @@ export class SimulatorPanel {
   /** The newest one. @type {Run | null} */
   #newest = null;
   #bumps = 0; // that were seen
+  #canEarn = false; // stars: the run is of the whole program, in a world of its own task
   /** What each SHOW has shown last. @type {Map<string, string>} */
   #shown = new Map();
   /** What each had shown when somebody looks back. @type {Map<string, string>} */
@@ -149,9 +153,7 @@ export class SimulatorPanel {
       this.#simulator.push();
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
-    addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.stop();
-    }, { capture: true });
+    whenEscaped(() => this.stop());
     const speed = element('speed', HTMLSelectElement);
     offer(speed, SPEEDS.map((each, k) => pictured(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
     speed.value = '1';
@@ -263,6 +265,19 @@ export class SimulatorPanel {
     if (!this.#isWaiting) return;
     this.#note = text('run_waits');
     this.#show();
+  }
+
+  /** Another program begins: with its robot at the start, on a floor without trails. */
+  beginAnew() {
+    this.#arena.eraseWays();
+    this.begin();
+  }
+
+  /** What a lesson has brought goes. */
+  leaveLesson() {
+    if (!this.#world.isOfLesson) return;
+    this.#world.choose(this.#page.work.world);
+    this.#enter();
   }
 
   /** Another screen is seen. */
@@ -475,6 +490,7 @@ export class SimulatorPanel {
     this.#sounds.begin();
     this.#wasStopped = false;
     this.#bumps = 0;
+    this.#canEarn = !judged && !played && !alone;
     this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
     this.#plot.begin();
     this.#shown.clear();
@@ -516,6 +532,19 @@ export class SimulatorPanel {
     }
     if (!played?.again && !this.#isAlone) this.runs.begin(run);
     return run;
+  }
+
+  /** A world is solved: that is celebrated once a run, and its stars are kept. @param {number} stars */
+  #earn(stars) {
+    if (!stars || !this.#canEarn) return;
+    this.#canEarn = false;
+    const { request } = this.#world;
+    if (typeof request === 'string') {
+      if (!keepStars(worldStars(request), stars)) pageState.note.set(text('not_kept'));
+      this.#world.showStars();
+    }
+    this.cheer();
+    celebrate();
   }
 
   /** Its task is solved: it is glad, and that is heard. */
@@ -613,6 +642,7 @@ export class SimulatorPanel {
       this.#sounds.crash();
     }
     this.#bumps = state.bumps;
+    this.#earn(state.score?.stars ?? 0);
     for (const [at_ms, what] of state.events) {
       const [word, hertz, lasts_ms] = what.split(' ');
       if (word !== 'BEEP') continue;

@@ -7,6 +7,7 @@ import { pageState } from '../page/page_state.js';
 import { called, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
 import { OwnWorlds } from './own.js';
+import { lessonStars, worldStars } from '../lesson/progress.js';
 import { OWN_WORLD } from '../programs/work.js';
 
 /** @typedef {import('./parts.js').World} World */
@@ -65,6 +66,16 @@ export class WorldChoice {
   /** Whether the world that is seen was drawn or opened here. */
   get isOwn() {
     return !this.#brought && this.#own.newest !== null && this.#work.world === OWN_WORLD;
+  }
+
+  /** Whether a lesson has brought the world that is seen. */
+  get isOfLesson() {
+    return typeof this.#brought?.request === 'object' && this.#brought.request !== null && 'lesson' in this.#brought.request;
+  }
+
+  /** The stars of a world are others than before. */
+  showStars() {
+    this.#show();
   }
 
   get goals() {
@@ -127,11 +138,11 @@ export class WorldChoice {
 
   #show() {
     const brought = this.#brought;
-    const { newest, before } = this.#own;
+    const { newest, before } = this.#own, stars = lessonStars();
     /** @param {World} world */
     const label = (world) => called(world.labels).trim() || text('world_own');
     this.#choice.replaceChildren(
-      ...WORLDS.map((world) => pictured(called(world.labels), world.name, worldPicture(world))),
+      ...WORLDS.map((world) => pictured(`${called(world.labels)} ${'★'.repeat(stars.get(worldStars(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
       ...(newest ? [pictured(label(newest), OWN_WORLD, worldPicture(newest))] : []),
       ...before.map((world, k) => pictured(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
       ...(brought ? [new Option(brought.label(), BROUGHT)] : []),

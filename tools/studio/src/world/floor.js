@@ -13,10 +13,11 @@ const GRID_CM = 10; // while a world is changed
 const TILE_CM = 25;
 const LAWN_CM = 7; // around a house
 const DASH_CM = 6; // of the white line in the middle of a street
+const NIGHT_PERCENT = 5; // of light, at most, where it is night
 const PAPER = '#fffdf6', NIGHT = '#27324b';
 const TILES = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
 /** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'city' | 'ring'>} */
-const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring', sumo: 'ring' };
+const THEMES = { dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring', sumo: 'ring' };
 
 /**
  * @param {Pen} pen
@@ -33,7 +34,7 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
   for (const ring of world.rings) drawRing(pen, ring);
   for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
-    const reach = THEMES[world.name] === 'night' ? [46, 30, 17] : [];
+    const reach = themeOf(world) === 'night' ? [46, 30, 17] : [];
     for (const each of reach) dot(pen, x, y, each, '#ffe9a324');
     dot(pen, x, y, 9, '#ffe9a3');
     dot(pen, x, y, 3, '#e08a1e');
@@ -47,9 +48,14 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
   }
 }
 
+/** @param {World} world */
+function themeOf({ name, ambient_percent: light }) {
+  return light <= NIGHT_PERCENT ? 'night' : THEMES[name];
+}
+
 /** @param {Pen} pen @param {World} world */
 function drawTheme(pen, world) {
-  const { width_cm: width, height_cm: height } = world, theme = THEMES[world.name];
+  const { width_cm: width, height_cm: height } = world, theme = themeOf(world);
   pen.fillStyle = theme === 'night' ? NIGHT : theme === 'city' ? '#dfe2e6' : theme === 'ring' ? '#e9eef2' : PAPER;
   pen.fillRect(0, 0, width, height);
   if (theme === 'tiles') {

@@ -6,6 +6,7 @@ import { bugSaid } from '../page/faults.js';
 import { blocksPicture, offer, pictured } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
+import { isGiven } from '../start/beginnings.js';
 
 /** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
 /** @typedef {import('../blocks/form.js').Form} Form */
@@ -119,14 +120,17 @@ export class Views {
     if (this.#isOn) import('../blocks/blocks.js');
   }
 
-  /** Offers what the open lesson speaks of, at the level that it needs; whoever wants another one chooses it. */
+  /** Offers what lessons have spoken of. The level rises to what the open one needs, and stays there: none takes blocks away. */
   #teach() {
     const taught = pageState.taughtBlocks.value;
     this.#blocks?.setTaught(taught);
     const order = LEVELS.map(([level]) => level);
     const least = this.#blocks?.levelOf(taught.needed) ?? 'few';
-    const own = this.#page.work.level;
-    this.#offer(order.indexOf(least) > order.indexOf(own) ? least : own);
+    if (order.indexOf(least) > order.indexOf(this.#page.work.level)) {
+      this.#page.work.level = least;
+      this.#page.remember();
+    }
+    this.#offer(this.#page.work.level);
   }
 
   /** @param {'few' | 'usual' | 'all'} level */
@@ -370,6 +374,7 @@ export class Views {
         }
         this.#shown = now;
         this.#changes = 0;
+        this.#blocks.setGiven(isGiven(now) ? form : null);
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
         if (group && !(await group.blocksShown(this.#blocks.lines)).is_known) this.#shown = null;
