@@ -236,12 +236,14 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     assert axe(page) == []
     page.keyboard.type(taught.room.code)
     page.keyboard.press("Tab")
-    page.keyboard.type("Ana")
+    page.keyboard.type("Eva")
     page.keyboard.press("Enter")
     page.locator("#class_entry").wait_for(state="hidden")
     page.click("#side_real" if size[0] > size[1] else "#other")
     page.click("#side_real")
-    said(page, "Estás en la clase, Ana")
+    said(page, "Estás en la clase, Eva")
+    page.close()
+    only_ana(taught)
 
 
 def test_a_wrong_code_is_said_and_a_pupil_is_removed(
