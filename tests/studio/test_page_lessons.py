@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.sampling import some_of
-from tests.support.studio import Pages, axe, checked, in_phase, noted, speak, turn, write
+from tests.support.studio import Pages, axe, checked, colors_of, in_phase, noted, speak, turn, write
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 drawn = pytest.mark.sampled(of="details of lessons", keep=3)
 
 FOLDERS = catalogue.folders()
+NIGHT = "39,50,75"
 SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
 PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 
@@ -411,3 +412,9 @@ def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
         for number in (1, 11):
             choose(page, number)
         assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]
+
+
+def test_a_room_that_a_lesson_calls_dark_is_dark(page: Page) -> None:
+    choose(page, 13)
+    page.locator("#world option:checked", has_text="13").wait_for(state="attached")
+    assert NIGHT in colors_of(page, "#arena")
