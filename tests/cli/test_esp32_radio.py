@@ -104,7 +104,7 @@ def test_a_network_of_its_own_is_said_to_be_unstable_beside_bluetooth(robot: Esp
     """By the table of Espressif's page on coexistence; Bluetooth is always on."""
     assert claimed(robot).code == 0
     done = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
-    assert done.code == 0 and "192.168.4.1" in done.out and "unstable" in done.out
+    assert done.code == 0 and "192.168.4.1" in done.out and "unreliable" in done.out
     assert "inestable" in on(robot, "set", "wifi", "--lang", "es").out
     assert "instável" in on(robot, "set", "wifi", "--lang", "pt").out
     assert on(robot, "set", "wifi", "--forget").code == 0

@@ -153,7 +153,7 @@ def test_wrong_use_says_the_next_step(
 def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     """A link in a circle, to nothing, a pipe, an image: nobody waits, and nobody is left out."""
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
-    assert "its text" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
+    assert "its source" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
     (folder / "image.ts").write_bytes(b"TS\x02\0")
     (folder / "circle.ts").symlink_to("circle.ts")
     (folder / "nothing.ts").symlink_to("gone")

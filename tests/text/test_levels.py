@@ -244,7 +244,7 @@ def test_a_word_that_no_level_reads_is_kept_from_names_alone(
 def test_what_the_reader_needs_for_a_new_word_is_said() -> None:
     with pytest.raises(
         LookupError,
-        match=r"READ in robots/text_levels\.py.*ROLES of tools/generate/text_tables\.py",
+        match=r"READ_ROLES in robots/text_levels\.py.*ROLES of tools/generate/text_tables\.py",
     ):
         text_tables.role_of(Word("HONK", Role("honk"), (SECONDS,)))
     with pytest.raises(LookupError, match=r"OPCODES in tools/generate/text_tables\.py"):

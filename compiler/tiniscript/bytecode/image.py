@@ -70,7 +70,7 @@ _CHECKSUM_END = _CHECKSUM_OFFSET + 4
 
 
 class Image(NamedTuple):
-    """`devices` is the hash of those that the code uses; `later_fields` are fields of later
+    """`devices` is the hash of those that the code uses; `later` are fields of later
     versions.
 
     `checksum` names the program wherever it goes.
@@ -81,7 +81,7 @@ class Image(NamedTuple):
     code: bytes
     checksum: int
     isa: tuple[int, int]
-    later_fields: bytes = b""
+    later: bytes = b""
     needs: int = 0
 
 
@@ -95,16 +95,16 @@ class ImageRefused(Exception):
         self.values = values
 
 
-def pack(start: str, devices: int, code: bytes, later_fields: bytes = b"", needs: int = 0) -> bytes:
+def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later_fields` (0 to 240 bytes) are fields that this version does not know; `needs` is what
+    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is what
     its verdict says.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later_fields),
+    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later),
               devices, len(code), 0, needs)  # fmt: skip
-    return with_checksum(struct_pack(_LAYOUT, *values) + later_fields + code)
+    return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
 
 
 def isa_for_needs(needs: int) -> tuple[int, int]:
@@ -154,5 +154,5 @@ def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
         raise ImageRefused("UNKNOWN_START", found=str(start))
     if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
-    later_fields, code = data[HEADER_BYTES:header_length], data[header_length:]
-    return Image(STARTS[start], devices, code, stored_checksum, isa, later_fields, needs)
+    later, code = data[HEADER_BYTES:header_length], data[header_length:]
+    return Image(STARTS[start], devices, code, stored_checksum, isa, later, needs)

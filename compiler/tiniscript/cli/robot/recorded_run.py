@@ -62,7 +62,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     if result is None:
         return 1
     image = result.image
-    data = pack(image.start, image.devices, image.code, image.later_fields, image.needs)
+    data = pack(image.start, image.devices, image.code, image.later, image.needs)
     with convert_refusal(world.name, language):
         run = Simulation(
             robot.name, world, data, settings=Settings(seed=seed, given_readings=message)
