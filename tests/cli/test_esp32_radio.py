@@ -100,7 +100,7 @@ def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Pa
     assert asked(joined, "network") == ""
 
 
-def test_a_network_of_its_own_is_said_to_be_unstable_beside_bluetooth(robot: Esp32PtyRobot) -> None:
+def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(robot: Esp32PtyRobot) -> None:
     """By the table of Espressif's page on coexistence; Bluetooth is always on."""
     assert claimed(robot).code == 0
     done = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
@@ -108,7 +108,7 @@ def test_a_network_of_its_own_is_said_to_be_unstable_beside_bluetooth(robot: Esp
     assert "inestable" in on(robot, "set", "wifi", "--lang", "es").out
     assert "instável" in on(robot, "set", "wifi", "--lang", "pt").out
     assert on(robot, "set", "wifi", "--forget").code == 0
-    assert "unstable" not in on(robot, "set", "wifi").out
+    assert "unreliable" not in on(robot, "set", "wifi").out
 
 
 def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:

@@ -46,7 +46,7 @@ def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
         return told(place, row, gaps)
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(usage.Usage, "told", noted)
+        patched.setattr(usage.Usage, "diagnostic_of", noted)
         for row in rows():
             check.cache_clear()
             telling.clear()
