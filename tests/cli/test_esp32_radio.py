@@ -100,7 +100,9 @@ def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Pa
     assert asked(joined, "network") == ""
 
 
-def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(robot: Esp32PtyRobot) -> None:
+def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
+    robot: Esp32PtyRobot,
+) -> None:
     """By the table of Espressif's page on coexistence; Bluetooth is always on."""
     assert claimed(robot).code == 0
     done = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
