@@ -111,7 +111,8 @@ def built(header: str, board: str, more: str = "") -> bytes:
     main = Path(__file__).with_name("board_main.cpp")
     discs = ("-Dtiniscript_with_tasks", "-Dtiniscript_with_discs")  # as platformio.ini has them
     with_discs = discs if "tiniscript_discs" in header else ()
-    flags = (*flags_of(board, FLAGS), *with_discs, *CPP, "-Wall", "-Wextra", "-Werror",
+    alone = "-Dtiniscript_without_breakpoints"  # nobody is told where it halts, nor what it reads
+    flags = (*flags_of(board, FLAGS), *with_discs, alone, *CPP, "-Wall", "-Wextra", "-Werror",
              "-Wl,--gc-sections")  # fmt: skip
     made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
 

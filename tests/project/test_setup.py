@@ -412,7 +412,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
     monkeypatch.setattr(serving, "is_built", lambda: True)
     assert page_build.megabytes() == 0
     completed = subprocess.run(
-        [sys.executable, "-c", loaded().MEGABYTES], capture_output=True, text=True
+        [sys.executable, "-c", loaded().MEGABYTES_CODE], capture_output=True, text=True
     )
     assert completed.stdout.strip().isdigit(), completed.stderr
 

@@ -345,7 +345,7 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
     for key in ("Home", "Shift+ArrowDown", "Shift+ArrowDown", "Shift+ArrowDown", "Delete"):
         ana.keyboard.press(key)
     ana.keyboard.press("ArrowUp")
-    ana.locator("#class_group", has_text="does not answer").wait_for()
+    ana.locator("#class_group", has_text="is not responding").wait_for()
     goes_to(luz, "B(1, 40)")
     types(luz, "\nBEEP(1, 440)\n")
     luz.locator(".cm-content").evaluate("(it) => it.blur()")

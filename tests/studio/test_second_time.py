@@ -241,7 +241,7 @@ class HeldClient:
     holds_for_others = True
 
     def __init__(self, *_: object, **__: object) -> None:
-        self.line = SimpleNamespace(
+        self.connection = SimpleNamespace(
             held_by="upload", tell_places=lambda: None, event=lambda limit_s: sleep(limit_s)
         )
 
