@@ -585,7 +585,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(
     pages: Pages, pytestconfig: pytest.Config
 ) -> None:
     """To somebody who has chosen few blocks, so many that one of its answers is made of them alone.
-    What another lesson offers goes."""
+    What another lesson has offered stays."""
     page = pages.open(view="blocks")
     page.locator("#level").wait_for()
     few = offered(page)
@@ -593,6 +593,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     folders = catalogue.folders()
+    before = few
     for folder in some_of(pytestconfig, "offers", folders, 4):
         number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
@@ -600,14 +601,14 @@ def test_a_lesson_offers_its_words_while_it_is_open(
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         page.locator("#lesson:enabled").wait_for()
         found = offered(page)
+        assert before - {"set"} <= found, number  # its robot may switch nothing
+        before = set(found)
         found |= {"call"} if "def" in found else set()  # of a word that somebody has made
         answers = [kinds_in(read(answer.program, kit)) for answer in catalogue.answers(folder)[0]]
         assert any(kinds <= found for kinds in answers), (number, answers, found)
-        if number == 1:
-            assert found == few
     page.select_option("#lesson", "1")
     page.locator("#lesson_page[data-lesson='1']").wait_for()
-    assert offered(page) == few
+    assert offered(page) - {"set"} == before - {"set"}
     page.click("#view_text")
     page.select_option("#lesson", "6")
     page.locator("#lesson_page[data-lesson='6']").wait_for()
