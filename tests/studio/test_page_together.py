@@ -430,7 +430,7 @@ def test_the_teacher_takes_part_and_leaves(
     tile.hover()
     tile.locator("button.join").click()
     teacher.locator("html[data-group=in]").wait_for(state="attached")
-    teacher.locator("#note", has_text="You are editing the program of Red together.").wait_for()
+    teacher.locator("#note", has_text="You are editing Red’s program together.").wait_for()
     has(teacher, *[row.strip() for row in PROGRAM.splitlines()])
     teacher.click("#view_text")
     goes_to(teacher, "S;")
