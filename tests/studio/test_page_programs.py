@@ -432,6 +432,7 @@ def test_earlier_programs_come_back(page: Page) -> None:
 
 
 def test_no_more_is_kept_than_has_room(page: Page) -> None:
+    write(page, "SI|F(4, 44)")  # what is kept when somebody looks at the programs
     kept = page.evaluate(
         """() => {
           const at = 'tiniscript.versions';
