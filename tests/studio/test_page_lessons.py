@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.sampling import some_of
-from tests.support.studio import Pages, axe, checked, colors_of, in_phase, noted, speak, turn, write
+from tests.support.studio import (
+    Pages,
+    axe,
+    checked,
+    colors_of,
+    hears,
+    in_phase,
+    noted,
+    speak,
+    turn,
+    write,
+)
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
@@ -382,7 +393,9 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     choose(page, number)
     lesson = catalogue.load(FOLDERS[number - 1])
     noted(page, "Your program is kept, and comes back after the lesson.")
-    assert page.input_value("#robot") == lesson.robot
+    page.locator("#lesson:enabled").wait_for()
+    hears(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
+    page.locator(".cm-content", has_text=own).wait_for(state="detached")
     checked(page)
     assert page.locator("#messages li").count() == 0
     page.click("#side_virtual")  # where nothing was done, nothing is lost
