@@ -68,8 +68,9 @@ void note_changed(uint8_t sensor, int32_t before, int32_t value) {
 }
 
 void port_tell_readings(bool is_on) {
-  are_readings_noted = is_on;
-  begin_readings();
+  const bool were_noted = are_readings_noted;
+  are_readings_noted = is_on || link.tells_readings();
+  if (!were_noted) begin_readings();
 }
 
 bool port_has_reading() { return count != 0 || untold.first() != kAll; }

@@ -124,6 +124,9 @@ class Link {
 
   Cause cause() const { return cause_; }
 
+  // Whether this session is told what programs read.
+  bool tells_readings() const { return kTellsReadings && tells_readings_; }
+
   // Whether the last request was done.
   bool has_done() const { return said_.status == static_cast<uint8_t>(Answer::kOk); }
 

@@ -124,6 +124,13 @@ bool Links::is_attached() const {
   return false;
 }
 
+bool Links::tells_readings() const {
+  for (const Link& link : links_) {
+    if (link.tells_readings()) return true;
+  }
+  return false;
+}
+
 void Links::expire() {
   for (uint8_t place = 0; place < kTransports; place++) {
     enter(place);

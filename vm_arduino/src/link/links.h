@@ -34,6 +34,7 @@ class Links {
   bool may_halt() const;
   void drop();
   bool is_attached() const;
+  bool tells_readings() const;
   void expire();
   bool confirm_claim();
   void let_go();

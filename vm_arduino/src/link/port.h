@@ -213,8 +213,8 @@ struct tini_packed ToldReading {
   uint16_t ms;
 };
 
-// Whether readings are noted from now on, and whether there is one that has not been told. The next
-// one that is to be told, if there is.
+// Whether a session is told of readings from now on, and whether there is one that has not been told.
+// The next one that is to be told, if there is.
 void port_tell_readings(bool is_on);
 bool port_has_reading();
 ToldReading port_next_reading();

@@ -1,0 +1,49 @@
+"""Whom an ESP32 tells what its programs read, where several clients want to know it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_esp32_transports import Ends, booted, ended
+from tests.support.esp32_radio import LowEnergy, session, talk
+from tests.support.images import image_of
+from tiniscript.link.messages import AUTHORITY_MS
+from tiniscript.link.payloads import ReadingEvent
+from tiniscript.link.session import Session
+
+LIGHT, LIGHT_PIN = 1, 35  # LIGHT_L of a tinibot32
+CHANGES = 8
+READS = "SI|LOOP(FOREVER);X = LIGHT_L;W(0.1);END_LOOP"
+
+
+def readings(client: Session) -> list[ReadingEvent]:
+    return [event for event in client.events() if isinstance(event, ReadingEvent)]
+
+
+@pytest.mark.parametrize("then", ["stays", "asks again", "leaves", "comes anew"])
+def test_who_drives_has_all_readings_whatever_another_one_does(then: str) -> None:
+    """The other one has none: they are told to whom values are shown."""
+    robot = booted()
+    driver, other = session(1, robot), session(2, robot)
+    end = LowEnergy(robot)
+    ends: Ends = [(None, driver), (end, other)]
+    assert ended(robot, ends, other.tell_readings(True)) == "OK"
+    talk(robot, ends, AUTHORITY_MS + 300)  # an open page that does nothing gives way
+    assert ended(robot, ends, driver.tell_readings(True)) == "OK"
+    assert ended(robot, ends, driver.upload(image_of(READS), saves=False)) == "OK"
+    talk(robot, ends, 300)
+    if then == "asks again":
+        assert ended(robot, ends, other.tell_readings(True)) == "OTHER_DRIVER"
+    elif then == "leaves":
+        end.leave()
+        ends = ends[:1]
+    elif then == "comes anew":
+        other = session(3, robot)
+        ends = [(None, driver), (end, other)]
+        assert ended(robot, ends, other.hello()) == "OK"
+    for number in range(1, CHANGES + 1):
+        robot.analog(LIGHT_PIN, 400 * number)
+        talk(robot, ends, 300)
+    values = [event.value for event in readings(driver) if event.sensor == LIGHT]
+    assert len(values) >= CHANGES and values == sorted(values)
+    assert not readings(other)
