@@ -32,6 +32,7 @@ pytestmark = pytest.mark.usefixtures("unhurried")
 drawn = pytest.mark.sampled(of="details of groups", keep=2)
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
+ROWS = [row.strip() for row in PROGRAM.splitlines()]
 
 
 # Two looks of a pupil's page at its class.
@@ -82,9 +83,8 @@ def begins(two: tuple[Page, Page]) -> None:
     write(ana, PROGRAM)
     ana.locator("#class_group h2").click()
     ana.locator(".cm-content").evaluate("(it) => it.blur()")
-    rows = [row.strip() for row in PROGRAM.splitlines()]
     for page in (ana, luz):
-        has(page, *rows)
+        has(page, *ROWS)
 
 
 def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> None:
@@ -281,7 +281,6 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
 ) -> None:
     ana, luz = two
     begins(two)
-    rows = [row.strip() for row in PROGRAM.splitlines()]
     asked: list[str] = []
 
     def answers(dialog: Dialog) -> None:
@@ -294,7 +293,7 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
     ana.on("dialog", answers)
     ana.click("#bar_new")
     until(lambda: len(asked) == 1, "it asks")
-    has(ana, *rows)
+    has(ana, *ROWS)
     ana.click("#bar_new")
     has(luz)
     has(ana)
@@ -303,7 +302,7 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
     for page in two:
-        has(page, *rows)
+        has(page, *ROWS)
 
 
 def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
@@ -311,7 +310,6 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
 ) -> None:
     ana, luz = two
     begins(two)
-    rows = [row.strip() for row in PROGRAM.splitlines()]
     taught.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
                        "lessons": []})  # fmt: skip
     state = taught.room.teach({"do": "class"})
@@ -323,16 +321,16 @@ def test_work_that_is_given_back_waits_for_who_does_not_want_it_in_the_group(
     assert "whole group" in asked.value.message
     luz.evaluate(HEARD_TWICE)  # and is asked no more
     for page in two:
-        has(page, *rows)
+        has(page, *ROWS)
     assert [each["key"] for each in taught.room.teach({"do": "class"})["kept"]] == [kept["key"]]
     luz.click("#side_real")
     luz.click("[data-text=group_leave]")
     has(luz, "F(1, 77)")
     until(lambda: not taught.room.teach({"do": "class"})["kept"], "the class has heard of it")
-    has(ana, *rows)
+    has(ana, *ROWS)
     luz.locator("#class_group button", has_text="Red (Ana)").click()
     luz.locator("html[data-group=in]").wait_for(state="attached")
-    has(luz, *rows)
+    has(luz, *ROWS)
 
 
 def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
@@ -431,7 +429,7 @@ def test_the_teacher_takes_part_and_leaves(
     tile.locator("button.join").click()
     teacher.locator("html[data-group=in]").wait_for(state="attached")
     teacher.locator("#note", has_text="You are editing Red’s program together.").wait_for()
-    has(teacher, *[row.strip() for row in PROGRAM.splitlines()])
+    has(teacher, *ROWS)
     teacher.click("#view_text")
     goes_to(teacher, "S;")
     types(teacher, "\nW(9)\n")
