@@ -94,6 +94,12 @@ def renamed(text: str) -> tuple[str, tuple[Edit, ...]]:
     )
 
 
+OWN_BLOCKS = (
+    "IF(DISTANCE < 9)\nS\nELSEIF(DISTANCE < 8)\nW(1)\nELSE\nB(1, 60)\nENDIF",
+    "LOOP(2)\nS\nEND_LOOP", "WHILE(DISTANCE < 9)\nBREAK\nEND_WHILE", "TASK\nS\nEND_TASK",
+)  # fmt: skip
+
+
 @each_row("word", RENAMED)
 def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     """A DEF: its calls, and no move of its own; a variable: each use, and no instruction."""
@@ -102,6 +108,19 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     name, edits = renamed(text)
     made = apply_edits(text, edits)
     assert made == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
+
+
+@pytest.mark.parametrize("word", sorted(WORDS))
+def test_no_word_becomes_the_name_of_a_def(word: str) -> None:
+    """Whatever stands before and after it; a block there stays as it is under the other name."""
+    for blocks in OWN_BLOCKS:
+        for before, after in ((blocks, "S"), ("S", blocks), (blocks, blocks)):
+            text = f"{before}\nDEF {word}(A, K)\nF(A, K)\nEND_DEF\n{after}"
+            mistakes = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
+            assert mistakes, text
+            if WORDS[word].role.is_of_blocks and word not in VERSION_OF_WORD:
+                name, edits = renamed(text)
+                assert apply_edits(text, edits) == text.replace(f"DEF {word}", f"DEF {name}")
 
 
 @each_row("word", [word for word in RENAMED if word != "TIME"])

@@ -65,20 +65,26 @@ def _uses_of_a_reserved_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
     """What another name for a word of the language mends, too, as in the calls of its DEF."""
-    reserved_diagnostics = [
-        diagnostic for diagnostic in diagnostics if diagnostic.code is codes.RESERVED
-    ]
-    words = {diagnostic.values["word"] for diagnostic in reserved_diagnostics}
-    edits = [
-        diagnostic.repair.edits[1:] for diagnostic in reserved_diagnostics if diagnostic.repair
-    ]
-    renamed_spans = {edit.span for edits_of_one in edits for edit in edits_of_one}
+    explainers: dict[str, Diagnostic] = {}  # the first of each word
+    for diagnostic in diagnostics:
+        if diagnostic.code is codes.RESERVED:
+            explainers.setdefault(diagnostic.values["word"], diagnostic)
+    renamed_spans = {
+        edit.span
+        for explainer in explainers.values()
+        if explainer.repair
+        for edit in explainer.repair.edits[1:]
+    }
     starts = {span.start for span in renamed_spans}
     for diagnostic in diagnostics:
+        if diagnostic in explainers.values():
+            continue
         if starts and instruction_at(diagnostic.span, source)[0] in starts:
             yield diagnostic
             continue
-        is_of_word = diagnostic.code is codes.NO_VALUE and diagnostic.values.get("word") in words
+        is_of_word = (
+            diagnostic.code is codes.NO_VALUE and diagnostic.values.get("word") in explainers
+        )
         if is_of_word or diagnostic.span in renamed_spans:
             yield diagnostic
 

@@ -801,7 +801,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
     """Give the places where a word of the language is meant as the name of a DEF, or a variable.
 
     A DEF is called where its name stands alone, or with as many values as the DEF has and the word
-    has not, but not in its own body.
+    has not, but not in its own body. Where a word of blocks stands alone it is of a block.
     """
     depth = parameters = 0
     is_inside = is_value = False
@@ -824,7 +824,8 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
         elif is_begun and not is_inside:
             count = _value_count(tokens, k + 1)
             has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
-            if has_own_values or following.kind in (*_INSTRUCTION_STARTS, "end"):
+            is_alone = following.kind in (*_INSTRUCTION_STARTS, "end")
+            if has_own_values or (is_alone and not WORDS[word].role.is_of_blocks):
                 yield k
 
 
