@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -206,6 +208,27 @@ def test_nothing_is_said_of_a_wait_that_is_over(
     silence.cancel()
     silence._print_wait()
     assert capsys.readouterr().err == "" and not silence.is_told
+
+
+def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else it may begin while Python ends, and take it down."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    ends: list[str] = []
+
+    def begin_late(run: Callable[[], None], arguments: tuple[()]) -> None:
+        def run_late() -> None:
+            time.sleep(0.1)
+            run()
+
+        Thread(target=run_late).start()
+
+    monkeypatch.setattr(progress, "start_new_thread", begin_late)
+    monkeypatch.setattr(progress.WaitNotice, "_print_wait", lambda _: ends.append("thread"))
+    for _ in range(2):
+        with progress.show_wait("studio_stops", "en") as notice:
+            notice.cancel()
+        ends.append("wait")
+    assert ends == ["thread", "wait"] * 2
 
 
 def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(

@@ -83,8 +83,16 @@ class WaitNotice:
         self._end_bell = Bell()
         self._is_cancelled = False
         self._print_lock = allocate_lock()
+        self._thread_lock = allocate_lock()  # held until the thread has ended
         if sys.stderr.isatty():
-            start_new_thread(self._print_wait, ())  # a Thread waits, in Python, until it runs
+            self._thread_lock.acquire()
+            start_new_thread(self._run, ())  # a Thread waits, in Python, until it runs
+
+    def _run(self) -> None:
+        try:
+            self._print_wait()
+        finally:
+            self._thread_lock.release()
 
     def _print_wait(self) -> None:
         if self._is_cancelled or self._end_bell.wait(SILENCE_LIMIT_S):
@@ -99,6 +107,8 @@ class WaitNotice:
         self._end_bell.ring()
         with self._print_lock:
             self._is_cancelled = True
+        with self._thread_lock:  # a thread that begins while Python ends takes it down (3.11)
+            pass
 
 
 class RepeatedWaitNotice:
