@@ -101,6 +101,10 @@ def test_five_worlds_before_are_kept(page: Page) -> None:
     numbers = ["", " 2", " 3", " 4", " 5"]
     found = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
     assert listed(page) == found
+    page.click("#world_done")
+    page.reload()
+    checked(page)
+    assert listed(page) == found
 
 
 @drawn

@@ -8,6 +8,7 @@ import { keepWorlds, keptWorlds } from '../programs/work.js';
 /** @typedef {import('./parts.js').World} World */
 
 const MOST_BEFORE = 5;
+const NAMED = /^# (.*)\n/; // by the name of a file
 
 export class OwnWorlds {
   #python;
@@ -64,7 +65,8 @@ export class OwnWorlds {
   /** @param {World | null} world @param {string} robot @returns {Promise<string>} empty where there is none */
   async #textOf(world, robot) {
     if (!world) return '';
-    return this.#texts.get(world) ?? (await this.write(world, robot)).text ?? '';
+    const written = this.#texts.get(world) ?? (await this.write(world, robot)).text ?? '';
+    return written && world.name ? `# ${world.name}\n${written}` : written;
   }
 
   /** Brings back what was kept; returns whether the newest can still be read. @returns {Promise<boolean>} */
@@ -78,10 +80,12 @@ export class OwnWorlds {
     return !newest || this.newest !== null;
   }
 
-  /** @param {string} text @returns {Promise<World | null>} */
-  async #read(text) {
-    if (!text) return null;
-    const request = { do: 'open_world', name: '', language: currentLanguage() };
+  /** @param {string} kept @returns {Promise<World | null>} */
+  async #read(kept) {
+    if (!kept) return null;
+    const [first, name] = kept.match(NAMED) ?? ['', ''];
+    const text = kept.slice(first.length);
+    const request = { do: 'open_world', name, language: currentLanguage() };
     const { world = null } = await this.#python.ask(request, new TextEncoder().encode(text));
     if (world) this.#texts.set(world, text);
     return world;
