@@ -273,7 +273,8 @@ def stand_ins() -> Path:
         package = new_folder / "packages" / "tool-scons"
         package.mkdir(parents=True)
         (package / "scons.py").write_text(
-            f"import sys\n\nsys.path.insert(0, {str(scons)!r})\n"
+            "import sys\nfrom pathlib import Path\n\n"  # of the folder, wherever it is moved
+            f"sys.path.insert(0, str(Path(__file__).resolve().parents[3] / {scons.name!r}))\n"
             "from SCons.Script.Main import main\n\nmain()\n",
             encoding="utf-8",
         )
