@@ -46,6 +46,7 @@ void Link::pass(uint16_t now_ms) {
   const bool has_heard = receiver_->has_heard();
   const uint16_t before = left_ms_[kSilence];
   run_down(left_ms_, kTimes, passed);
+  if (kTellsReadings) pass_readings(passed);
   if (kHasLargeFrames && left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
   if (has_heard) {
     left_ms_[kSilence] = kSilenceMs;

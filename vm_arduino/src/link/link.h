@@ -323,11 +323,12 @@ class Link {
   bool has_reading() const {
     return kTellsReadings && tells_readings_ && is_listened_to() && port_has_reading();
   }
-  // Whether the line would be free without readings.
-  bool is_late() const { return kTellsReadings && left_ <= behind_; }
+  bool is_late() const { return kTellsReadings && would_be_free(); }
   bool has_late_value() const { return kTellsReadings && has_late_value_; }
   bool has_due() const { return due_ != 0 || has_late_value() || has_reading(); }
+  bool would_be_free() const;
   void catch_up();
+  void pass_readings(uint16_t passed);
   bool keep_value(int32_t value, bool is_yes_no);
   void send_late_value();
   void send_reading();
@@ -400,6 +401,7 @@ class Link {
   tini_with_readings bool has_late_value_;
   tini_with_readings uint8_t behind_;  // by how many bytes readings delay what is sent
   tini_with_readings uint8_t late_epoch_;
+  tini_with_readings uint8_t reply_bytes_;  // of the last one
   tini_with_readings ShownValue late_value_;
   tini_with_remote RemoteKeys remote_;  // what the remote control has said last
   uint32_t nonce_;  // of the session

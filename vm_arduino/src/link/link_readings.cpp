@@ -2,7 +2,7 @@
 //
 // A reading delays no program. While it is being sent, a SHOW finds room where it would without: its value
 // waits here instead. `behind_` is by how many bytes the line is behind one without readings: what is
-// left of a reading, as it was when something else began to wait for it.
+// left of a reading, and what the port holds of it, as it was when something else began to wait for it.
 
 #include "../vm/build.h"
 #include "link.h"
@@ -17,9 +17,24 @@ void Link::tell_readings(bool is_on) {
   port_tell_readings(is_on);
 }
 
+// Whether the line would be free without readings. A reply that is due takes as long as the last one: who
+// watches a run asks the same again and again.
+bool Link::would_be_free() const {
+  const uint8_t due = due_ & ~kDueText;
+  if ((due & ~kDueReply) != 0) return false;
+  return left_ + (due != 0 ? reply_bytes_ : 0) <= behind_;
+}
+
 void Link::catch_up() {
   const bool waits = (due_ & ~kDueText) != 0 || has_late_value_;
-  if (!waits && left_ < behind_) behind_ = left_;
+  const uint8_t most = static_cast<uint8_t>(left_ + kPortHolds);
+  if (!waits && most < behind_) behind_ = most;
+}
+
+// What the port holds goes out in the next milliseconds.
+void Link::pass_readings(uint16_t passed) {
+  if (left_ != 0 || due_ != 0 || has_late_value_) return;
+  behind_ = behind_ > passed ? static_cast<uint8_t>(behind_ - passed) : 0;
 }
 
 // Whether a value that would have room waits for a reading. Nothing else waits now.
@@ -46,7 +61,7 @@ void Link::send_reading() {
   begin_event(Message::kReading);
   put_all(&reading, sizeof reading);
   close();
-  behind_ = left_;
+  behind_ = static_cast<uint8_t>(behind_ + left_);
 }
 
 }  // namespace tiniscript

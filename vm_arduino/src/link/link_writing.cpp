@@ -73,7 +73,7 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.
   const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
-  if ((left_ != 0 && !(is_heard && is_late())) || (due_ & first) != 0) return false;
+  if ((left_ != 0 || (due_ & first) != 0) && !(is_heard && is_late())) return false;
   if (has_late_value()) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
@@ -100,7 +100,7 @@ void Link::send() {
     due_ &= static_cast<uint8_t>(~kDueHalted);
   }
   const uint8_t first = static_cast<uint8_t>(due_ & -due_);
-  if (kTellsReadings && has_late_value_) return send_late_value();
+  if (kTellsReadings && has_late_value_ && first != kDueReply) return send_late_value();
   if (kTellsReadings && (first & kBeforeReadings) == 0 && has_reading()) return send_reading();
   if (first == 0) return;
   if (kHasText && first == kDueText) return send_text();
@@ -119,6 +119,7 @@ void Link::send() {
     if (first == kDueFault) put_all(&port_status().fault, kFaultBytes);
   }
   close();
+  if (kTellsReadings && first == kDueReply) reply_bytes_ = size_;
 }
 
 void Link::reply() {

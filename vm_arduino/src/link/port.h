@@ -213,6 +213,13 @@ struct tini_packed ToldReading {
   uint16_t ms;
 };
 
+// As many bytes a port has taken and still sends: a UART of an AVR that one, and the one after it.
+#ifdef __AVR__
+constexpr uint8_t kPortHolds = 2;
+#else
+constexpr uint8_t kPortHolds = 1;
+#endif
+
 // Whether a session is told of readings from now on, and whether there is one that has not been told.
 // The next one that is to be told, if there is.
 void port_tell_readings(bool is_on);
