@@ -14,7 +14,10 @@ export function element(id, kind) {
 
 /** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} place @param {string} said */
 export function say(place, said) {
-  if (place.textContent !== said) place.textContent = said;
+  const { firstChild } = place;
+  if (place.textContent === said) return;
+  if (said && firstChild instanceof Text && !firstChild.nextSibling) firstChild.data = said; // for which less is laid out
+  else place.textContent = said;
 }
 
 /** Hides it or shows it, unless it is so. @param {HTMLElement} place @param {boolean} isHidden */

@@ -570,12 +570,12 @@ export class SimulatorPanel {
 
   #show() {
     const { phase } = this.#simulator, state = this.#state;
-    this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
     this.#showReadings();
     this.#arena.draw(state);
     document.documentElement.dataset['phase'] = phase;
     this.#offer();
     if (!this.#isDriving) this.#seenRun();
+    this.#showPlaces(); // last: the editor has the page laid out, which is then done once
   }
 
   /** A run that reads a remote control can be driven. */
