@@ -1,14 +1,14 @@
 """Pupils of a group in browsers, one of them with blocks: what is done to blocks is a change of
 these blocks alone.
 
-`python -m tests.studio.test_page_together_blocks 200` lets them make so many changes; a folder
-after it gets a picture of each page.
+`python -m tests.studio.test_page_together_blocks 200` lets four make so many changes, two with
+blocks and two with text; a folder after it gets a picture of each page.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -66,6 +66,17 @@ def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     ana.set_viewport_size({"width": 1366, "height": 768})
     ana.click("#view_blocks")
     return ana, luz
+
+
+def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+    """Two more of the group: Teo has blocks, Eva the text. It is full."""
+    teo, eva = (joined(pages, taught, name) for name in ("Teo", "Eva"))
+    for page in (teo, eva):
+        enters(page)
+    teo.set_viewport_size({"width": 1366, "height": 768})
+    teo.click("#view_blocks")
+    shown(teo)
+    return teo, eva
 
 
 @pytest.fixture
@@ -261,32 +272,47 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
     return True
 
 
-def race(two: tuple[Page, Page], count: int, seed: int) -> None:
-    """Let both make so many changes of the program, and look at the end whether all is one."""
-    ana, luz = two
+def race(members: Sequence[Page], count: int, seed: int) -> None:
+    """Let all make so many changes of the program, and look at the end whether it is one; every
+    other one has blocks."""
+    with_blocks, with_text = members[::2], members[1::2]
     rng = Random(seed)
     done = tries = 0
     while done < count:  # a click may come too late: others have changed what it was for
         assert tries < 10 * count
         tries += 1
-        page = rng.choice(two)
-        done += random_change(page, page is ana, rng)
-    luz.locator(".cm-content").evaluate("(it) => it.blur()")
-    until(lambda: text_of(ana).strip() == text_of(luz).strip(), "both have the same", 60)
-    shown(ana)
-    for page in two:
+        page = rng.choice(members)
+        done += random_change(page, page in with_blocks, rng)
+    for page in with_text:
+        page.locator(".cm-content").evaluate("(it) => it.blur()")
+    until(lambda: len({text_of(page).strip() for page in members}) == 1, "all have the same", 60)
+    text = text_of(with_text[0])
+    for page in members:
         page.locator("html[data-state=checked]").wait_for(state="attached")
-        until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
-    said = ana.locator(f"{PROGRAM_BLOCKS} .blocklyBlock").count()
-    assert said >= len([row for row in text_of(luz).splitlines() if row and "END_" not in row])
+        until(lambda page=page: image(page) == compile(text).image, "compiled")  # type: ignore[misc]
+    for page in with_blocks:
+        shown(page)
+        block_count = page.locator(f"{PROGRAM_BLOCKS} .blocklyBlock").count()
+        assert block_count >= len([row for row in text.splitlines() if row and "END_" not in row])
 
 
 def test_both_end_with_the_same_program(two: tuple[Page, Page]) -> None:
     race(two, 12, 1)
 
 
+@pytest.mark.long
+def test_four_end_with_the_same_program(
+    two: tuple[Page, Page], pages: Pages, taught: Class
+) -> None:
+    more = others_of(pages, taught)
+    race((*two, *more), 16, 2)
+    for page in more:
+        page.click("[data-text=group_leave]")
+        page.locator("[data-text=group_join]").wait_for()
+
+
 def main() -> None:
-    """Let pupils make so many changes in two browsers: 200, say."""
+    """Let pupils make so many changes in four browsers: 200, say."""
     count = int(sys.argv[1])
     with (
         studio.taught([]) as made,
@@ -294,11 +320,11 @@ def main() -> None:
         studio.browser(playwright) as browser,
     ):
         found = Pages(browser, made.server.address)
-        two = group_of(found, made)
+        members = (*group_of(found, made), *others_of(found, made))
         for k in range(count // 20):
-            race(two, 20, k)
+            race(members, 20, k)
             print(f"{20 * (k + 1)} changes: text, blocks and image are one", flush=True)
-        for page, name in zip(two, ("blocks", "text"), strict=True):
+        for page, name in zip(members, ("ana", "luz", "teo", "eva"), strict=True):
             if len(sys.argv) > 2:
                 page.screenshot(path=f"{sys.argv[2]}/{name}.png")
         found.close()
