@@ -315,7 +315,7 @@ def main() -> None:
     """Let pupils make so many changes in four browsers: 200, say."""
     count = int(sys.argv[1])
     with (
-        studio.taught([]) as made,
+        class_of_many() as made,
         studio.driver() as playwright,
         studio.browser(playwright) as browser,
     ):
