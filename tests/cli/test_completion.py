@@ -16,7 +16,7 @@ from tests.support.terminal import Terminal
 from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.base.languages import languages
-from tiniscript.cli.commands import completion
+from tiniscript.cli.commands import help_completion
 from tiniscript.cli.texts.options import selecting_options_of
 from tiniscript.cli.texts.verbs import VERBS, command_words
 from tiniscript.diagnostics.codes import CODES
@@ -126,7 +126,7 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
 
 def test_brackets_and_quotes_of_powershell_close() -> None:
     """There is no PowerShell here to read the script. A quote of print would close a text, too."""
-    script = completion.SCRIPTS["powershell"]
+    script = help_completion.SCRIPTS["powershell"]
     assert not set("‘’‚‛“”„") & set(script)
     code = [re.sub(r"'(?:[^']|'')*'", "''", line) for line in script.splitlines()]
     code = [line for line in code if not line.startswith("#")]

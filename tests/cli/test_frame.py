@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 from rich.text import Text
 
-from tiniscript.cli.commands import wiring
+from tiniscript.cli.commands import firmware_wiring
 from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put_letter
 from tiniscript.cli.terminal.plot import MOST_ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
@@ -243,5 +243,5 @@ def test_a_letter_takes_the_place_of_the_character_that_a_dot_lies_in() -> None:
 def test_a_table_is_straight_with_letters_that_take_two_columns(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    wiring._print_rows([("左モーター", "D5", "a"), ("motor", "D6", "b")])
+    firmware_wiring._print_rows([("左モーター", "D5", "a"), ("motor", "D6", "b")])
     assert capsys.readouterr().out == "左モーター  D5  a\nmotor       D6  b\n"

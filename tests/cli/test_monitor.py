@@ -14,7 +14,7 @@ import pytest
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
-from tiniscript.cli.commands.hold import _Log
+from tiniscript.cli.commands.monitor_hold import _Log
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.link.outcomes import LOST, Event, LostEvent
 from tiniscript.link.requests import OK

@@ -18,7 +18,7 @@ from tests.machines.host_firmware import EMPTY
 from tests.support.command import FOREVER, Command, Done, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
-from tiniscript.cli.commands import claim
+from tiniscript.cli.commands import set_owner
 from tiniscript.link import connection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
@@ -36,7 +36,7 @@ def claimed(pty_robot: PtyRobot, *options: str) -> Done:
             assert "2 s" in words
             pty_robot.hold(after_ms=1000, times=8)
 
-    with mock.patch.object(claim, "print", said, create=True):
+    with mock.patch.object(set_owner, "print", said, create=True):
         done = on(pty_robot, "set", "owner", *options)
     pty_robot.let_go()
     secrets = [key.key.hex() for key in KeyFile().all()]
@@ -61,7 +61,7 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
         pty_robot.hold()
         pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
 
-    monkeypatch.setattr(claim, "print", slowly, raising=False)
+    monkeypatch.setattr(set_owner, "print", slowly, raising=False)
     assert main(["set", "owner", "--port", pty_robot.port]) == 0
 
 

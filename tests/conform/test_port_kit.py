@@ -197,9 +197,9 @@ def flood(peer: socket.socket) -> None:
 )
 def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said: str, tsc: Tsc,
                                    monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
-    from tiniscript.cli.commands import conform
+    from tiniscript.cli.commands import doctor_conform
 
-    monkeypatch.setattr(conform, "RADIO_TIMEOUT_MS", 50)
+    monkeypatch.setattr(doctor_conform, "RADIO_TIMEOUT_MS", 50)
     with server(serve) as port:
         done = tsc("doctor", "--conform", "--port", port)
     assert done.code == 3

@@ -16,7 +16,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import NUMBER, Device, Kit
-from tiniscript.cli.commands import wiring
+from tiniscript.cli.commands import firmware_wiring
 from tiniscript.robots.boards import CHIPS, Chip
 from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS
@@ -396,7 +396,7 @@ def test_on_a_narrow_terminal_the_last_column_is_broken(
 ) -> None:
     whole = tsc("firmware", "--wiring").out
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
-    monkeypatch.setattr(wiring, "get_terminal_size", lambda: os.terminal_size((80, 24)))
+    monkeypatch.setattr(firmware_wiring, "get_terminal_size", lambda: os.terminal_size((80, 24)))
     narrow = tsc("firmware", "--wiring").out
     assert max(len(row) for row in whole.splitlines()) > 80
     assert max(len(row) for row in narrow.splitlines()) < 80

@@ -110,8 +110,8 @@ STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; 
 def verbs_for(question: str) -> list[str]:
     """Return the commands whose texts have the words of a question, best first; most have none.
 
-    A word counts more where fewer commands have it, and more in a command's name and summary than
-    in what else is said of it.
+    A word counts more where fewer commands have it, and more in a command's name (also that of the
+    verb that it was) and summary than in what else is said of it.
     """
     weights_by_command = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
@@ -145,7 +145,9 @@ def _weights(verb: str) -> dict[str, int]:
     weights |= dict.fromkeys(stems_of("says"), 2)
     weights |= dict.fromkeys(stems_of("summary"), 4)
     weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
-    return weights | dict.fromkeys(_stems(verb), 12)
+    names = [verb if verb in VERBS else ""]
+    names += [name for name, command in FORMER_COMMANDS.items() if command == verb]
+    return weights | dict.fromkeys(_stems(" ".join(names)), 12)
 
 
 def _stems(text: str) -> set[str]:
