@@ -323,7 +323,6 @@ class Link {
   bool has_reading() const {
     return kTellsReadings && tells_readings_ && is_listened_to() && port_has_reading();
   }
-  bool is_late() const { return kTellsReadings && would_be_free(); }
   bool has_late_value() const { return kTellsReadings && has_late_value_; }
   bool has_due() const { return due_ != 0 || has_late_value() || has_reading(); }
   bool would_be_free() const;

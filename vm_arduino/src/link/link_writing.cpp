@@ -73,7 +73,8 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.
   const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
-  if ((left_ != 0 || (due_ & first) != 0) && !(is_heard && is_late())) return false;
+  const bool is_busy = left_ != 0 || (due_ & first) != 0;
+  if (is_busy && !(kTellsReadings && is_heard && would_be_free())) return false;
   if (has_late_value()) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
