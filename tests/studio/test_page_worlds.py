@@ -261,6 +261,20 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
 
 
 @drawn
+@pytest.mark.parametrize("step", ["world_undo", "world_redo"])
+def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> None:
+    drag(floor, [(56, 82.5), (56, 90)])
+    floor.click("#world_undo")
+    if step == "world_undo":
+        floor.click("#world_redo")
+    assert floor.locator(f"#{step}").is_enabled()
+    floor.click("#world_done")
+    floor.select_option("#world", "maze")
+    floor.click("#world_draw")
+    assert floor.locator(f"#{step}").is_disabled()
+
+
+@drawn
 def test_nothing_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert saved(floor).start[:2] == (0, 200)
