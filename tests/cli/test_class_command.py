@@ -36,7 +36,7 @@ from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
-from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
+from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
 drawn = pytest.mark.sampled(of="commands for a class", keep=1)
 
@@ -186,7 +186,7 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
         address=("h", 1), group="c", options=SimpleNamespace(verb="class"),
         broker=SimpleNamespace(attend=print),
     )  # fmt: skip
-    here = [Present("00000001", "A", True), Present("00000002", "B", False)]
+    here = [RobotPresence("00000001", "A", True), RobotPresence("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
         options = Classroom.options_for(cast(Classroom, room), here, verb)
         assert options.verb == verb  # of an upload, who no longer reads stops the robots

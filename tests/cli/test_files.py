@@ -242,11 +242,11 @@ def names() -> set[str]:
 
 
 def test_a_lock_goes_with_its_command() -> None:
-    lock = registry.claim("socket://127.0.0.1:1")
+    lock = registry.lock_port("socket://127.0.0.1:1")
     assert lock is not None
-    assert registry.claim("socket://127.0.0.1:1") is None
+    assert registry.lock_port("socket://127.0.0.1:1") is None
     registry.tidy()
-    assert registry.claim("socket://127.0.0.1:1") is None, "it is held"
+    assert registry.lock_port("socket://127.0.0.1:1") is None, "it is held"
     assert len(names()) == 1
     lock.close()
     lock.close()
@@ -264,7 +264,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     )
     command = Command(code=code)
     command.until("held")
-    assert registry.claim("socket://x:1") is None
+    assert registry.lock_port("socket://x:1") is None
     command.kill()
     assert len(names()) == 2
     assert json.loads(inside("doctor", "--ports", "--json").out) is not None
@@ -273,7 +273,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
 
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever had it left between our opening and our locking its file; another one came."""
-    first = registry.claim("socket://x:1")
+    first = registry.lock_port("socket://x:1")
     assert first is not None
     real = registry._lock
     others: list[IO[bytes] | None] = []
@@ -282,11 +282,11 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
         if not others:
             others.append(None)
             first.close()
-            others.append(registry.claim("socket://x:1"))
+            others.append(registry.lock_port("socket://x:1"))
         return real(file)
 
     monkeypatch.setattr(registry, "_lock", lock)
-    assert registry.claim("socket://x:1") is None
+    assert registry.lock_port("socket://x:1") is None
     assert others[1] is not None, "one has it"
     others[1].close()
 

@@ -90,13 +90,13 @@ KEPT = {
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
     "robots that were met": Kept(
-        lambda number: met_robots.meet(met_file(), f"{number}{LONG}", number),
-        lambda: [*met_robots.read_met_robots(met_file()).places.values()],
+        lambda number: met_robots.remember_robot(met_file(), f"{number}{LONG}", number),
+        lambda: [*met_robots.read_met_robots(met_file()).id_by_place.values()],
         met_robots,
     ),
     "robots that may answer": Kept(
         lambda number: met_robots.accept(met_file(), number),
-        lambda: met_robots.read_met_robots(met_file()).accepted,
+        lambda: met_robots.read_met_robots(met_file()).accepted_ids,
         met_robots,
     ),
     "profiles": Kept(

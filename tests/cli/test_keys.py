@@ -131,7 +131,7 @@ def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
     changes: list[Callable[[], object]] = [
         lambda: key_file.add([ONE]), lambda: key_file.add([other, ONE._replace(which=KEY_TEACHER)]),
         lambda: key_file.add([ONE._replace(id=7)]), lambda: key_file.forget(7),
-        lambda: key_file.refuse(ONE), lambda: key_file.drop(ONE), lambda: key_file.drop(other),
+        lambda: key_file.mark_stale(ONE), lambda: key_file.drop(ONE), lambda: key_file.drop(other),
         lambda: key_file.settle(ONE._replace(id=7)),
         lambda: key_file.settle(ONE._replace(which=KEY_TEACHER)),
         lambda: key_file.create_pending_key(ONE.id, KEY_TEACHER, ONE.name),
@@ -236,7 +236,7 @@ def test_claims_that_were_left_leave_few_keys() -> None:
         last = key_file.create_pending_key(ONE.id, 1 - ONE.which, "TINI")
     other = key_file.create_pending_key(7, 0, "")
     assert last and other
-    key_file.refuse(last)
+    key_file.mark_stale(last)
     robot_keys = key_file.of_robot(ONE.id)
     assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
     assert robot_keys[-1] == last._replace(is_stale=True) and key_file.of_robot(7) == [other]
@@ -266,9 +266,9 @@ PLACE = "tcp://ana"
 
 
 def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) -> None:
-    key_file.meet(PLACE, ONE.id)
-    key_file.meet("/dev/ttyUSB0", 7)
-    key_file.meet(PLACE, 8)
+    key_file.remember_robot(PLACE, ONE.id)
+    key_file.remember_robot("/dev/ttyUSB0", 7)
+    key_file.remember_robot(PLACE, 8)
     path = key_file.path.with_name("robots.json")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
@@ -282,7 +282,7 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     key_file.accept(9)
     assert again.accepts(9) and again.robot_at(PLACE) == 8
     assert KeyFile(key_file.path, accepts_all=True).accepts(10)
-    KeyFile(key_file.path, is_for_virtual=True).meet(PLACE, 11)
+    KeyFile(key_file.path, is_for_virtual=True).remember_robot(PLACE, 11)
     assert again.robot_at(PLACE) == 8
 
 
@@ -295,13 +295,13 @@ def test_a_file_of_places_that_is_none_is_made_anew(key_file: KeyFile, data: byt
     key_file.path.parent.mkdir()
     key_file.path.with_name("robots.json").write_bytes(data)
     assert key_file.robot_at(PLACE) is None and not key_file.accepts(7)
-    key_file.meet(PLACE, 7)
+    key_file.remember_robot(PLACE, 7)
     assert key_file.robot_at(PLACE) == 7
 
 
 def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
     key_file.path.parent.write_bytes(b"a file where the folder should be")
-    key_file.meet(PLACE, 7)
+    key_file.remember_robot(PLACE, 7)
     assert key_file.robot_at(PLACE) is None
     with pytest.raises(BadKeys):
         key_file.accept(7)
@@ -312,7 +312,7 @@ def test_no_more_places_are_kept_than_a_file_holds(
 ) -> None:
     monkeypatch.setattr(met_robots, "MOST_PLACES", 3)
     for number in range(5):
-        key_file.meet(f"tcp://{number}", number)
+        key_file.remember_robot(f"tcp://{number}", number)
     assert [key_file.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]
 
 

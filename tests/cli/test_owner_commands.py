@@ -140,7 +140,7 @@ def test_a_claim_without_the_button_says_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """And where the key could not be kept the robot gives none."""
-    monkeypatch.setattr(connection, "CLAIM_LIMIT_MS", 700)
+    monkeypatch.setattr(connection, "CLAIM_TIMEOUT_MS", 700)
     on(pty_robot, "set", "owner").gives(3, "2 s")
     assert KeyFile().all() == []
     path = KeyFile().path

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tiniscript.cli.robot.remote_keys import FIRST_HOLD_S, REPEAT_HOLD_S, HeldKeys
-from tiniscript.link.remote import NOTHING_PRESSED, pressed_of
+from tiniscript.link.remote import NOTHING_PRESSED, remote_state_of
 
 UP, LEFT = "\x1b[A", "\x1b[D"
 KEYS = (
@@ -18,7 +18,7 @@ KEYS = (
 
 @pytest.mark.parametrize(("typed", "name"), KEYS)
 def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str) -> None:
-    keys, held = HeldKeys(), pressed_of([name])
+    keys, held = HeldKeys(), remote_state_of([name])
     assert not keys.take(typed, 10.0)
     assert keys.keys_at(10.0) == keys.keys_at(10.0 + FIRST_HOLD_S - 0.01) == held
     assert keys.keys_at(10.0 + FIRST_HOLD_S) == NOTHING_PRESSED
@@ -39,7 +39,7 @@ def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
             if now_s >= delay_s:
                 keys.take(UP, now_s)
             for _ in range(4):
-                assert keys.keys_at(now_s) == pressed_of(["UP"]), (delay_s, now_s)
+                assert keys.keys_at(now_s) == remote_state_of(["UP"]), (delay_s, now_s)
                 now_s += 0.01
 
 
@@ -47,18 +47,21 @@ def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
 def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
     keys = HeldKeys()
     keys.take("a" + UP[:cut], 0.0)
-    assert keys.keys_at(0.1) == pressed_of(["A"])
+    assert keys.keys_at(0.1) == remote_state_of(["A"])
     keys.take(UP[cut:] + LEFT, 0.1)
-    assert keys.keys_at(0.2) == pressed_of(["A", "UP", "LEFT"])
+    assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
 @pytest.mark.parametrize("typed", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
 def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
     keys = HeldKeys()
     assert not keys.take(typed + "\x1b", 0.0)
-    assert not keys.take("b", 0.1) and keys.keys_at(0.1) in (NOTHING_PRESSED, pressed_of(["B"]))
+    assert not keys.take("b", 0.1) and keys.keys_at(0.1) in (
+        NOTHING_PRESSED,
+        remote_state_of(["B"]),
+    )
     assert not keys.take("b", 0.2)
-    assert keys.keys_at(0.2) == pressed_of(["B"])
+    assert keys.keys_at(0.2) == remote_state_of(["B"])
 
 
 @pytest.mark.parametrize("typed", ["q", "Q", "\x04", UP + "q", "aaaq"])

@@ -48,7 +48,7 @@ class Shared:
     """The connection of another tsc: its requests are answered with `replies`, or it is gone."""
 
     robot = None
-    came = b""
+    early_bytes = b""
 
     def __init__(self, *replies: Reply[Any]) -> None:
         self.replies = list(replies)
@@ -342,7 +342,7 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
 
 def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> None:
     case.shared = Shared(Reply(LOST))
-    case.shared.came = FIRMATA
+    case.shared.early_bytes = FIRMATA
     (finding,) = case.diagnosis().findings
     assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
 

@@ -71,8 +71,8 @@ def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(c
             sentences = sentences_of(Finding(cause, True, {"said": heard}), language)
             assert all(sentences) and "{" not in "".join(sentences)
             assert heard in sentences.evidence or cause == foreign.ECHO_SKETCH
-        link = foreign.explain(foreign.Foreign(cause, "a\x1bb", True), language)
-        assert "a?b" in link.said and link.advice == sentences.advice
+        link = foreign.explain(foreign.ForeignBoard(cause, "a\x1bb", True), language)
+        assert "a?b" in link.meaning and link.advice == sentences.advice
 
 
 def test_no_sentence_is_of_a_board_that_has_no_row() -> None:

@@ -22,7 +22,7 @@ from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
     FIRST_EVENT,
-    OF_RADIO,
+    RADIO_MESSAGES,
     STATE_RUNNING,
     STATE_STOPPED,
     STATUSES,
@@ -61,9 +61,9 @@ def test_every_request_has_a_side() -> None:
     for message in BY_NAME.values():
         if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
             continue
-        payload = bytes(sum(field.low for field in message.request))
+        payload = bytes(sum(field.least_bytes for field in message.request))
         status = table.asked(stranger, message.name, payload)[0]
-        has_it = message.name not in OF_RADIO  # `test_esp32_wifi.py` asks who has a radio
+        has_it = message.name not in RADIO_MESSAGES  # `test_esp32_wifi.py` asks who has a radio
         wanted = STATUSES["NOT_OWNER" if has_it else "UNKNOWN_MESSAGE"]
         assert status == wanted, message.name
     assert state_of(table, stranger) == STATE_RUNNING
@@ -138,7 +138,7 @@ def test_wrong_keys_cost_the_owner_nothing() -> None:
     table.claimed(keys)
     wrong = Keys()
     for count in range(20):
-        wrong.found = [keys.found[0]._replace(key=bytes([200 + count] * 16))]
+        wrong.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
         thief = table.session(wrong, nonce=10 + count)
         assert owner_of(table, thief) == OF_ANOTHER
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
@@ -219,8 +219,8 @@ def forged(frames: int, seed: int) -> int:
             message = chance.choice(
                 [message for message in BY_NAME.values() if message.number < 32]
             )
-            low = sum(field.low for field in message.request)
-            high = sum(field.high for field in message.request)
+            low = sum(field.least_bytes for field in message.request)
+            high = sum(field.most_bytes for field in message.request)
             payload = chance.randbytes(chance.randint(low, high))
             if message.name == "AUTHENTICATE":
                 payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 8)))

@@ -56,7 +56,7 @@ class End:
         self.table = Owned()
         session = self.table.claimed(self.keys, which)
         assert self.table.outcome(session, session.name(NAME)) == "OK"
-        self.keys.found = [key._replace(name=NAME.decode()) for key in self.keys.found]
+        self.keys.stored_keys = [key._replace(name=NAME.decode()) for key in self.keys.stored_keys]
 
     def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
         return self.table.robot.wait(milliseconds, data)
@@ -130,7 +130,7 @@ class Between:
     def done(self, frame: Frame) -> bytes:
         """Return an answer that says done, where nothing was: of the right length."""
         message = next(message for message in BY_NAME.values() if message.number == frame.number)
-        least = sum(field.low for field in message.reply)
+        least = sum(field.least_bytes for field in message.reply)
         payload = bytearray(self.draw.randbytes(least))
         if frame.number == STATUS:
             payload[0] = STATE_STOPPED
@@ -189,7 +189,7 @@ def one_trial(end: End, seed: int) -> str:
     """Ask a robot for something beside whoever stands between; return what it was."""
     draw = random.Random(seed)
     keys = Keys()
-    keys.found = list(end.keys.found)
+    keys.stored_keys = list(end.keys.stored_keys)
     session = end.session(draw.getrandbits(32), keys)
     cleared = draw.choice((0, *CLEARED))
     greets = {HELLO} | ({AUTHENTICATE} if draw.random() < 0.5 else set())
@@ -232,15 +232,15 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
     """Ask a robot for something where another one answers, or one with another id; return what."""
     draw = random.Random(seed)
     keys = Keys()
-    keys.found = list(end.keys.found)
+    keys.stored_keys = list(end.keys.stored_keys)
     how = draw.choice(("id", "robot", "id, greeted", "robot, greeted"))
     is_place = draw.random() < 0.5
     if is_place:  # nobody knows its name, but the robot has answered here
-        keys.found = [key._replace(name="") for key in keys.found]
+        keys.stored_keys = [key._replace(name="") for key in keys.stored_keys]
     place = PLACE if is_place else draw.choice(("", "tcp://bob"))
     session = end.session(draw.getrandbits(32), keys, place)
     honest(end, session, session.hello())
-    assert keys.places.get(PLACE) == (end.keys.found[0].id if is_place else None)
+    assert keys.id_by_place.get(PLACE) == (end.keys.stored_keys[0].id if is_place else None)
     if state_of(end) != STATE_RUNNING:
         begun(end, draw)
     if "greeted" not in how:
@@ -273,8 +273,8 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
             expected.append(STATUSES["WRONG_KEY"])
         status = request.outcome.status if request.outcome else LOST
         assert status in expected, f"seed {seed}: {how}: {kind}: {status}"
-    shown = {key.key for key in end.keys.found}
-    assert {key.key for key in keys.found} == shown, f"seed {seed}: a key is lost"
+    shown = {key.key for key in end.keys.stored_keys}
+    assert {key.key for key in keys.stored_keys} == shown, f"seed {seed}: a key is lost"
     assert state_of(end) == STATE_RUNNING, "nobody has reached it"
     return f"{kind}, {how}"
 
@@ -295,17 +295,17 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
     honest(strange, session, request)
     assert request.outcome and request.outcome.status == OTHER_ROBOT
     other = request.outcome.detail
-    keys.accepted.add(other)
+    keys.accepted_ids.add(other)
     for _ in range(2):
         honest(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
         assert session.robot and session.robot.id == other
     strange.table.claimed(keys)  # at another place
-    keys.accepted.clear()
+    keys.accepted_ids.clear()
     session = strange.session(3, keys, PLACE)
     honest(strange, session, request := session.hello())
     assert request.outcome and request.outcome.status == 0
-    assert keys.places[PLACE] == other
+    assert keys.id_by_place[PLACE] == other
 
 
 def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
@@ -313,8 +313,8 @@ def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
     strange = Stranger()
     for key in ([], [RobotKey(7, KEY_OWNER, bytes(15) + b"\7", NAME.decode())]):
         keys = Keys()
-        keys.found = key
-        keys.meet(PLACE, 7)
+        keys.stored_keys = key
+        keys.remember_robot(PLACE, 7)
         session = strange.session(4, keys, PLACE)
         honest(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
@@ -344,7 +344,7 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
     end = End()
     begun(end, random.Random(3))
     keys = Keys()
-    keys.found = [key._replace(key=bytes(15) + b"\7") for key in end.keys.found]
+    keys.stored_keys = [key._replace(key=bytes(15) + b"\7") for key in end.keys.stored_keys]
     session = end.session(99, keys)
     session.stop(0)
     assert honest(end, session, None)[-1] == "LOST"
@@ -359,17 +359,17 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
 
 def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
     end = End()
-    assert [key.uses_seals for key in end.keys.found] == [True]  # from its claim
+    assert [key.uses_seals for key in end.keys.stored_keys] == [True]  # from its claim
     keys = Keys()
     # as older files have it
-    keys.found = [key._replace(uses_seals=False) for key in end.keys.found]
+    keys.stored_keys = [key._replace(uses_seals=False) for key in end.keys.stored_keys]
     cut = Between(end, random.Random(1), OWNED, everything)
     session = end.session(50, keys)
     talk(cut, session, session.hello())
-    assert not keys.found[0].uses_seals
+    assert not keys.stored_keys[0].uses_seals
     session = end.session(51, keys)
     honest(end, session, session.hello())
-    assert keys.found[0].uses_seals
+    assert keys.stored_keys[0].uses_seals
 
 
 def either(ends: tuple[End, End, Stranger], seed: int) -> str:

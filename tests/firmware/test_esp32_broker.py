@@ -23,7 +23,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
-from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
+from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
 ID = "12345678"
 DEAD_MAN_MS = 1050
@@ -76,9 +76,9 @@ def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str
     return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 
 
-def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[Present]:
+def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
     robot.wait(20)
-    return at.present(group)
+    return at.list_robots(group)
 
 
 def motors(robot: Esp32Robot) -> str:
@@ -120,7 +120,7 @@ def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     broker: Mosquitto,
 ) -> None:
     robot, teacher, owner, ends = driving(broker)
-    assert present(robot, teacher) == [Present(ID, "tini-5678", True)]
+    assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     other = broker.connected()
     other.stop("another")
     talk(robot, ends, 1500)
@@ -152,7 +152,7 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     school_in_reach(again)
     again.wait(400)
     teacher = broker.connected()
-    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
+    until(again, lambda: present(again, teacher) == [RobotPresence(ID, "tini-5678", True)])
     assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
     assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -409,8 +409,8 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
     teacher = broker.connected()
     if not is_silent:
         robot.close()
-    gone = [Present(ID, "tini-5678", False)]
-    in_time(lambda: teacher.present("aula") == gone, "its last will")
+    gone = [RobotPresence(ID, "tini-5678", False)]
+    in_time(lambda: teacher.list_robots("aula") == gone, "its last will")
 
 
 def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
@@ -424,8 +424,8 @@ def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
     for topic, data in topics.items():
         stranger._client.publish(topic, data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)  # now it has them all
-    assert {each.id for each in teacher.present("odd")} == {"12345678", "dddddddd"}
-    assert len(teacher.present("many")) == 250
+    assert {each.id for each in teacher.list_robots("odd")} == {"12345678", "dddddddd"}
+    assert len(teacher.list_robots("many")) == 250
     for topic in topics:
         stranger._client.publish(topic, b"", retain=True)
-    in_time(lambda: teacher.present("many") == [], "they are forgotten")
+    in_time(lambda: teacher.list_robots("many") == [], "they are forgotten")

@@ -33,7 +33,7 @@ from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
-from tiniscript.link.transports.broker import Access, Broker, Present
+from tiniscript.link.transports.broker import Access, Broker, RobotPresence
 
 drawn = pytest.mark.sampled(of="an ESP32 and TLS", keep=2)
 
@@ -56,7 +56,7 @@ class Room(NamedTuple):
         return self.broker.settings()._replace(name=name.encode(), tls=tls)
 
     def connected(self) -> Broker:
-        return self.broker.connected(Access(is_tls=True, trusted=str(self.authority.file)))
+        return self.broker.connected(Access(is_tls=True, trusted_file=str(self.authority.file)))
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     keys = Keys()
     robot, _ = at(room.broker, keys, room.settings())
     teacher = room.connected()
-    assert present(robot, teacher) == [Present(ID, "tini-5678", True)]
+    assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     owner = remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
     lines = "".join(f"X = {k}; " for k in range(200))
@@ -297,4 +297,4 @@ def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room
     school_in_reach(again)
     again.wait(400)
     teacher = room.connected()
-    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
+    until(again, lambda: present(again, teacher) == [RobotPresence(ID, "tini-5678", True)])

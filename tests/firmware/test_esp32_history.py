@@ -64,7 +64,7 @@ def at_school() -> tuple[Kept, RobotKey]:
     keys = Keys()
     robot, _ = joined(keys)
     robot.wait(2000)
-    return robot.kept(), keys.found[0]
+    return robot.kept(), keys.stored_keys[0]
 
 
 class Guest(NamedTuple):
@@ -88,7 +88,7 @@ class Scene:
     def new(self, what: str) -> Client:
         self.nonce += 1
         keys = Keys()
-        keys.found = [at_school()[1]]
+        keys.stored_keys = [at_school()[1]]
         if what == "owner":
             return remote(self.robot, keys, self.nonce)
         if what == "thief":

@@ -36,7 +36,9 @@ PLACES: list[Make] = [LowEnergy, SerialPort, Network]
 
 def with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
     wrong = Keys()
-    wrong.found = [robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.found]
+    wrong.stored_keys = [
+        robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.stored_keys
+    ]
     return remote(robot, wrong, nonce)
 
 

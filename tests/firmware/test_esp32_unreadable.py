@@ -66,7 +66,7 @@ def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
     robot = started(kept, fault)
     owner = remote(robot, keys, 4)
     assert uploaded(robot, [(None, owner)], owner) == "UNREADABLE"
-    assert [(key.is_stale, key.is_pending) for key in keys.found] == [(False, False)]
+    assert [(key.is_stale, key.is_pending) for key in keys.stored_keys] == [(False, False)]
     robot.step(bytes(STOP_BYTES))
     robot.wait(20)
     assert robot.is_latched

@@ -237,7 +237,7 @@ def test_a_key_that_is_taken_away_ends_all_other_sessions_of_it() -> None:
     ends: Ends = [(None, owner), (LowEnergy(robot), over)]
     assert ended(robot, ends, over.wifi()) == "OK"
     assert ended(robot, ends, owner.disown(0)) == "OK"
-    keys.found.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # as on another computer
+    keys.stored_keys.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # as on another computer
     assert ended(robot, ends, over.name(b"mine")) == "WRONG_KEY"
 
 

@@ -148,9 +148,9 @@ class Scene:
         self.nonce += 1
         keys = Keys()
         if who in self.keys:
-            keys.found = [self.keys[who]]
+            keys.stored_keys = [self.keys[who]]
         elif who == "thief" and self.keys:
-            keys.found = [self.keys["owner"]._replace(key=bytes(range(16)))]
+            keys.stored_keys = [self.keys["owner"]._replace(key=bytes(range(16)))]
         self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=keys)
         return self.session
 
@@ -480,7 +480,7 @@ def claimed() -> tuple[bytes, Owners]:
     for which in (KEY_OWNER, KEY_TEACHER):
         table.claimed(keys, which)
     table.robot.wait(1000)
-    return table.robot.memory(), dict(zip(("owner", "teacher"), keys.found, strict=True))
+    return table.robot.memory(), dict(zip(("owner", "teacher"), keys.stored_keys, strict=True))
 
 
 def clock(rng: random.Random) -> int:

@@ -22,8 +22,8 @@ from tiniscript.link.messages import (
     FIRST_EVENT,
     MAJOR,
     MINOR,
-    OF_RADIO,
-    RETIRED,
+    RADIO_MESSAGES,
+    RETIRED_NUMBERS,
     STATUSES,
     ZERO_MS,
     payload_bytes,
@@ -35,7 +35,7 @@ TURNS = 120
 LARGEST = 63
 EVENTS = {number for number in BY_NUMBER if number >= FIRST_EVENT}
 REQUESTS = tuple(message for message in BY_NUMBER.values() if message.number not in EVENTS)
-UNKNOWN = (*RETIRED, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
+UNKNOWN = (*RETIRED_NUMBERS, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
 MOST_RETIRED = 20  # bytes of a payload: where the first byte on the wire is small, no line ends
 OK, STALE, BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
 NO_ACT = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}
@@ -106,7 +106,7 @@ class Client:
         payload = rng.randbytes(
             rng.choice((least, most, rng.randrange(most + 1), rng.randrange(57)))
         )
-        payload = payload[: MOST_RETIRED if number in RETIRED else None]
+        payload = payload[: MOST_RETIRED if number in RETIRED_NUMBERS else None]
         if fields and fields[0].name == "mode" and payload:
             payload = bytes([rng.choice(MODES)]) + payload[1:]
         if number in (BY_NAME["LIVE"].number, BY_NAME["PROGRAM"].number):
@@ -116,7 +116,7 @@ class Client:
         self.robot.did.clear()
         before = self.robot.is_latched
         status = self.ask(number, payload, epoch)[0]
-        is_known = number in BY_NUMBER and BY_NUMBER[number].name not in OF_RADIO
+        is_known = number in BY_NUMBER and BY_NUMBER[number].name not in RADIO_MESSAGES
         if not is_known:
             assert status == STATUSES["UNKNOWN_MESSAGE"]
         elif not least <= len(payload) <= most:

@@ -17,12 +17,12 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import Pressed, pressed_of
+from tiniscript.link.remote import RemoteState, remote_state_of
 from tiniscript.link.requests import OK
 
 TOLD = "// No program reads keys"
 DRIVES = "SI|F(9,50)"
-UP, A = pressed_of(["UP"]), pressed_of(["A"])
+UP, A = remote_state_of(["UP"]), remote_state_of(["A"])
 
 
 def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
@@ -32,10 +32,11 @@ def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
 
 
 WORDS = (
-    ("KEY_UP", UP), ("KEY_DOWN", pressed_of(["DOWN"])), ("KEY_LEFT", pressed_of(["LEFT"])),
-    ("KEY_RIGHT", pressed_of(["RIGHT"])), ("KEY_A", A), ("KEY_B", pressed_of(["B"])),
-    ("key_a", A), ("  Key_A ;", A), ("KEY", Pressed()), ("PAD 30 -20", Pressed(0, 30, -20)),
-    ("pad  -100   100", Pressed(0, -100, 100)), ("PAD 0 0", Pressed()),
+    ("KEY_UP", UP), ("KEY_DOWN", remote_state_of(["DOWN"])),
+    ("KEY_LEFT", remote_state_of(["LEFT"])),
+    ("KEY_RIGHT", remote_state_of(["RIGHT"])), ("KEY_A", A), ("KEY_B", remote_state_of(["B"])),
+    ("key_a", A), ("  Key_A ;", A), ("KEY", RemoteState()), ("PAD 30 -20", RemoteState(0, 30, -20)),
+    ("pad  -100   100", RemoteState(0, -100, 100)), ("PAD 0 0", RemoteState()),
 )  # fmt: skip
 ENDS = ("\n", "\r\n", "\r")
 BEFORE = (*ENDS, " \n", "\t\r\n")  # lines of nothing
@@ -44,7 +45,7 @@ BEFORE = (*ENDS, " \n", "\t\r\n")  # lines of nothing
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
 @pytest.mark.parametrize(("line", "held"), WORDS)
 def test_a_line_holds_what_it_says_for_half_a_second(
-    line: str, held: Pressed, kind: type[HostFirmware]
+    line: str, held: RemoteState, kind: type[HostFirmware]
 ) -> None:
     robot = booted(kind)
     typed(robot, "KEY_LEFT\n")

@@ -44,7 +44,7 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     table, keys = Owned(), Keys()
     session = table.claimed(keys)
-    assert [key.is_pending for key in keys.found] == [False]
+    assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == YOUR_OWN
     assert table.tries(session) == "OK"
     later = Owned(table.robot.memory(), seed=7)
@@ -79,7 +79,7 @@ def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[
     table, keys = Owned(), Keys()
     session = table.session(keys)
     assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
-    assert keys.found == []
+    assert keys.stored_keys == []
     assert owner_of(table, session) == FREE
 
 
@@ -135,7 +135,9 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
         line.pass_time(30)
         line.pass_time(1970, HELD)
         line.is_cut = what == "held and cut"
-        while what == "taken and cut" and keys.found[0].is_pending and request.outcome is None:
+        while (
+            what == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
+        ):
             line.pass_time(LINE_STEP_MS)
         line.is_cut |= what == "taken and cut"
     line.until(request)
@@ -182,7 +184,7 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table.pass_time(session, 2100, HELD)
     table.pass_time(session, cut_ms)
     later = Owned(table.robot.memory(), seed=cut_ms)
-    assert len(keys.found) in (1, 2)
+    assert len(keys.stored_keys) in (1, 2)
     assert owner_of(later, later.session(keys, nonce=77)) == YOUR_OWN
 
 
@@ -192,8 +194,8 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     for _ in range(7):  # claims that were left before the button was held
         session.claim(KEY_OWNER)
         table.pass_time(session, 300)
-        session = table.session(keys, nonce=len(keys.found) + 1)
-    left = list(keys.found)
+        session = table.session(keys, nonce=len(keys.stored_keys) + 1)
+    left = list(keys.stored_keys)
     assert len(left) == 7
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
@@ -202,14 +204,14 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     table.pass_time(session, 2100, HELD)
     table.pass_time(session, 400)
     table.robot.step(flags=RELEASED)
-    keys.found = [left[0], keys.found[-1]._replace(is_pending=True)]
+    keys.stored_keys = [left[0], keys.stored_keys[-1]._replace(is_pending=True)]
     later = table.session(keys, nonce=99)
     assert owner_of(table, later) == YOUR_OWN
-    assert [(key.key[0], key.is_pending) for key in keys.found] == [(8, False)]
+    assert [(key.key[0], key.is_pending) for key in keys.stored_keys] == [(8, False)]
     stale = Keys()
-    stale.found = left[:2]
+    stale.stored_keys = left[:2]
     assert owner_of(table, table.session(stale, nonce=100)) == OF_ANOTHER
-    assert [(key.is_pending, key.is_stale) for key in stale.found] == [(True, True)] * 2
+    assert [(key.is_pending, key.is_stale) for key in stale.stored_keys] == [(True, True)] * 2
 
 
 def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
@@ -273,11 +275,11 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     session = table.session(mine, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert session.robot
-    mine.found = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
+    mine.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
     table.claimed(other)
     for nonce in range(10, 30):  # more often than it may be tried
         assert owner_of(table, table.session(mine, nonce=nonce)) == OF_ANOTHER
-        assert [key.is_stale for key in mine.found] == [True]
+        assert [key.is_stale for key in mine.stored_keys] == [True]
     assert owner_of(table, table.session(other, nonce=40)) == YOUR_OWN
 
 
@@ -285,11 +287,11 @@ def test_a_stale_key_that_is_right_after_all_is_none() -> None:
     """As where another session came between challenge and tag."""
     table, keys = Owned(), Keys()
     table.claimed(keys)
-    keys.refuse(keys.found[0])
+    keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
     assert owner_of(table, session) == OF_ANOTHER
     assert table.tries(session) == "OK"
-    assert [key.is_stale for key in keys.found] == [False]
+    assert [key.is_stale for key in keys.stored_keys] == [False]
     assert owner_of(table, table.session(keys, nonce=10)) == YOUR_OWN
 
 

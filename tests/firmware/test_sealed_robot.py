@@ -24,8 +24,8 @@ from tiniscript.link.messages import (
     KEY_TEACHER,
     MAJOR,
     MESSAGES,
-    OF_RADIO,
     OWNERS,
+    RADIO_MESSAGES,
     SEALS,
     STATE_FAULTED,
     STATE_RUNNING,
@@ -73,9 +73,9 @@ def test_what_is_not_sealed_has_no_authority() -> None:
     recorded(table, session, FOREVER)
     open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     for message in MESSAGES:
-        if message.number >= FIRST_EVENT or message.name in {*open_to_all, *OF_RADIO}:
+        if message.number >= FIRST_EVENT or message.name in {*open_to_all, *RADIO_MESSAGES}:
             continue
-        payload = bytes(sum(field.low for field in message.request))
+        payload = bytes(sum(field.least_bytes for field in message.request))
         frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)
         said = table.answer(frame)
         assert said and said.payload[0] == STATUSES["NOT_OWNER"] and not said.is_sealed, message
@@ -168,14 +168,14 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
     """A refusal has no seal: the robot's own answer, which has one, is waited for. Whoever cuts the
     line may refuse a key for ever; without that it opens the robot again."""
     table, _, keys = opened()
-    keys.found = [robot_key._replace(is_pending=is_pending) for robot_key in keys.found]
+    keys.stored_keys = [robot_key._replace(is_pending=is_pending) for robot_key in keys.stored_keys]
     session = table.session(keys, nonce=8)
     assert refused_by_a_stranger(table, session, is_cut).status == 0
     assert session.robot and ownership_of(session.robot) == (OF_ANOTHER if is_cut else YOUR_OWN)
-    assert [key.is_stale for key in keys.found] == [is_cut]
-    assert is_cut or not keys.found[0].is_pending
+    assert [key.is_stale for key in keys.stored_keys] == [is_cut]
+    assert is_cut or not keys.stored_keys[0].is_pending
     assert table.tries(table.session(keys, nonce=9) if is_cut else session) == "OK"
-    assert [(key.is_pending, key.is_stale) for key in keys.found] == [(False, False)]
+    assert [(key.is_pending, key.is_stale) for key in keys.stored_keys] == [(False, False)]
 
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
@@ -229,12 +229,12 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
     table, session, _ = opened()
     seal = session._sealing.seal
     assert seal
-    seal.sent = LAST_COUNTER - 1
+    seal.sent_counter = LAST_COUNTER - 1
     assert table.tries(session) == "OK"
     assert session._sealing.seal is seal and seal.is_spent
     assert table.tries(session) == "OK"
     assert session._sealing.seal is not seal
-    assert session._sealing.seal and session._sealing.seal.sent < 10
+    assert session._sealing.seal and session._sealing.seal.sent_counter < 10
 
 
 def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
@@ -262,7 +262,7 @@ def cable_off(table: Owned, session: Session) -> None:
 def spent(table: Owned, session: Session) -> None:
     """The session has one more number for it."""
     if session._sealing.seal:
-        session._sealing.seal.sent = LAST_COUNTER - 1
+        session._sealing.seal.sent_counter = LAST_COUNTER - 1
 
 
 @pytest.mark.parametrize("loses", [cable_off, spent])

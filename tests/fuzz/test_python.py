@@ -140,7 +140,7 @@ def check_message(found: object) -> None:
 def check_line(data: bytes) -> None:
     """Any bytes of a stranger are a greeting, the begin of one, or none."""
     try:
-        protocol.greeting(data)
+        protocol.read_greeting(data)
         MessageReader(200).put(data)
     except BadMessage:
         return

@@ -110,7 +110,7 @@ class Device:
 class Line:
     """A connection that owns a device and a lock."""
 
-    held_by = ""
+    holder_verb = ""
 
     def __init__(self, device: Device, session: object, lock: Any, address: str) -> None:
         self.device, self.lock, self.address = device, lock, address
@@ -167,7 +167,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
                 tried()
         assert not any(each.is_open for each in Device.opened), why
-        lock = registry.claim(ADDRESS)
+        lock = registry.lock_port(ADDRESS)
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
         if sys.platform == "linux":

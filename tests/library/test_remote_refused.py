@@ -12,7 +12,7 @@ from tiniscript.library.refusing import lacks_remote, reads_remote, refusal
 from tiniscript.link.messages import PLACES, REMOTE, STATUSES
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import DeviceInfo, device_info_of
-from tiniscript.link.statuses import sentence
+from tiniscript.link.statuses import status_text
 
 ROBOT = robots.load("tinibot")
 OWN = len(ROBOT.kit.sensors)
@@ -49,5 +49,5 @@ def test_the_refusal_says_what_to_do() -> None:
     assert refused is not None and refused.status == STATUSES["NO_REMOTE"]
     assert refusal(image, ROBOT, info(PLACES | REMOTE)) is None
     for language in ("en", "es", "pt"):
-        said, advice = sentence(refused.status, 0, language)
+        said, advice = status_text(refused.status, 0, language)
         assert "KEY_UP" in said and "tsc firmware" in advice and "Nano" in advice

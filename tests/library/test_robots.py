@@ -297,7 +297,7 @@ THE_ROBOT: Any = object()
 class StoppedAtFirst:
     """A connection through a holder; a stop of somebody else cancels the first of its requests."""
 
-    held_by = "monitor"
+    holder_verb = "monitor"
     heard, is_echoed = 9, False
 
     def __init__(self, stops: int) -> None:

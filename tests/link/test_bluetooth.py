@@ -39,9 +39,9 @@ LARGEST = 65  # bytes of a frame on the wire
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """No cable, and nobody in the network, is waited for; modules say their names more often."""
     monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
-    monkeypatch.setattr("tiniscript.link.ports.find_announced", list)
+    monkeypatch.setattr("tiniscript.link.ports.find_announced_robots", list)
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISED_S)
-    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LISTED_S", 30 * ADVERTISED_S)
+    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LIST_S", 30 * ADVERTISED_S)
 
 
 # -- what is done -------------------------------------------------------------------------------

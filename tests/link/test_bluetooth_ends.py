@@ -143,7 +143,7 @@ def test_a_computer_without_bluetooth(
     with FakeBluez(has_bluez, has_adapter) as bluez:
         monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", bluez.address)
         monkeypatch.setattr(ports, "list_ports", list)
-        monkeypatch.setattr(ports, "find_announced", list)
+        monkeypatch.setattr(ports, "find_announced_robots", list)
         for language, words in zip(("en", "es"), said, strict=True):
             inside("doctor", "--identify", "--port", NAME, "--lang", language).gives(3, words)
         inside("doctor", "--ports", "--ask").gives(0, said[0])
@@ -214,12 +214,16 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
 
     loop: Any = SimpleNamespace(run=lambda work, _: asyncio.run(work))
     port = bluetooth.BluetoothPort(loop, 9600)
-    module = next(module for module in bluetooth.MODULES if module.service == service)
+    module = next(module for module in bluetooth.UART_SERVICES if module.service_uuid == service)
     client: Any = SimpleNamespace(write_gatt_char=write, is_connected=True)
     characteristic: Any = SimpleNamespace(
         properties=["write-without-response"], max_write_without_response_size=182
     )
-    port._client, port._writes, port._is_paced = client, characteristic, module.is_paced
+    port._client, port._write_characteristic, port._is_paced = (
+        client,
+        characteristic,
+        module.is_paced,
+    )
     monkeypatch.setattr(bluetooth, "asyncio", SimpleNamespace(
         sleep=sleep, TimeoutError=asyncio.TimeoutError,
         get_running_loop=lambda: SimpleNamespace(time=lambda: now_s[0]),
@@ -257,7 +261,7 @@ def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.Monkey
         answer.set()
         with pytest.raises(asyncio.CancelledError):
             await task
-        monkeypatch.setattr(bluetooth_search, "_connected", fails)
+        monkeypatch.setattr(bluetooth_search, "_connected_devices", fails)
         for _ in range(2):  # the second one begins anew
             with pytest.raises(OSError, match="gone"):
                 async with bluetooth_search._Scan():

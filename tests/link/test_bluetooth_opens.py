@@ -20,7 +20,7 @@ from tiniscript.link import errors
 from tiniscript.link.errors import PortError
 from tiniscript.link.transports import bluetooth, event_loop
 
-UART = bluetooth.MODULES[0]
+UART = bluetooth.UART_SERVICES[0]
 
 
 class Device:
@@ -68,13 +68,13 @@ class Client:
         lacks = self.device.lacks
 
         def characteristic(uuid: str) -> Any:
-            is_writes = uuid == UART.writes
+            is_writes = uuid == UART.write_uuid
             if lacks == ("writes" if is_writes else "notifies"):
                 return None
             properties = ["read"] if lacks == "write" else ["write-without-response", "notify"]
             return SimpleNamespace(uuid=uuid, properties=properties)
 
-        uuid = "of something else" if lacks == "service" else UART.service
+        uuid = "of something else" if lacks == "service" else UART.service_uuid
         return [SimpleNamespace(uuid=uuid, get_characteristic=characteristic)]
 
     async def start_notify(self, *_: object) -> None:

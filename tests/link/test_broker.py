@@ -76,8 +76,8 @@ def test_each_robot_of_a_class_is_listed(school: Mosquitto, late_s: float, gap_s
         closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
     ):
         for _ in range(2):
-            assert len(found.present("3b")) == ROBOTS
-        assert found.present("4a") == []
+            assert len(found.list_robots("3b")) == ROBOTS
+        assert found.list_robots("4a") == []
 
 
 def test_a_list_that_is_not_whole_is_none(
@@ -89,7 +89,7 @@ def test_a_list_that_is_not_whole_is_none(
         closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
         pytest.raises(PortError),
     ):
-        found.present("3b")
+        found.list_robots("3b")
 
 
 # -- what a computer says is said once ------------------------------------------------------------
@@ -120,7 +120,7 @@ def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
     own = Mosquitto(tmp_path)
     try:
         teacher = own.connected()
-        port = teacher.robot("aula", "12345678")
+        port = teacher.port_of("aula", "12345678")
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
         port.close()
@@ -158,10 +158,10 @@ def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, siz
     paho.multiple(more, "127.0.0.1", school.port, auth=access)
     with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as found:
         for _ in range(2):
-            assert len(found.present("3b")) == ROBOTS  # one of them was written over
+            assert len(found.list_robots("3b")) == ROBOTS  # one of them was written over
         assert sorted(found.skipped_topics) == sorted(topic[:80] for topic in topics)
         assert all(size < bytes_of_it < size + 320 for bytes_of_it in found.skipped_topics.values())
-        assert found.stop("3b") and not found.gone
+        assert found.stop("3b") and not found.end_reason
 
 
 @pytest.mark.parametrize("size", [SKIPPED_BYTES + 1, (256 << 20) - 1])
@@ -185,8 +185,8 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
         serving = Thread(target=serve, daemon=True)
         serving.start()
         client = Broker("127.0.0.1", listening.getsockname()[1], Access())
-        until(lambda: client.gone != "", "the connection ends")
-        assert client.gone == f"the broker sends a message of {size} bytes"
+        until(lambda: client.end_reason != "", "the connection ends")
+        assert client.end_reason == f"the broker sends a message of {size} bytes"
         serving.join(HANGS_S)
         client.close()
     assert taken < 32 << 20  # what the system's buffers hold

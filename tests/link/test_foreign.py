@@ -14,7 +14,7 @@ from tests.support import foreign_boards as boards
 from tests.support.foreign_boards import RECORDINGS, Recording
 from tests.support.uart import at_speed
 from tiniscript.link import foreign
-from tiniscript.link.connection import FOREIGN, KEPT_BYTES, LinkConnection, reason_of
+from tiniscript.link.connection import FOREIGN, MOST_EARLY_BYTES, LinkConnection, reason_of
 from tiniscript.link.foreign import identify_board, identify_stranger
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES
@@ -53,11 +53,11 @@ def test_there_are_a_robot_s_bytes_to_look_at() -> None:
 def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
     found = identify_board(recording.data)
     assert found is not None
-    assert (found.name, found.said, found.is_sure) == (recording.name, recording.said, True)
+    assert (found.name, found.text, found.is_sure) == (recording.name, recording.said, True)
 
 
 def test_each_row_has_a_recording() -> None:
-    assert {each.name for each in RECORDINGS.values()} == {row.name for row in foreign.ROWS}
+    assert {each.name for each in RECORDINGS.values()} == {row.name for row in foreign.BOARD_KINDS}
 
 
 @EACH
@@ -78,8 +78,8 @@ def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording)
     line = LinkLine()
     for at in range(0, len(recording.data), 3):
         line.note_heard(recording.data[at : at + 3])
-    assert line.came == recording.data and line.heard == len(recording.data)
-    assert identify_board(line.came) == identify_board(recording.data)
+    assert line.early_bytes == recording.data and line.heard_count == len(recording.data)
+    assert identify_board(line.early_bytes) == identify_board(recording.data)
 
 
 @EACH
@@ -99,7 +99,7 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
     for data, name in ((boards.FIRMATA, "firmata"), (boards.MBOT_VERSION, "mbot")):
         found = identify_board(data)
         assert found is not None and found.name == name
-        rows = [row.name for row in foreign.ROWS if row.recognise(data)]
+        rows = [row.name for row in foreign.BOARD_KINDS if row.recognise(data)]
         assert rows == [name]
 
 
@@ -185,7 +185,7 @@ def test_what_a_computer_sends_is_no_robot_s() -> None:
 def test_what_is_text(data: bytes, said: str) -> None:
     assert foreign.readable_line(data) == said
     found = identify_stranger(data)
-    assert (found.said if found else "") == said
+    assert (found.text if found else "") == said
     assert found is None or found.is_sure == (b"\n" in data)
 
 
@@ -231,7 +231,7 @@ def test_the_page_says_what_its_port_has_heard(name: str) -> None:
     news = [each for now_ms in range(5, 900, 20) for each in page.go(b"", now_ms, [])["news"]]
     (answer,) = news
     assert answer["failure"] == FOREIGN
-    assert answer["said"].startswith(foreign.sentence(recording.name, "es").said)
+    assert answer["said"].startswith(foreign.explanation_of(recording.name, "es").meaning)
     assert recording.said in answer["said"]
 
 
@@ -255,7 +255,12 @@ def test_of_what_comes_the_last_is_kept() -> None:
     for _ in range(100):
         line.note_heard(b"x" * 99)
     line.note_heard(boards.MBOT_START)
-    assert len(line.came) == KEPT_BYTES and line.came.endswith(boards.MBOT_START)
+    assert len(line.early_bytes) == MOST_EARLY_BYTES and line.early_bytes.endswith(
+        boards.MBOT_START
+    )
     line.robot = object()  # type: ignore[assignment]
     line.note_heard(b"y")
-    assert line.came.endswith(boards.MBOT_START) and line.heard == 9900 + len(boards.MBOT_START) + 1
+    assert (
+        line.early_bytes.endswith(boards.MBOT_START)
+        and line.heard_count == 9900 + len(boards.MBOT_START) + 1
+    )

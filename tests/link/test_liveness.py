@@ -17,7 +17,7 @@ from tests.firmware.test_host_firmware import computer, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest
 from tiniscript.link.requests import OK
 from tiniscript.link.session import DEAF_MS, Session
 
@@ -143,11 +143,11 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             fresh.now_ms = robot.now_ms
             fresh.wait(200)
             robot = fresh
-        limit_ms = len(pending_requests) * (DEADLINE_MS + DEAF_MS) + 5000
+        limit_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
         for request in pending_requests:
             until(session, robot, line, request, limit_ms)
         robot.talk(session, 2000)
-        if until(session, robot, line, session.hello(), DEADLINE_MS) != OK:
+        if until(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
         assert until(session, robot, line, ASKED["a long program"](session), 20_000) == OK, seed
 

@@ -26,7 +26,7 @@ from tiniscript.link.messages import (
     MESSAGES,
     PAYLOAD_BYTES,
     REPLY,
-    RETIRED,
+    RETIRED_NUMBERS,
     SEALED,
     SMALL_FRAME,
     STATUSES,
@@ -58,8 +58,8 @@ def test_no_request_is_or_ends_a_line() -> None:
     """
     for message in MESSAGES:
         assert message.number < 0x20 or message.number >= FIRST_EVENT
-        assert message.number not in b"\r\n" and message.number not in RETIRED
-    assert set(b"\r\n") == set(RETIRED)
+        assert message.number not in b"\r\n" and message.number not in RETIRED_NUMBERS
+    assert set(b"\r\n") == set(RETIRED_NUMBERS)
 
 
 def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> None:
@@ -119,14 +119,14 @@ def test_each_status_has_its_sentences() -> None:
 def test_sentences_have_no_gaps_left() -> None:
     for lang in ("en", "es"):
         for status in range(1, 256):
-            said, advice = statuses.sentence(status, 0x1234, lang)
+            said, advice = statuses.status_text(status, 0x1234, lang)
             assert said and advice and "{" not in said + advice, (status, lang)
     too_large = "The program is too large: the robot has room for 430 bytes of code."
-    assert statuses.sentence(71, 430, "en").said == too_large
+    assert statuses.status_text(71, 430, "en").message == too_large
     refused = "The robot's verifier refuses the code at 5: BAD_OPERAND."
-    assert statuses.sentence(23, 5, "en").said == refused
-    assert "DAMAGED" in statuses.sentence(6, 0, "es").said
-    assert "another version" in statuses.sentence(2, 0, "en").said
-    assert "0100" not in statuses.sentence(69, 256, "es").said
-    assert "1.0" in statuses.sentence(69, 256, "es").said
-    assert statuses.sentence(200, 0, "en") == statuses.sentence(64, 0, "en")
+    assert statuses.status_text(23, 5, "en").message == refused
+    assert "DAMAGED" in statuses.status_text(6, 0, "es").message
+    assert "another version" in statuses.status_text(2, 0, "en").message
+    assert "0100" not in statuses.status_text(69, 256, "es").message
+    assert "1.0" in statuses.status_text(69, 256, "es").message
+    assert statuses.status_text(200, 0, "en") == statuses.status_text(64, 0, "en")

@@ -143,7 +143,7 @@ def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
         port = typed.format(HERE)
         done = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (done.code, done.err) == (0, ""), port
-        assert known_ports.remembered_ports().last == port
+        assert known_ports.remembered_ports().last_port == port
     assert inside("doctor", "--identify").code == 0  # it is remembered
 
 
@@ -205,7 +205,7 @@ def test_a_packet_may_announce_anything(
     listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
-    monkeypatch.setattr(network, "LISTED_S", 0.5)
+    monkeypatch.setattr(network, "LIST_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
     found: list[AnnouncedRobot] = []
 

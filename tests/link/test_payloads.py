@@ -28,7 +28,7 @@ EVENT_MESSAGES = [message for message in MESSAGES if message.number >= FIRST_EVE
 
 
 def value(field: Field) -> int | bytes:
-    return b"\1" * field.low if field.kind == "rest" else 1
+    return b"\1" * field.least_bytes if field.kind == "rest" else 1
 
 
 @pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda each: str(each.name))
@@ -64,7 +64,7 @@ def test_every_event_comes_through_a_shared_port() -> None:
         values = protocol.to_json_values(event_fields(each))
         message = {"event": each.name, "ms": 5, "values": values}
         [read] = reader.put(protocol.encode_message(message))
-        assert protocol.event(read) == (5, each)
+        assert protocol.read_event(read) == (5, each)
 
 
 @pytest.mark.parametrize(
@@ -85,17 +85,17 @@ def test_other_fields_are_refused(values: dict[str, int | bytes]) -> None:
         "values": protocol.to_json_values(values),
     }
     with pytest.raises(protocol.BadMessage):
-        protocol.reply(message, ReceiptReply)
+        protocol.read_reply(message, ReceiptReply)
 
 
 @pytest.mark.parametrize("name", ["", "HELLO", "ENDED", "SHOW", "shown"])
 def test_an_event_that_there_is_not_is_refused(name: str) -> None:
     with pytest.raises(protocol.BadMessage):
-        protocol.event({"event": name, "ms": 1, "values": {"value": 1}})
+        protocol.read_event({"event": name, "ms": 1, "values": {"value": 1}})
 
 
 def test_a_refusal_has_no_values() -> None:
-    reply = protocol.reply({"status": 72, "detail": 7, "values": {}}, StatusReply)
+    reply = protocol.read_reply({"status": 72, "detail": 7, "values": {}}, StatusReply)
     assert (reply.status, reply.detail) == (72, 7)
     with pytest.raises(AssertionError):
         _ = reply.values

@@ -8,7 +8,7 @@ import random
 import pytest
 
 from tiniscript.link.transports import READ_S
-from tiniscript.link.transports.pushed import END_REASON, KEPT_BYTES, PushedTransport
+from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, PushedTransport
 
 
 class Waits:
@@ -34,7 +34,7 @@ class Waits:
 
 def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
     port, waits = PushedTransport(), Waits()
-    monkeypatch.setattr(port, "_news", waits)
+    monkeypatch.setattr(port, "_bell", waits)
     waits.port = port
     return port, waits
 
@@ -77,13 +77,21 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
         assert port.in_waiting == len(there)
 
 
-@pytest.mark.parametrize("count", [KEPT_BYTES - 1, KEPT_BYTES, KEPT_BYTES + 1, 3 * KEPT_BYTES])
+@pytest.mark.parametrize(
+    "count",
+    [
+        MOST_BUFFERED_BYTES - 1,
+        MOST_BUFFERED_BYTES,
+        MOST_BUFFERED_BYTES + 1,
+        3 * MOST_BUFFERED_BYTES,
+    ],
+)
 def test_room_that_was_read_is_there_again(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
     port, _ = port_and_waits(monkeypatch)
     for _ in range(3):
         for _ in range(count // 1000):
             port.bring(bytes(1000))
         port.bring(bytes(count % 1000))
-        assert port.in_waiting == min(count, KEPT_BYTES)
-        assert len(port.read(10 * KEPT_BYTES)) == min(count, KEPT_BYTES)
+        assert port.in_waiting == min(count, MOST_BUFFERED_BYTES)
+        assert len(port.read(10 * MOST_BUFFERED_BYTES)) == min(count, MOST_BUFFERED_BYTES)
         assert port.in_waiting == 0

@@ -30,17 +30,17 @@ from tiniscript.link.messages import (
     encode_payload,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
-from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, Pressed, pressed_of
+from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, RemoteState, remote_state_of
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-UP, LEFT, A = (pressed_of([name]) for name in ("UP", "LEFT", "A"))
+UP, LEFT, A = (remote_state_of([name]) for name in ("UP", "LEFT", "A"))
 DRIVES = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
 KEYS = BY_NAME["KEYS"]
 LIVE = BY_NAME["LIVE"]
 
 
-def readings(held: Pressed) -> tuple[int, ...]:
+def readings(held: RemoteState) -> tuple[int, ...]:
     return (*(held.keys >> key & 1 for key in range(6)), held.x * 1000, held.y * 1000)
 
 
@@ -54,12 +54,12 @@ class Hand:
         self.session, self.robot = session, robot
         self.held = NOTHING_PRESSED
         self.loses: Callable[[], bool] = lambda: False  # the line, a packet
-        self.words: list[tuple[int, Pressed]] = []  # that were sent
+        self.words: list[tuple[int, RemoteState]] = []  # that were sent
         self.outcomes: list[int] = []
         self._requests = [session.press()]
         self._said_ms = 0
 
-    def holds(self, held: Pressed) -> None:
+    def holds(self, held: RemoteState) -> None:
         self.held = held
         self._say()
 
@@ -88,7 +88,7 @@ class Hand:
 
     def _note(self, frame: Frame) -> None:
         keys, x, y = frame.payload
-        word = Pressed(keys, x - (x & 0x80) * 2, y - (y & 0x80) * 2)
+        word = RemoteState(keys, x - (x & 0x80) * 2, y - (y & 0x80) * 2)
         assert word == self.held, "a word that is older than what is held"
         self.words.append((frame.seq, word))
 
@@ -101,8 +101,8 @@ def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     one = hand()
     for held in (
         UP,
-        Pressed(0, 100, -100),
-        pressed_of(["UP", "B"], -1, 30),
+        RemoteState(0, 100, -100),
+        remote_state_of(["UP", "B"], -1, 30),
         NOTHING_PRESSED,
         A,
         NOTHING_PRESSED,
@@ -167,7 +167,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     one = hand()
     for _ in range(100):
         one.loses = lambda: False
-        one.holds(rng.choice([UP, pressed_of(["A", "LEFT"]), Pressed(0, 50, -50)]))
+        one.holds(rng.choice([UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
         one.talk(rng.randint(60, 400))
         assert one.robot.remote() == readings(one.held)
         one.loses = lambda: True
@@ -187,7 +187,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     read = looks = 0
     for _ in range(40):
         one.loses = lambda: rng.random() < 0.3
-        one.holds(rng.choice([UP, A, pressed_of(["DOWN", "B"], 10, 20)]))
+        one.holds(rng.choice([UP, A, remote_state_of(["DOWN", "B"], 10, 20)]))
         one.talk(300)
         for _ in range(20):
             one.talk(50)
@@ -209,7 +209,7 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
     one = hand()
     one.loses = lambda: rng.random() < 0.3
     for _ in range(300):
-        one.holds(Pressed(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
+        one.holds(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
         one.talk(rng.randint(1, 60))
     one.loses = lambda: False
     one.talk(250)
@@ -232,13 +232,13 @@ def test_two_who_press_on_one_line() -> None:
     session.press(*UP, 1)
     session.press(A.keys, 10, 20, 2)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed_of(["UP", "A"], 10, 20))
+    assert robot.remote() == readings(remote_state_of(["UP", "A"], 10, 20))
     session.press(UP.keys, -5, 0, 1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed_of(["UP", "A"], -5, 0))
+    assert robot.remote() == readings(remote_state_of(["UP", "A"], -5, 0))
     session.press(speaker=1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed_of(["A"], 10, 20))
+    assert robot.remote() == readings(remote_state_of(["A"], 10, 20))
 
 
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
@@ -262,7 +262,7 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
     for k in range(1500):
         if k % 100 == 0:
             requests.append(one.session.status())
-        one.holds(Pressed(0, k % 101, 0))
+        one.holds(RemoteState(0, k % 101, 0))
         one.talk(1)
     assert len(requests) == 15
     assert all(request.outcome and request.outcome.status == OK for request in requests)
@@ -452,7 +452,7 @@ class Wire:
             Frame(number, self.seq, self.epoch if epoch is None else epoch, payload)
         )
 
-    def keys(self, held: Pressed, epoch: int | None = None) -> bytes:
+    def keys(self, held: RemoteState, epoch: int | None = None) -> bytes:
         return self.frame("KEYS", encode_payload(KEYS.request, held._asdict()), epoch)
 
     def answer(self, sent: bytes) -> str:
@@ -502,10 +502,10 @@ def test_a_word_that_comes_twice_counts_once() -> None:
 @pytest.mark.parametrize("cut", range(1, 14))
 def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
     wire = Wire()
-    word = wire.keys(pressed_of(["B"], -100, 100))
+    word = wire.keys(remote_state_of(["B"], -100, 100))
     wire.robot.wait(30, word[:cut])
     wire.robot.wait(30, word[cut:])
-    assert wire.robot.remote() == readings(pressed_of(["B"], -100, 100))
+    assert wire.robot.remote() == readings(remote_state_of(["B"], -100, 100))
     slow = wire.keys(LEFT)
     wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
     assert wire.robot.remote() == readings(LEFT)
@@ -514,7 +514,7 @@ def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
 def test_a_thousand_words_in_a_burst() -> None:
     """Some are dropped, the last one that is heard counts, and the robot is as before."""
     wire = Wire()
-    burst = b"".join(wire.keys(Pressed(k % 64, 0, 0)) for k in range(1000))
+    burst = b"".join(wire.keys(RemoteState(k % 64, 0, 0)) for k in range(1000))
     wire.robot.wait(10, burst)
     assert wire.answer(wire.keys(A)) == "OK"
     assert wire.robot.remote() == readings(A)

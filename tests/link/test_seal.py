@@ -58,7 +58,7 @@ def by_hand(frame: Frame, counter: int) -> bytes:
 
 def seal(heard: int = 0, sent: int = 0) -> Seal:
     found = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
-    found.heard, found.sent = heard, sent
+    found.heard_counter, found.sent_counter = heard, sent
     return found
 
 

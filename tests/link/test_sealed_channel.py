@@ -64,7 +64,7 @@ class SealedWorld(World):
 
     def again(self) -> None:
         """The stranger comes when a program is on the robot."""
-        self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.found else 0
+        self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
         self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
 
     def heard(self, data: bytes) -> None:
@@ -103,8 +103,8 @@ class SealedWorld(World):
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
         requests = [message for message in MESSAGES if message.number < 32]
         message = draw.choice(requests if self.has_hello else requests[1:])
-        most = sum(field.high for field in message.request)
-        least = sum(field.low for field in message.request)
+        most = sum(field.most_bytes for field in message.request)
+        least = sum(field.least_bytes for field in message.request)
         payload = draw.randbytes(draw.randint(least, most))
         seq, epoch = draw.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
@@ -112,7 +112,7 @@ class SealedWorld(World):
     def answered(self, asked: Frame) -> bytes:
         """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
         message = next(message for message in MESSAGES if message.number == asked.number)
-        payload = b"\0" + self.draw.randbytes(sum(field.low for field in message.reply))
+        payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
         if message.name == "HELLO" and self.greeting:
             values = decode_payload(message.reply, self.greeting[1:])
             cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))

@@ -15,7 +15,12 @@ from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
-from tiniscript.link.connection import DEADLINE_MS, LinkConnection, PendingRequest, reason_of
+from tiniscript.link.connection import (
+    EXCHANGE_TIMEOUT_MS,
+    LinkConnection,
+    PendingRequest,
+    reason_of,
+)
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
@@ -30,7 +35,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import CANCELLED, DETAIL_MIDWAY, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
-from tiniscript.link.round_trips import DOUBLED_MS, LIVELY_MS
+from tiniscript.link.round_trips import MOST_DOUBLED_MS, MOST_LIVELY_MS
 from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
@@ -99,16 +104,16 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
-    sent = sending(session, DEADLINE_MS)
+    sent = sending(session, EXCHANGE_TIMEOUT_MS)
     times = [at for at, _ in sent]
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first) <= 2
     gaps = [later - earlier for earlier, later in pairwise(times)]
-    doubled = [min(times[0] << k, DOUBLED_MS) for k in range(1, len(gaps) + 1)]
+    doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
     assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
     assert len({data for _, data in sent}) == 1 and sent[0][1][:1] == b"\0"
     assert 20 <= len(sent) + 1 <= TRIES
-    sending(session, 2 * DEADLINE_MS)
+    sending(session, 2 * EXCHANGE_TIMEOUT_MS)
     assert request.outcome and request.outcome.status == LOST
     assert session.wakes_at() is None
 
@@ -155,7 +160,7 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
         gaps = [
             b - a for a, b in pairwise([begun_ms, *(at for at, _ in sending(session, late_ms))])
         ]
-        assert gaps and max(gaps) <= LIVELY_MS < messages.DEAD_MAN_MS / 2
+        assert gaps and max(gaps) <= MOST_LIVELY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
 
 
@@ -493,13 +498,13 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
     session = greeted()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
     now_ms = 0
-    while request.outcome is None and now_ms < 3 * DEADLINE_MS:
+    while request.outcome is None and now_ms < 3 * EXCHANGE_TIMEOUT_MS:
         data = session.poll(now_ms)
         if data and now_ms < busy_ms:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
     assert request.outcome and request.outcome.status == ends
-    assert now_ms <= DEADLINE_MS + 1000
+    assert now_ms <= EXCHANGE_TIMEOUT_MS + 1000
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.library.client import REQUEST_TIMEOUT_MS
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.session import Session
@@ -238,7 +238,7 @@ def test_a_line_that_lets_some_bytes_through_ends_an_upload(
 
 @pytest.mark.parametrize("is_large", [False, True])
 def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool) -> None:
-    for cut_ms, status in ((DEADLINE_MS - 3000, OK), (DEADLINE_MS + 3000, LOST)):
+    for cut_ms, status in ((EXCHANGE_TIMEOUT_MS - 3000, OK), (EXCHANGE_TIMEOUT_MS + 3000, LOST)):
         talk = Talk(Line(960, 20), is_large=is_large)
         request = talk.session.upload(program(380), runs=False)
         while request.done_bytes == 0:
@@ -247,7 +247,7 @@ def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool)
         talk.is_cut = True
         while talk.now_ms < begun_ms + cut_ms and request.outcome is None:
             talk.step()
-        assert talk.now_ms <= begun_ms + DEADLINE_MS + 1000
+        assert talk.now_ms <= begun_ms + EXCHANGE_TIMEOUT_MS + 1000
         talk.is_cut = False
         assert talk.wait(request) == status
 

@@ -96,7 +96,7 @@ def all_arrive(sender: TextSender, draw: random.Random) -> None:
             assert not data or line.put(data) == ([], [said])
         else:
             frame = random_frame(draw)
-            data = sender.frames(encode_frame(frame), line.now_ms)
+            data = sender.prepare_frames(encode_frame(frame), line.now_ms)
             assert line.put(data) == ([frame], [])
     assert line.receiver.damaged == line.receiver.dropped == 0
 
@@ -106,7 +106,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
     line = Line()
     for _ in range(FRAMES):
         frame = random_frame(draw)
-        data = sender.frames(encode_frame(frame), line.now_ms)
+        data = sender.prepare_frames(encode_frame(frame), line.now_ms)
         at = draw.randrange(len(data))
         line.receiver.put(data[0], line.now_ms)  # nobody looks
         for byte in data[1:at]:
@@ -117,7 +117,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
             line.receiver.put(byte, line.now_ms)
         line.receiver.take()
         line.now_ms += draw.choice((0, 30, 200))
-        data = sender.frames(encode_frame(frame), line.now_ms, is_repeated=True)
+        data = sender.prepare_frames(encode_frame(frame), line.now_ms, is_repeated=True)
         assert line.put(data)[0][-1:] == [frame]
 
 
@@ -172,32 +172,32 @@ def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
 class Late(TextSender):
     """Sends a 0x00 only where the receiver takes what comes for text already."""
 
-    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+    def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         if self._sent_ms is not None and not is_repeated:
             self._sent_ms = max(self._sent_ms, now_ms - 399) if now_ms < self._sent_ms + 3000 else 0
-        return super().frames(frames, now_ms, is_repeated)
+        return super().prepare_frames(frames, now_ms, is_repeated)
 
 
 class WithoutFirst(TextSender):
     """Sends none before the first frame, and none after text."""
 
-    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+    def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         self._sent_ms = now_ms if self._sent_ms is None else self._sent_ms
-        return super().frames(frames, now_ms, is_repeated)
+        return super().prepare_frames(frames, now_ms, is_repeated)
 
 
 class WithoutRepeated(TextSender):
     """Sends none before a frame that is repeated."""
 
-    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
-        return super().frames(frames, now_ms, False)
+    def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        return super().prepare_frames(frames, now_ms, False)
 
 
 class Twice(TextSender):
     """Sends one for each reason."""
 
-    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
-        return b"\0" * is_repeated + super().frames(frames, now_ms, False)
+    def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        return b"\0" * is_repeated + super().prepare_frames(frames, now_ms, False)
 
 
 class Hasty(TextSender):
@@ -224,14 +224,16 @@ def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSende
 
 def test_heartbeats_cost_no_zero_and_the_rule_looks_at_what_was_sent() -> None:
     sender = Sender()
-    assert sender.frames(b"a\0", 0) == b"\0a\0"  # nothing was sent before
+    assert sender.prepare_frames(b"a\0", 0) == b"\0a\0"  # nothing was sent before
     for now_ms in range(200, 2000, 200):
-        assert sender.frames(b"a\0", now_ms) == b"a\0"
-    assert sender.frames(b"a\0", 2199) == b"a\0"
-    assert sender.frames(b"a\0", 2599) == b"\0a\0"
-    assert sender.frames(b"a\0", 2600, is_repeated=True) == b"\0a\0"
-    assert sender.frames(b"a\0", 3000, is_repeated=True) == b"\0a\0"  # two reasons, one 0x00
-    assert sender.zeros(bytes(8), 3001) == bytes(8)
-    assert sender.frames(b"a\0", 3400, is_repeated=True) == b"a\0"  # one was sent last
-    assert sender.zeros(bytes(8), 3401) == bytes(8)
-    assert sender.frames(b"a\0", 3801) == b"\0a\0"
+        assert sender.prepare_frames(b"a\0", now_ms) == b"a\0"
+    assert sender.prepare_frames(b"a\0", 2199) == b"a\0"
+    assert sender.prepare_frames(b"a\0", 2599) == b"\0a\0"
+    assert sender.prepare_frames(b"a\0", 2600, is_repeated=True) == b"\0a\0"
+    assert (
+        sender.prepare_frames(b"a\0", 3000, is_repeated=True) == b"\0a\0"
+    )  # two reasons, one 0x00
+    assert sender.prepare_stop(bytes(8), 3001) == bytes(8)
+    assert sender.prepare_frames(b"a\0", 3400, is_repeated=True) == b"a\0"  # one was sent last
+    assert sender.prepare_stop(bytes(8), 3401) == bytes(8)
+    assert sender.prepare_frames(b"a\0", 3801) == b"\0a\0"

@@ -32,7 +32,9 @@ def ended(
     """Set up the module that is met at the other end."""
     module = module or met(wire)
     told: list[Outcome] = []
-    outcomes = set_up.apply_steps(wire, module, set_up.steps(wanted, module.dialect), told.append)
+    outcomes = set_up.apply_steps(
+        wire, module, set_up.plan_steps(wanted, module.dialect), told.append
+    )
     assert told == outcomes
     return outcomes
 
@@ -42,7 +44,7 @@ def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Mod
     module = met(wire)
     wanted = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
     outcomes = ended(wire, wanted, module)
-    assert [outcome.how in set_up.GOOD_OUTCOMES for outcome in outcomes] == [True] * 3
+    assert [outcome.status in set_up.GOOD_OUTCOMES for outcome in outcomes] == [True] * 3
     assert (end.name, end.pin, end.data_baud) == wanted
     return module
 
@@ -103,7 +105,7 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     module = met(wire)
     assert (module.dialect.name, module.version) == (kind, "")
     assert [
-        outcome.how in set_up.GOOD_OUTCOMES
+        outcome.status in set_up.GOOD_OUTCOMES
         for outcome in ended(wire, WantedSettings("Tini"), module)
     ] == [True]
     assert end.name == "Tini"
@@ -161,7 +163,7 @@ def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
     for end in (Hc05(), Hc05New()):
         wire = SimulatedWire(end)
         (outcome,) = ended(wire, WantedSettings(pin="4711"))
-        assert (end.pin, outcome.how) == ("4711", set_up.DONE)
+        assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
 def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
@@ -172,7 +174,7 @@ def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
     module = met(wire)
     assert module.dialect.name == "HC-05 3.x"
     (outcome,) = ended(wire, WantedSettings(pin="4711"), module)
-    assert (end.pin, outcome.how) == ("4711", set_up.DONE)
+    assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
 def test_a_module_that_sleeps_is_woken() -> None:
@@ -190,7 +192,7 @@ def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
     module = met(wire)
     end.breaks_after = len(end.commands) + 1  # AT+BAUD is the last one that it hears
     outcomes = ended(wire, WantedSettings(baud=115200), module)
-    assert outcomes[-1].how == set_up.LOST
+    assert outcomes[-1].status == set_up.LOST
     end.breaks_after = None
     end.power_on()
     assert met(wire).baud == 115200
@@ -208,7 +210,7 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     )
     is_whole = end.is_on
     assert is_whole == (
-        len(outcomes) == 3 and all(outcome.how in set_up.GOOD_OUTCOMES for outcome in outcomes)
+        len(outcomes) == 3 and all(outcome.status in set_up.GOOD_OUTCOMES for outcome in outcomes)
     )
     end.breaks_after = None
     if kind.startswith("HC-05"):
@@ -230,12 +232,12 @@ def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
     assert module.dialect.name == "CC41-A"
     end.data_baud = 38400
     (outcome,) = ended(wire, WantedSettings(baud=9600), module)
-    assert (outcome.how, end.baud) == (set_up.DONE, 9600)
+    assert (outcome.status, end.baud) == (set_up.DONE, 9600)
     outcomes = ended(wire, WantedSettings(baud=57600))
-    assert outcomes[-1].how == set_up.REFUSED
+    assert outcomes[-1].status == set_up.REFUSED
     end.bauds = Hm10.bauds
     outcomes = ended(wire, WantedSettings(baud=9600))
-    assert (outcomes[-1].how, outcomes[-1].said) == (set_up.ELSEWHERE, "115200")
+    assert (outcomes[-1].status, outcomes[-1].answer) == (set_up.ELSEWHERE, "115200")
     assert end.baud == 115200
 
 
@@ -247,8 +249,8 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
     end = Stubborn()
     wire = SimulatedWire(end)
     outcomes = ended(wire, WantedSettings("ANA", "1111", 115200))
-    assert [outcome.how for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
-    assert outcomes[-1].said == "ERROR:(7)"
+    assert [outcome.status for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
+    assert outcomes[-1].answer == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
 
 
@@ -274,12 +276,12 @@ def test_what_is_told_of_a_pin_is_what_the_module_has(
     end = Quirky()
     (outcome,) = ended(SimulatedWire(end), WantedSettings(pin="4321"))
     has = end.pin.strip('"') if kind is Hc05New else end.pin
-    if outcome.how == set_up.DONE:
+    if outcome.status == set_up.DONE:
         assert has == "4321"
-    elif outcome.how == set_up.DIFFERS:
-        assert outcome.said.strip('"') == end.pin.strip('"') and has != "4321"
+    elif outcome.status == set_up.DIFFERS:
+        assert outcome.answer.strip('"') == end.pin.strip('"') and has != "4321"
     else:
-        assert outcome.how in (set_up.REFUSED, set_up.SILENT) and end.pin == kind.pin
+        assert outcome.status in (set_up.REFUSED, set_up.SILENT) and end.pin == kind.pin
 
 
 def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
@@ -291,7 +293,7 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
 
     wire = SimulatedWire(Short())
     (outcome,) = ended(wire, WantedSettings("Tini-7F3A"))
-    assert (outcome.how, outcome.said) == (set_up.DIFFERS, "Tini")
+    assert (outcome.status, outcome.answer) == (set_up.DIFFERS, "Tini")
 
 
 @each_row(
@@ -320,13 +322,14 @@ def test_what_a_module_cannot_have_is_known_before(
     wanted: WantedSettings, dialect: str, what: str
 ) -> None:
     (found_dialect,) = (each for each in DIALECTS if each.name == dialect)
-    assert set_up.misfit(wanted, found_dialect) == what
+    assert set_up.unsupported_setting(wanted, found_dialect) == what
 
 
 def test_a_name_from_an_id_fits_each() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
     assert all(
-        not set_up.misfit(WantedSettings(set_up.name_for(7)), dialect) for dialect in DIALECTS
+        not set_up.unsupported_setting(WantedSettings(set_up.name_for(7)), dialect)
+        for dialect in DIALECTS
     )
 
 

@@ -126,4 +126,4 @@ def test_a_request_that_takes_long_is_answered(
     holder.says(ANSWER, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
-    assert (line.heard, line.came) == (9, b"\xfe")
+    assert (line.heard_count, line.early_bytes) == (9, b"\xfe")

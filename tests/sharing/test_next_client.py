@@ -43,7 +43,8 @@ Json = dict[str, Any]
 class SteppedLine:
     """The port of a simulated robot, without a thread."""
 
-    address, held_by, end_reason, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
+    address, holder_verb, end_reason = "", "", None
+    heard_count, early_bytes, is_echoed, boot = 0, b"", False, 0
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
@@ -154,7 +155,7 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
         finally:
             for client in found.clients:
                 client.socket.close()
-            for name in found.server._names:
+            for name in found.server._registrations:
                 registry.remove(name)
             found.server._close_all()
 

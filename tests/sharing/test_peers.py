@@ -92,7 +92,7 @@ def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.End(user, inode))
+    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.SocketOwner(user, inode))
     here, there = pair()
     with here, there:
         assert peers.is_of_this_user(here) == is_let_in
@@ -100,7 +100,7 @@ def test_which_ends_are_let_in(
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(number: int) -> object:
-        def other_end(there: object, here: object) -> peers.End:
+        def other_end(there: object, here: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
         return other_end
@@ -154,10 +154,10 @@ while True:
 def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
-        assert not peers.is_of_another(number)
+        assert not peers.is_of_another_user(number)
         monkeypatch.setattr(os, "geteuid", lambda: NOBODY)
-        assert peers.is_of_another(number) == (os.getuid() != 0)  # root has every right
-    assert not peers.is_of_another(number)  # nobody listens
+        assert peers.is_of_another_user(number) == (os.getuid() != 0)  # root has every right
+    assert not peers.is_of_another_user(number)  # nobody listens
 
 
 def test_a_robot_at_whose_port_another_user_listens_is_none(
@@ -169,7 +169,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         address = f"socket://127.0.0.1:{number}"
         note = directory.announce(directory.RunningRobot(address, "tinibot", "room", "", ""))
         assert [each.address for each in directory.running_robots()] == [address]
-        monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
+        monkeypatch.setattr(peers, "is_of_another_user", lambda port: port == number)
         for _ in range(2):
             assert directory.running_robots() == []
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
@@ -182,7 +182,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
             peer.settimeout(HANGS_S)
             assert peer.recv(1000) == b""  # nothing was sent
         inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
-        monkeypatch.setattr(peers, "is_of_another", lambda port: False)
+        monkeypatch.setattr(peers, "is_of_another_user", lambda port: False)
         assert directory.is_virtual(address)
     assert directory.running_robots() == []
     assert note is not None and not note.exists()

@@ -104,7 +104,7 @@ def test_a_server_that_registers_while_another_command_removes_is_found(
 
 
 def lock() -> IO[bytes] | None:
-    return registry.claim(PORT)
+    return registry.lock_port(PORT)
 
 
 def has_one_owner(owners: list[IO[bytes] | None]) -> None:
@@ -119,12 +119,12 @@ def has_one_owner(owners: list[IO[bytes] | None]) -> None:
     last = lock()
     assert last is not None
     last.close()
-    assert not registry.lock_of(PORT).exists()
+    assert not registry.lock_path(PORT).exists()
 
 
 def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
     def leftover() -> None:
-        registry.lock_of(PORT).write_bytes(b"")  # of a command that was killed
+        registry.lock_path(PORT).write_bytes(b"")  # of a command that was killed
 
     registry._make_folder()
     for runs in ("claims", "tidies", "lets go"):
@@ -165,7 +165,7 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
 def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
     """Somebody has emptied the cache."""
     first = lock()
-    registry.lock_of(PORT).unlink()
+    registry.lock_path(PORT).unlink()
     second = lock()
     assert first is not None and second is not None
     first.close()

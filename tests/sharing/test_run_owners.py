@@ -29,8 +29,8 @@ PORT = "/dev/ttyUSB0"
 class FakeLine:
     """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
-    address, end_reason, robot, held_by = PORT, None, None, ""
-    heard, came, is_echoed, boot, has_ended = 0, b"", False, 0, False
+    address, end_reason, robot, holder_verb = PORT, None, None, ""
+    heard_count, early_bytes, is_echoed, boot, has_ended = 0, b"", False, 0, False
 
     def __init__(self) -> None:
         self.is_running = False

@@ -113,7 +113,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
         missed = [message for message in found if message.get("event") == "MISSED"]
         shown = sum(message.get("event") == "SHOW" for message in found)
         assert missed
-        assert sum(int(protocol.values(each)["count"]) for each in missed) + shown == count
+        assert sum(int(protocol.read_values(each)["count"]) for each in missed) + shown == count
 
 
 def test_nothing_is_shared_where_nothing_can_be_written(
@@ -156,9 +156,9 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
         shared = Shared()
         with shared as (_, registration), visitor(registration) as peer:
             if part == "session":
-                shared.line.session._waiting.append(cast("Any", None))
+                shared.line.session._queue.append(cast("Any", None))
             else:
-                shared.server._left_requests.append(cast("Any", None))
+                shared.server._orphaned_requests.append(cast("Any", None))
             with pytest.raises(AttributeError):
                 while True:
                     shared.line.event()

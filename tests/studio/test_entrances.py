@@ -70,7 +70,7 @@ def peer() -> Iterator[socket.socket]:
 def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
     """All connections within this computer are of another user."""
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.End(NOBODY, 1))
+    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.SocketOwner(NOBODY, 1))
     monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
 
 
@@ -126,7 +126,7 @@ def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
 ) -> None:
     doors = Entrances()
     shown, printed = doors.code(True), doors.code()
-    monkeypatch.setattr(peers, "is_here", lambda peer: False)
+    monkeypatch.setattr(peers, "is_on_this_computer", lambda peer: False)
     monkeypatch.setattr(peers, "is_of_this_user", lambda peer: False)
     assert doors.token_for(shown, peer) == "" and doors.is_unused(shown)
     assert doors.token_for(printed, peer) == doors.token  # the teacher's tablet
@@ -134,13 +134,13 @@ def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
 
 
 def test_which_addresses_are_here(peer: socket.socket) -> None:
-    assert peers.is_here(peer)
+    assert peers.is_on_this_computer(peer)
 
     class Elsewhere:
         def getpeername(self) -> tuple[str, int]:
             return "198.51.100.1", 5
 
-    assert not peers.is_here(Elsewhere())  # type: ignore[arg-type]
+    assert not peers.is_on_this_computer(Elsewhere())  # type: ignore[arg-type]
 
 
 @pytest.mark.usefixtures("of_another")

@@ -338,9 +338,9 @@ class HandSender:
     def poll(self, now_ms: int) -> bytes:
         data, self.data = self.data, b""
         if data and self.is_frame:
-            return self.sender.frames(data, now_ms, self.is_hello)
+            return self.sender.prepare_frames(data, now_ms, self.is_hello)
         if data.endswith(b"\0"):
-            return self.sender.zeros(data, now_ms)
+            return self.sender.prepare_stop(data, now_ms)
         self.sender = Sender() if data else self.sender  # text: the next frame needs a 0x00
         return data
 

@@ -92,7 +92,7 @@ class AtBroker:
     """A robot's client at a broker, as an `End` of `esp32_radio`."""
 
     def __init__(self, robot: Esp32Robot, at: Broker, group: str = "aula") -> None:
-        self.port: BrokerPort = at.robot(group, f"{ID:08x}")
+        self.port: BrokerPort = at.port_of(group, f"{ID:08x}")
         self.has_ended = False
 
     def send(self, data: bytes) -> None:

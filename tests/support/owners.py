@@ -25,34 +25,34 @@ class Keys(KeyRing):
     """A `KeyRing` in memory. Keys are numbered, so each run has the same."""
 
     def __init__(self, first: int = 1) -> None:
-        self.found: list[RobotKey] = []
-        self.next = first
+        self.stored_keys: list[RobotKey] = []
+        self.next_number = first
         self.is_full = False
-        self.places: dict[str, int] = {}
-        self.accepted: set[int] = set()
+        self.id_by_place: dict[str, int] = {}
+        self.accepted_ids: set[int] = set()
 
     def robot_at(self, place: str) -> int | None:
-        return self.places.get(place)
+        return self.id_by_place.get(place)
 
-    def meet(self, place: str, robot: int) -> None:
-        self.places[place] = robot
+    def remember_robot(self, place: str, robot: int) -> None:
+        self.id_by_place[place] = robot
 
     def accepts(self, robot: int) -> bool:
-        return robot in self.accepted
+        return robot in self.accepted_ids
 
     def _stored_keys(self) -> list[RobotKey]:
-        return self.found
+        return self.stored_keys
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
-        self.found = change(self.found)
+        self.stored_keys = change(self.stored_keys)
         return True
 
     def create_pending_key(self, robot: int, which: int, name: str) -> RobotKey | None:
         if self.is_full:
             return None
-        key = RobotKey(robot, which, bytes([self.next] * 16), name, True)
-        self.next += 1
-        self.found.append(key)
+        key = RobotKey(robot, which, bytes([self.next_number] * 16), name, True)
+        self.next_number += 1
+        self.stored_keys.append(key)
         return key
 
 

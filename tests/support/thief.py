@@ -53,15 +53,15 @@ class Thief:
             message for message in MESSAGES if 6 <= message.number < 32 and message.number != 17
         ]
         message = chance.choice(acting)
-        low = sum(field.low for field in message.request)
-        high = min(sum(field.high for field in message.request), SEALED_PAYLOAD_BYTES)
+        low = sum(field.least_bytes for field in message.request)
+        high = min(sum(field.most_bytes for field in message.request), SEALED_PAYLOAD_BYTES)
         asked = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
         if how == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
             whole = b"\0" + counter + asked.payload + chance.randbytes(8)
             return how, wire_of(asked._replace(payload=whole, is_sealed=True))
         seal = Seal(chance.randbytes(16))
-        seal.sent = 10_000
+        seal.sent_counter = 10_000
         return how, wire_of(seal.seal_frame(asked))
 
 

@@ -362,7 +362,7 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
     robot.let_go()
     assert talk.wait_for(request).status == STATUSES[status]
     if status == "OK":
-        assert [key.uses_seals for key in keys.found] == [True]
+        assert [key.uses_seals for key in keys.stored_keys] == [True]
         robot.power_cycle()
         assert owner_of(Talk(robot, 6)) == OF_ANOTHER
         assert owner_of(Talk(robot, 7, keys)) == YOUR_OWN

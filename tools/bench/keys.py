@@ -15,7 +15,7 @@ from pathlib import Path
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, Pressed
+from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, RemoteState
 from tools import ROOT
 from tools.bench import page
 from tools.bench.firmware_stack import connect, require_ok
@@ -24,7 +24,7 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 PAD_PROGRAM = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
 EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
-PAD_AHEAD = Pressed(0, 0, 80)
+PAD_AHEAD = RemoteState(0, 0, 80)
 PWM_PINS = MOTORS[:2]
 TRY_COUNT = 300
 HELD_MS = (100, 400)  # and let go
@@ -62,7 +62,7 @@ class Hand:
     def __exit__(self, *raised: object) -> None:
         self._board.close()
 
-    def change(self, pressed: Pressed) -> float:
+    def change(self, pressed: RemoteState) -> float:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
         begin_cycle, event_count = self._begin()
         self._hold(pressed)
@@ -80,7 +80,7 @@ class Hand:
         ]
         return self._ms_from(max([begin_cycle, *received_cycles]), event_count, False)
 
-    def _hold(self, pressed: Pressed, more_ms: int = 0) -> None:
+    def _hold(self, pressed: RemoteState, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._random_source.randint(*HELD_MS)):
             if ms % SAY_INTERVAL_MS == 0:  # who says nothing for a while holds nothing
                 self._wired.session.press(*pressed)

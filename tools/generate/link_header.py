@@ -90,8 +90,8 @@ def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
     requests = {request.number: request for request in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
-    end_index = len(rows) - len(messages.OF_READINGS)
-    first_index = end_index - len(messages.OF_BREAKPOINTS)
+    end_index = len(rows) - len(messages.READING_MESSAGES)
+    first_index = end_index - len(messages.BREAKPOINT_MESSAGES)
     optional_rows = f"    tini_of_breakpoints(  //\n{''.join(rows[first_index:end_index])}    )\n"
     optional_rows += f"    tini_of_readings(  //\n{''.join(rows[end_index:])}    )\n"
     other_rows = "".join(rows[:first_index])
@@ -101,7 +101,7 @@ def tables(command: str) -> str:
 
 def _last_request() -> str:
     """Return kLastRequest: the requests that not every robot has come last."""
-    parts = messages.OF_BREAKPOINTS, messages.OF_READINGS
+    parts = messages.BREAKPOINT_MESSAGES, messages.READING_MESSAGES
     last_names = [name for part in parts for name in part]
     last_requests = _requests()[-len(last_names) :]
     assert [message.name for message in last_requests] == last_names
@@ -118,8 +118,8 @@ def _length_row(request: Message | None) -> str:
         return "    {kUnknownRequest, 0},  // retired\n"
     lengths = _length_range(request.request)
     for names, condition in (
-        (messages.OF_RADIO, "kHasTransports"),
-        (messages.OF_REMOTE, "kHasRemote"),
+        (messages.RADIO_MESSAGES, "kHasTransports"),
+        (messages.REMOTE_MESSAGES, "kHasRemote"),
     ):
         if request.name in names:
             least_bytes, most_bytes = lengths.split(", ")
@@ -138,7 +138,7 @@ def _length_range(fields: tuple[Field, ...]) -> str:
 
 def _requests() -> list[messages.Message]:
     requests = [message for message in MESSAGES if message.number < messages.FIRST_EVENT]
-    numbers = sorted([*(request.number for request in requests), *messages.RETIRED])
+    numbers = sorted([*(request.number for request in requests), *messages.RETIRED_NUMBERS])
     assert numbers == list(range(1, len(numbers) + 1))
     return requests
 
@@ -146,7 +146,7 @@ def _requests() -> list[messages.Message]:
 def _offset_constants() -> list[tuple[str, int]]:
     constants = []
     for request in _requests():
-        offsets = accumulate((field.low for field in request.request), initial=0)
+        offsets = accumulate((field.least_bytes for field in request.request), initial=0)
         for field, offset in zip(request.request, offsets, strict=False):
             constants.append((f"k{camel(request.name)}{camel(field.name)}At", offset))
     return constants
@@ -168,7 +168,7 @@ def message_rows() -> Rows:
         )
         for message in MESSAGES
     ]
-    rows += [(number, "retired", "", "", "") for number in messages.RETIRED]
+    rows += [(number, "retired", "", "", "") for number in messages.RETIRED_NUMBERS]
     rows.sort(key=lambda row: row[0])
     head = ("number", "message", "from the computer", "from the robot, after the status", "meaning")
     return head, rows
@@ -177,7 +177,7 @@ def message_rows() -> Rows:
 def _fields_text(fields: Sequence[Field]) -> str:
     """Return the fields of a payload as the document names them."""
     words = [
-        f"{field.name}:{field.low}..{'' if field.fills_frame else field.high}"
+        f"{field.name}:{field.least_bytes}..{'' if field.fills_frame else field.most_bytes}"
         if field.kind == "rest"
         else f"{field.name}:{field.kind}"
         for field in fields

@@ -135,7 +135,7 @@ def _input_paths(options: Namespace, language: str) -> Iterator[NamedPath]:
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import known_ports
 
-        last_port = known_ports.remembered_ports().last
+        last_port = known_ports.remembered_ports().last_port
         if last_port is not None:
             yield NamedPath("port", last_port, text("path_port", language))
     with suppress(OSError, ValueError):  # it is closed

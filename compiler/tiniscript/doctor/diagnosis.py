@@ -28,7 +28,7 @@ from tiniscript.doctor.line import PortFacts
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.link import errors
-from tiniscript.link.connection import LinkConnection, stranger
+from tiniscript.link.connection import LinkConnection, find_stranger
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
@@ -210,11 +210,11 @@ def _diagnose_shared(
     try:
         reply = robot.hello()
         if reply is None:
-            foreign_board = stranger(connection)
+            foreign_board = find_stranger(connection)
             if foreign_board is not None:
                 return (
                     Finding(
-                        foreign_board.name, foreign_board.is_sure, {"said": foreign_board.said}
+                        foreign_board.name, foreign_board.is_sure, {"said": foreign_board.text}
                     ),
                 )
             return (probable_finding("falls_silent"),)
@@ -260,20 +260,20 @@ def _open_failure(error: PortError, computer: Computer, port: str, system: Syste
     if error.reason == errors.FORBIDDEN:
         return sure_finding("no_permission", group="")
     if error.reason == errors.BUSY:
-        if looks_wireless(port) and error.why == IN_USE_MESSAGE:
+        if looks_wireless(port) and error.detail == IN_USE_MESSAGE:
             return probable_finding("other_host")
         if "ModemManager" in computer.programs:
             return probable_finding("modem_manager")
         return sure_finding("busy", by="")
     if error.reason in (errors.UNREACHABLE, errors.SLOW):
-        if error.why == REFUSED_MESSAGE and not is_address(port):
+        if error.detail == REFUSED_MESSAGE and not is_address(port):
             return probable_finding("other_host")
         if not is_address(port) and computer.has_module is False and computer.bluetooth != OFF:
             return probable_finding("not_paired")
         return probable_finding("slow_port" if error.reason == errors.SLOW else "out_of_reach")
     if error.reason == errors.NO_PORT:
         return sure_finding("no_serial_port")
-    return sure_finding("port_broken", why=error.why)
+    return sure_finding("port_broken", why=error.detail)
 
 
 def _missing_port(computer: Computer, port: str, system: System) -> Finding:

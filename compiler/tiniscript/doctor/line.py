@@ -16,7 +16,7 @@ from tiniscript.doctor.findings import Finding, probable_finding, sure_finding
 from tiniscript.doctor.robot import CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
 from tiniscript.link import foreign
-from tiniscript.link.foreign import ECHO_SKETCH, Foreign
+from tiniscript.link.foreign import ECHO_SKETCH, ForeignBoard
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
 
@@ -163,7 +163,7 @@ class _ForeignBoards:
         Each answer is looked at by itself: one who says again what it gets must not be taken for a
         board that answers the last probe with the next one.
         """
-        for row in foreign.ROWS:
+        for row in foreign.BOARD_KINDS:
             if row.probe:
                 self._wire.send(row.probe)
                 finding = self._judge(
@@ -189,10 +189,10 @@ class _ForeignBoards:
         """Return what is probably there."""
         return self._probable_findings[0] if self._probable_findings else None
 
-    def _judge(self, board: Foreign | None) -> Finding | None:
+    def _judge(self, board: ForeignBoard | None) -> Finding | None:
         if board is None:
             return None
-        finding = Finding(board.name, board.is_sure, {"said": board.said})
+        finding = Finding(board.name, board.is_sure, {"said": board.text})
         if board.is_sure:
             return finding
         self._probable_findings.append(finding)
@@ -232,8 +232,8 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         wire.send(foreign.AT_VERSION_QUESTION)
         board = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if board is not None:
-            return Finding(board.name, board.is_sure, {"said": board.said})
-    cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
+            return Finding(board.name, board.is_sure, {"said": board.text})
+    cause = "module_set_up" if module.dialect.keeps_baud else "module_alone"
     return sure_finding(cause, baud=str(module.baud), module=module.dialect.name)
 
 

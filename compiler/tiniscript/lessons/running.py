@@ -14,7 +14,7 @@ from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
 from tiniscript.lessons.variation import presses_of, vary
 from tiniscript.link.remote import NOTHING_PRESSED
-from tiniscript.link.remote import pressed_of as held
+from tiniscript.link.remote import remote_state_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.computer import Computer

@@ -17,19 +17,19 @@ from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
 from tiniscript.link.connection import (
-    DEADLINE_MS,
+    EXCHANGE_TIMEOUT_MS,
     FOREIGN,
     PendingRequest,
     Requester,
+    find_stranger,
     reason_of,
-    stranger,
 )
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
 from tiniscript.link.port_names import is_at_broker, is_bluetooth
 from tiniscript.link.requests import DeviceInfo, Reply
-from tiniscript.link.statuses import name_of, sentence
+from tiniscript.link.statuses import name_of, status_text
 from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 REQUEST_TIMEOUT_MS = (
-    DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
+    EXCHANGE_TIMEOUT_MS  # of a robot that does not answer, or is busy, from its last progress
 )
 SAVE_TIMEOUT_S = 10.0  # timeout for saving a program while the motors stand
 # Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
@@ -71,7 +71,7 @@ class Client:
         self.connection = opening.connection_to(port, verb, speed, kit, limit_s, baud, language)
         self.server: Server | None = None
         try:
-            if is_shared and not self.connection.held_by:
+            if is_shared and not self.connection.holder_verb:
                 self.server = self._share(speed, verb, is_latched)
         except BaseException:
             self.connection.close()
@@ -139,7 +139,7 @@ class Client:
 
     def hello(self, board: str = "") -> Reply[HelloReply]:
         """Send HELLO, but not so early that a board stays in its bootloader."""
-        if self.connection.held_by:  # the port is open already
+        if self.connection.holder_verb:  # the port is open already
             return self.wait(self.search())
         from tiniscript.link import ports
 
@@ -147,10 +147,10 @@ class Client:
             return self.wait(self.search())
         sleep(opening.QUIET_S_BY_BOARD.get(board or self.profile.board.chip, 0.0))
         reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
-        if not self.connection.heard:
+        if not self.connection.heard_count:
             sleep(opening.LONG_QUIET_S)
             reply = self.wait(self.search(opening.CABLE_ANSWER_TIMEOUT_MS))
-        if reply.status == LOST and self.connection.heard and not self.connection.is_echoed:
+        if reply.status == LOST and self.connection.heard_count and not self.connection.is_echoed:
             return self.wait(self.search())  # what is heard may be a robot that answers late
         return reply
 
@@ -255,7 +255,7 @@ class Client:
 
     def robot_error_for_loss(self, loss: ConnectionLost) -> RobotError:
         reason = self._reason_of_end(loss)
-        values = {"port": opening.printable_name(self.port), "verb": self.connection.held_by}
+        values = {"port": opening.printable_name(self.port), "verb": self.connection.holder_verb}
         return RobotError(reason, self.language, values)
 
     def _reason_of_end(self, loss: ConnectionLost) -> str:
@@ -265,7 +265,9 @@ class Client:
             return "radio_gone"
         if is_at_broker(self.port):
             return "port_taken" if str(loss) == errors.TAKEN else "broker_gone"
-        if self.connection.heard and self.connection.robot is None:  # it reported busy, and closed
+        if (
+            self.connection.heard_count and self.connection.robot is None
+        ):  # it reported busy, and closed
             return "port_busy"
         return "port_gone"
 
@@ -273,7 +275,7 @@ class Client:
         """Return the sentences on the board that answers instead of a robot."""
         from tiniscript.link.foreign import explain
 
-        board = stranger(self.connection)
+        board = find_stranger(self.connection)
         assert board is not None
         return explain(board, self.language)
 
@@ -285,7 +287,7 @@ class Client:
             if reason == FOREIGN:
                 values["what"], values["then"] = self.foreign_board_sentences()
             return RobotError(reason, self.language, values)
-        text = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
+        text = " ".join(status_text(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         error_type = ProgramError if name == "TOO_LARGE" else RobotError
         return error_type(name, self.language, sentence_text=text)

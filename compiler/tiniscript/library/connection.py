@@ -32,7 +32,7 @@ from tiniscript.link.messages import MOST_PAD, REMOTE_KEYS, STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.payloads import ReceiptReply
-from tiniscript.link.remote import pressed_of
+from tiniscript.link.remote import remote_state_of
 from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -242,7 +242,7 @@ class RobotConnection:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        remote_state = pressed_of(keys, x, y)
+        remote_state = remote_state_of(keys, x, y)
         reply = self._client.wait(
             self._client.begin_request(lambda session: session.press(*remote_state))
         )
@@ -385,7 +385,7 @@ def _default_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
     if (usable_port := opening.usable_last_port()) is not None:
         return usable_port
-    last_port = known_ports.remembered_ports().last
+    last_port = known_ports.remembered_ports().last_port
     running = directory.unclaimed_robots()
     if len(running) == 1:
         return running[0].address

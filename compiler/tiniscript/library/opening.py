@@ -102,7 +102,7 @@ def _connect_past_holder(
     alone. Raises RobotError in the end.
     """
     registration = registry.find_registration(address)
-    path = str(registry.lock_of(address)) if is_address(address) else address
+    path = str(registry.lock_path(address)) if is_address(address) else address
     holder = holders.find_holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:
         if sys.platform == "linux" and not is_address(address):
@@ -160,7 +160,7 @@ def _open_connection(
 def port_error(port: str, error: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
     reason = f"port_{error.reason}"
-    values = {"port": printable_name(port), "why": printable_name(error.why)}
+    values = {"port": printable_name(port), "why": printable_name(error.detail)}
     if error.reason == errors.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
@@ -168,7 +168,7 @@ def port_error(port: str, error: PortError, language: str = "en") -> RobotError:
         values["how"] = install_advice.command(extra)
     if error.reason == errors.UNREACHABLE and is_at_broker(port):
         reason = "broker_unreachable"
-    if error.reason == errors.NOT_FOUND and error.why:
+    if error.reason == errors.NOT_FOUND and error.detail:
         reason = "port_not_found_but"
     if error.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
@@ -190,11 +190,9 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
 
 def usable_last_port() -> str | None:
     """Return the last used port, unless it is known that it is not there."""
-    last_port = known_ports.remembered_ports().last
+    last_port = known_ports.remembered_ports().last_port
     is_there = (
-        last_port is not None
-        and port_names.is_there(last_port)
-        and not directory.is_gone(last_port)
+        last_port is not None and port_names.exists(last_port) and not directory.is_gone(last_port)
     )
     return last_port if is_there else None
 
@@ -227,7 +225,7 @@ def _join_shared(port: str, verb: str, baud: int | None, language: str) -> Share
     ):
         shared_connection.close()
         values = {
-            "verb": shared_connection.held_by,
+            "verb": shared_connection.holder_verb,
             "baud": str(shared_connection.baud),
             "port": printable_name(port),
         }
@@ -250,7 +248,7 @@ def _claim(port: str, language: str) -> IO[bytes] | None:
     if not is_address(port):
         return None
     try:
-        lock = registry.claim(port)
+        lock = registry.lock_port(port)
     except OSError:
         return None
     if lock is None:

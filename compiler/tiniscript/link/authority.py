@@ -13,7 +13,7 @@ from tiniscript.link import requests
 from tiniscript.link.messages import KEY_BYTES, KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
-from tiniscript.link.port_names import canonical
+from tiniscript.link.port_names import canonical_name
 from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchange, Reply, Request
 from tiniscript.link.seal import Seal, session_key, siphash
 
@@ -42,7 +42,7 @@ class RobotKey(NamedTuple):
     uses_seals: bool = False
 
     @property
-    def place(self) -> tuple[int, int]:
+    def slot(self) -> tuple[int, int]:
         """A robot and a person, who have one key."""
         return self.id, self.which
 
@@ -61,26 +61,22 @@ class KeyRing:
         """Keep what is made of all keys; return whether that was possible."""
         raise NotImplementedError
 
-    def of_robot(self, robot: int | None) -> list[RobotKey]:
+    def of_robot(self, robot_id: int | None) -> list[RobotKey]:
         """Return the keys of a robot, or of all."""
-        return [key for key in self._stored_keys() if robot in (None, key.id)]
+        return [key for key in self._stored_keys() if robot_id in (None, key.id)]
 
-    def create_pending_key(self, robot: int, which: int, name: str) -> RobotKey | None:
+    def create_pending_key(self, robot_id: int, which: int, name: str) -> RobotKey | None:
         """Make a key and keep it as a pending one; None if it cannot be kept."""
-        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
+        key = RobotKey(robot_id, which, os.urandom(KEY_BYTES), name, is_pending=True)
 
-        def with_key_added(before: list[RobotKey]) -> list[RobotKey]:
+        def with_key_added(keys: list[RobotKey]) -> list[RobotKey]:
             pending = [
                 robot_key
-                for robot_key in before
-                if robot_key.is_pending and robot_key.place == key.place
+                for robot_key in keys
+                if robot_key.is_pending and robot_key.slot == key.slot
             ]
             return [
-                *(
-                    robot_key
-                    for robot_key in before
-                    if robot_key not in pending[:-MOST_PENDING_KEYS]
-                ),
+                *(robot_key for robot_key in keys if robot_key not in pending[:-MOST_PENDING_KEYS]),
                 key,
             ]
 
@@ -90,25 +86,25 @@ class KeyRing:
         """Return the robot of ours that has proved at a place who it is."""
         return None
 
-    def meet(self, place: str, robot: int) -> None:
+    def remember_robot(self, place: str, robot_id: int) -> None:
         """One of our robots has proved at a place who it is."""
 
-    def accepts(self, robot: int) -> bool:
+    def accepts(self, robot_id: int) -> bool:
         """Return whether a robot may answer in the place of one of ours."""
         return False
 
     def settle(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
-        settled = key._replace(is_pending=False, is_stale=False)
+        settled_key = key._replace(is_pending=False, is_stale=False)
 
-        def with_key_settled(before: list[RobotKey]) -> list[RobotKey]:
-            if settled in before:
-                return before
-            return [*(robot_key for robot_key in before if robot_key.place != key.place), settled]
+        def with_key_settled(keys: list[RobotKey]) -> list[RobotKey]:
+            if settled_key in keys:
+                return keys
+            return [*(robot_key for robot_key in keys if robot_key.slot != key.slot), settled_key]
 
         self._change(with_key_settled)
 
-    def refuse(self, key: RobotKey) -> None:
+    def mark_stale(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
         self._change(lambda before: [
             item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
@@ -135,23 +131,23 @@ def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
     return any(key.uses_seals and not key.is_pending for key in keys)
 
 
-def is_other(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
+def is_impostor(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
     """Return whether somebody answers in the place of a robot of ours that seals: where that one
     has answered before, or with its name. One whose key we have too has to prove itself.
     """
-    ours = [] if ring is None else ring.of_robot(None)
-    ours = [key for key in ours if key.uses_seals and not key.is_pending]
-    if ring is None or any(key.id == robot.id for key in ours) or ring.accepts(robot.id):
+    our_keys = [] if ring is None else ring.of_robot(None)
+    our_keys = [key for key in our_keys if key.uses_seals and not key.is_pending]
+    if ring is None or any(key.id == robot.id for key in our_keys) or ring.accepts(robot.id):
         return False
-    before, name = ring.robot_at(place), canonical(robot.name)
-    return any(key.id == before or canonical(key.name) == name != "" for key in ours)
+    known_id, name = ring.robot_at(place), canonical_name(robot.name)
+    return any(key.id == known_id or canonical_name(key.name) == name != "" for key in our_keys)
 
 
 def show_keys(
     ring: KeyRing | None,
     robot: DeviceInfo,
     nonce: int,
-    epoch: Callable[[], int],
+    current_epoch: Callable[[], int],
     which: int | None = None,
     is_needed: bool = True,
 ) -> Exchange[AuthenticateReply]:
@@ -165,17 +161,17 @@ def show_keys(
     for key in sorted(keys, key=_key_order):
         if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
-        reply = yield from _show(key, robot, nonce, epoch)
+        reply = yield from _show_key(key, robot, nonce, current_epoch)
         if reply.status == STALE:  # a stop or a fault came between: the tag was one of before
-            reply = yield from _show(key, robot, nonce, epoch)
+            reply = yield from _show_key(key, robot, nonce, current_epoch)
         if ring is not None and reply.status == OK:
-            now = key._replace(
+            proven_key = key._replace(
                 is_pending=False, is_stale=False, uses_seals=_can_seal(robot) or key.uses_seals
             )
-            if now != key:
-                ring.settle(now)
+            if proven_key != key:
+                ring.settle(proven_key)
         if ring is not None and reply.status == WRONG_KEY:
-            ring.refuse(key)  # kept all the same: the robot is not known to have said so
+            ring.mark_stale(key)  # kept all the same: the robot is not known to have said so
         if reply.status != WRONG_KEY:
             break
     return reply
@@ -189,22 +185,22 @@ def _key_order(key: RobotKey) -> tuple[bool, bool, bool]:
     return key.is_stale, key.which != KEY_TEACHER, key.is_pending
 
 
-def _show(
-    key: RobotKey, robot: DeviceInfo, nonce: int, epoch: Callable[[], int]
+def _show_key(
+    key: RobotKey, robot: DeviceInfo, nonce: int, current_epoch: Callable[[], int]
 ) -> Exchange[AuthenticateReply]:
-    ask = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
-    reply = yield from requests.retry_while_busy(ask, AuthenticateReply)
+    challenge_request = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
+    reply = yield from requests.retry_while_busy(challenge_request, AuthenticateReply)
     if reply.status != OK:
         return reply
     challenge = reply.values.challenge
-    text = challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
+    message = challenge + nonce.to_bytes(4, "little") + bytes([current_epoch(), key.which])
     seal = None
     if _can_seal(robot):
-        own = robot.values.nonce
-        seal = Seal(session_key(key.key, challenge, nonce, own, epoch(), key.which))
-    tag = siphash(key.key, text)
-    answer = Request("AUTHENTICATE", {"which": key.which, "tag": tag}, seal=seal)
-    return (yield from requests.retry_while_busy(answer, AuthenticateReply))
+        robot_nonce = robot.values.nonce
+        seal = Seal(session_key(key.key, challenge, nonce, robot_nonce, current_epoch(), key.which))
+    tag = siphash(key.key, message)
+    tag_request = Request("AUTHENTICATE", {"which": key.which, "tag": tag}, seal=seal)
+    return (yield from requests.retry_while_busy(tag_request, AuthenticateReply))
 
 
 def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:

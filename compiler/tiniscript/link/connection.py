@@ -36,28 +36,28 @@ from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
 
 if TYPE_CHECKING:
-    from tiniscript.link.foreign import Foreign
+    from tiniscript.link.foreign import ForeignBoard
 
 STATUS = "status"  # the robot's status says why
 
 
-FOREIGN = "link_foreign"  # `stranger` says what answers instead of a robot
-DEADLINE_MS = 20_000  # of a request, unless another is given
-KEPT_BYTES = 2048  # of what comes before a robot has answered
-CLAIM_LIMIT_MS = 30_000  # the robot waits for a hand on its button so long, and no longer
+FOREIGN = "link_foreign"  # `find_stranger` says what answers instead of a robot
+EXCHANGE_TIMEOUT_MS = 20_000  # of a request, unless another is given
+MOST_EARLY_BYTES = 2048  # of what comes before a robot has answered
+CLAIM_TIMEOUT_MS = 30_000  # the robot waits for a hand on its button so long, and no longer
 T = TypeVar("T")
 
 
 class PendingRequest(Generic[T]):
     """A request in progress: `outcome` is set when it is over.
 
-    `limit_ms` is its timeout, from its first frame on, and anew from each progress unless it
-    `is_whole`; `done_bytes` of a program have arrived; `starts`: a program runs when the request is
-    done.
+    `limit_ms` is its timeout, from its first frame on, and anew from each progress unless
+    `is_limit_total`; `done_bytes` of a program have arrived; `starts`: a program runs when the
+    request is done.
     """
 
-    limit_ms = DEADLINE_MS
-    is_whole = False
+    limit_ms = EXCHANGE_TIMEOUT_MS
+    is_limit_total = False
     starts = False
     done_bytes = 0
     outcome: Reply[T] | None = None
@@ -68,9 +68,9 @@ class Requester:
     shared port has its server make them: both have `_ask` alone of their own."""
 
     def _ask(
-        self, name: str, kind: type[T], starts: bool = False, /, **given: object
+        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
     ) -> PendingRequest[T]:
-        """Make the request of this name, with what it is given; its reply has the type `kind`."""
+        """Make the request of this name; its reply has the type `reply_type`."""
         raise NotImplementedError
 
     def hello(self) -> PendingRequest[HelloReply]:
@@ -98,9 +98,9 @@ class Requester:
         kit: int | None = None,
     ) -> PendingRequest[ReceiptReply]:  # fmt: skip
         """`kit` is the kit that the image was verified for; None means the session's kit."""
-        given = {"runs": runs, "saves": saves, "is_detached": is_detached, "kit": kit}
+        options = {"runs": runs, "saves": saves, "is_detached": is_detached, "kit": kit}
         starts = runs and image.start == "SI"
-        return self._ask("upload", ReceiptReply, starts, image=image, **given)
+        return self._ask("upload", ReceiptReply, starts, image=image, **options)
 
     def undo(self) -> PendingRequest[ReceiptReply]:
         """Have the robot hold the program before again; what runs ends."""
@@ -156,7 +156,7 @@ class Requester:
         one.
         """
         pending = self._ask("claim", EmptyReply, which=which)
-        pending.limit_ms, pending.is_whole = CLAIM_LIMIT_MS, True
+        pending.limit_ms, pending.is_limit_total = CLAIM_TIMEOUT_MS, True
         return pending
 
     def disown(self, which: int) -> PendingRequest[EmptyReply]:
@@ -194,21 +194,21 @@ class Requester:
 class LinkConnection:
     """A connection to a robot. All but `close` and `stop` raise ConnectionLost once it has ended.
 
-    `held_by` is the verb of the command that holds the port, if that is another command. `heard`
-    counts received bytes, `came` are the last of those that came before a robot has answered;
-    `is_echoed`: the line returns what is sent.
+    `holder_verb` is that of the command that holds the port, if that is another command.
+    `heard_count` counts received bytes, `early_bytes` are the last of those that came before a
+    robot has answered; `is_echoed`: the line returns what is sent.
     """
 
-    held_by = ""
-    heard = 0
-    came = b""
+    holder_verb = ""
+    heard_count = 0
+    early_bytes = b""
     is_echoed = False
 
     def note_heard(self, data: bytes) -> None:
         """Count received bytes, and keep them while no robot has answered."""
-        self.heard += len(data)
+        self.heard_count += len(data)
         if data and self.robot is None:
-            self.came = (self.came + data)[-KEPT_BYTES:]
+            self.early_bytes = (self.early_bytes + data)[-MOST_EARLY_BYTES:]
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -249,7 +249,7 @@ class LinkConnection:
     def close(self) -> None: ...
 
 
-def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
+def reason_of(connection: LinkConnection, reply: Reply[object]) -> str:
     """Return why a reply is not OK."""
     if reply.status == CANCELLED:
         return "stopped_midway" if reply.detail == DETAIL_MIDWAY else "stopped_elsewhere"
@@ -259,22 +259,22 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
         return "other_robot"
     if reply.status != LOST:
         return STATUS
-    if line.robot is not None:
+    if connection.robot is not None:
         return "link_lost"
-    found = stranger(line)
-    if found is not None and found.has_row:
+    board = find_stranger(connection)
+    if board is not None and board.has_row:
         return FOREIGN
-    if line.is_echoed:
+    if connection.is_echoed:
         return "link_echo"
-    if found is not None and found.is_sure:
+    if board is not None and board.is_sure:
         return FOREIGN
-    return "link_other" if line.heard else "link_silent"
+    return "link_other" if connection.heard_count else "link_silent"
 
 
-def stranger(line: LinkConnection) -> Foreign | None:
+def find_stranger(connection: LinkConnection) -> ForeignBoard | None:
     """Return what answers instead of a robot, as far as its bytes tell."""
-    if line.robot is not None or not line.came:
+    if connection.robot is not None or not connection.early_bytes:
         return None
     from tiniscript.link import foreign
 
-    return foreign.identify_stranger(line.came)
+    return foreign.identify_stranger(connection.early_bytes)

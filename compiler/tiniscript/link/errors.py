@@ -16,9 +16,9 @@ REFUSED, UNTRUSTED, TAKEN = "refused", "untrusted", "taken"
 
 
 class PortError(Exception):
-    """A port that cannot be used: `reason` is a name from above, `why` the system's message."""
+    """A port that cannot be used: `reason` is a name from above, `detail` the system's message."""
 
-    def __init__(self, reason: str, why: str = "") -> None:
+    def __init__(self, reason: str, detail: str = "") -> None:
         super().__init__(reason)
         self.reason = reason
-        self.why = why
+        self.detail = detail

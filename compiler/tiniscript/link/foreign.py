@@ -45,11 +45,11 @@ OTHER_SKETCH = "other_sketch"  # the row of whatever prints text and has no row 
 ECHO_SKETCH = "echo_sketch"
 
 
-class Foreign(NamedTuple):
-    """A board that is not ours: the `name` of its row, and what it `said`, as a line of text."""
+class ForeignBoard(NamedTuple):
+    """A board that is not ours: the `name` of its kind, and a line of its `text`."""
 
     name: str
-    said: str
+    text: str
     is_sure: bool
 
     @property
@@ -57,7 +57,7 @@ class Foreign(NamedTuple):
         return self.name in BY_NAME
 
 
-class Row(NamedTuple):
+class BoardKind(NamedTuple):
     """`recognise` returns what such a board has said, and whether that is sure; None where these
     bytes are not its own. `probe` is what provokes them, or empty."""
 
@@ -68,15 +68,15 @@ class Row(NamedTuple):
 
 def _line_recogniser(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
     """Return a recogniser of text: its line that has this pattern."""
-    compiled = re.compile(pattern.encode("ascii"))
+    line_pattern = re.compile(pattern.encode("ascii"))
 
-    def recognise(heard: bytes) -> tuple[str, bool] | None:
-        match = compiled.search(heard)
+    def recognise(data: bytes) -> tuple[str, bool] | None:
+        match = line_pattern.search(data)
         if match is None:
             return None
-        first = max(heard.rfind(end, 0, match.start() + 1) for end in (b"\n", b"\r")) + 1
-        rest = re.split(rb"[\r\n]", heard[first:], maxsplit=1)[0]
-        return _printable(rest.decode("utf-8", "replace")), True
+        line_start = max(data.rfind(end, 0, match.start() + 1) for end in (b"\n", b"\r")) + 1
+        line = re.split(rb"[\r\n]", data[line_start:], maxsplit=1)[0]
+        return _printable(line.decode("utf-8", "replace")), True
 
     return recognise
 
@@ -84,8 +84,8 @@ def _line_recogniser(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]
 _NAME_OF_FIRMATA = re.compile(rb"\xf0\x79([\x00-\x7f])([\x00-\x7f])((?:[\x20-\x7e]\x00){2,})\xf7")
 
 
-def _recognise_firmata(heard: bytes) -> tuple[str, bool] | None:
-    match = _NAME_OF_FIRMATA.search(heard)
+def _recognise_firmata(data: bytes) -> tuple[str, bool] | None:
+    match = _NAME_OF_FIRMATA.search(data)
     if match is None:
         return None
     name = match[3][::2].decode("ascii")
@@ -98,16 +98,16 @@ _FRAME_OF_MBOT = re.compile(
 )
 
 
-def _recognise_mbot(heard: bytes) -> tuple[str, bool] | None:
-    said = ""
-    for match in _FRAME_OF_MBOT.finditer(heard):
+def _recognise_mbot(data: bytes) -> tuple[str, bool] | None:
+    text = ""
+    for match in _FRAME_OF_MBOT.finditer(data):
         if match[1] is not None and match[1][0] != len(match[2]):
             continue
-        said = match[2].decode("ascii") if match[2] else said or match[0].hex(" ").upper()
-    line = _VERSION_OF_MBOT.search(heard)
-    if line is not None:
-        return line[1].decode("ascii"), bool(said)  # another sketch may print such a line
-    return (_printable(said), True) if said else None
+        text = match[2].decode("ascii") if match[2] else text or match[0].hex(" ").upper()
+    version = _VERSION_OF_MBOT.search(data)
+    if version is not None:
+        return version[1].decode("ascii"), bool(text)  # another sketch may print such a line
+    return (_printable(text), True) if text else None
 
 
 _PYTHON = _line_recogniser(
@@ -115,49 +115,53 @@ _PYTHON = _line_recogniser(
 )
 
 
-def _recognise_python(heard: bytes) -> tuple[str, bool] | None:
-    if found := _PYTHON(heard):
-        return found
-    return (">>>", False) if re.search(rb"(?:^|\n)>>> *[\r\n\x11\x13]*$", heard) else None
+def _recognise_python(data: bytes) -> tuple[str, bool] | None:
+    if banner := _PYTHON(data):
+        return banner
+    return (">>>", False) if re.search(rb"(?:^|\n)>>> *[\r\n\x11\x13]*$", data) else None
 
 
 _SNEK = _line_recogniser(r"Welcome to [Ss]nek")
 
 
-def _recognise_snek(heard: bytes) -> tuple[str, bool] | None:
-    if found := _SNEK(heard):
-        return found
-    said = re.sub(rb"[\x11\x13]", b"", heard)  # XON and XOFF may come anywhere
-    if re.search(rb"(?:^|\n)[>+] \x14?$", said) is None:
+def _recognise_snek(data: bytes) -> tuple[str, bool] | None:
+    if banner := _SNEK(data):
+        return banner
+    text = re.sub(rb"[\x11\x13]", b"", data)  # XON and XOFF may come anywhere
+    if re.search(rb"(?:^|\n)[>+] \x14?$", text) is None:
         return None
-    return (">", b"\x14" in said)
+    return (">", b"\x14" in text)
 
 
 _AT = _line_recogniser(r"AT version:[0-9]")
 
 
-def _recognise_at(heard: bytes) -> tuple[str, bool] | None:
-    if found := _AT(heard):
-        return found
-    return ("ready", False) if re.search(rb"[\r\n]ready\r\n", heard) else None
+def _recognise_at(data: bytes) -> tuple[str, bool] | None:
+    if banner := _AT(data):
+        return banner
+    return ("ready", False) if re.search(rb"[\r\n]ready\r\n", data) else None
 
 
-ROWS = (
+BOARD_KINDS = (
     # Its supply first: whatever is on such a board, nothing works before that is right.
-    Row(
+    BoardKind(
         "esp32_brownout",
         _line_recogniser(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT"),
     ),
-    Row("esp32_download", _line_recogniser(r"waiting for download|\(DOWNLOAD\([A-Z0-9_/]*\)\)")),
-    Row("esp32_empty", _line_recogniser(r"flash read err, [0-9]+|invalid header: 0x[0-9a-f]{8}")),
-    Row("firmata", _recognise_firmata, b"\xf7\xf9\xf0\x79\xf7"),
-    Row("mbot", _recognise_mbot, b"\xff\x55\x03\x66\x01\x00"),
-    Row("micropython", _recognise_python, b"\r\n\x02"),
-    Row("snek", _recognise_snek, b"\r\n\x14"),
-    Row("at_firmware", _recognise_at),
-    Row("esp32", _line_recogniser(r"rst:0x[0-9a-f]+ \([A-Z0-9_]+\),boot:0x[0-9a-f]+ \(")),
+    BoardKind(
+        "esp32_download", _line_recogniser(r"waiting for download|\(DOWNLOAD\([A-Z0-9_/]*\)\)")
+    ),
+    BoardKind(
+        "esp32_empty", _line_recogniser(r"flash read err, [0-9]+|invalid header: 0x[0-9a-f]{8}")
+    ),
+    BoardKind("firmata", _recognise_firmata, b"\xf7\xf9\xf0\x79\xf7"),
+    BoardKind("mbot", _recognise_mbot, b"\xff\x55\x03\x66\x01\x00"),
+    BoardKind("micropython", _recognise_python, b"\r\n\x02"),
+    BoardKind("snek", _recognise_snek, b"\r\n\x14"),
+    BoardKind("at_firmware", _recognise_at),
+    BoardKind("esp32", _line_recogniser(r"rst:0x[0-9a-f]+ \([A-Z0-9_]+\),boot:0x[0-9a-f]+ \(")),
 )
-BY_NAME = {row.name: row for row in ROWS}
+BY_NAME = {row.name: row for row in BOARD_KINDS}
 NAMES = (*BY_NAME, ECHO_SKETCH, OTHER_SKETCH)
 GENERAL_ROWS = ("esp32", OTHER_SKETCH)  # of whatever runs there: a question may tell what that is
 AT_VERSION_QUESTION = (
@@ -165,86 +169,88 @@ AT_VERSION_QUESTION = (
 )
 
 
-def identify_board(heard: bytes) -> Foreign | None:
+def identify_board(data: bytes) -> ForeignBoard | None:
     """Return what has sent these bytes, if it has a row; None for a robot's, for text and noise."""
-    if is_robot(heard):
+    if is_robot(data):
         return None
-    for row in ROWS:
-        found = row.recognise(heard)
-        if found is not None:
-            return Foreign(row.name, *found)
+    for kind in BOARD_KINDS:
+        match = kind.recognise(data)
+        if match is not None:
+            return ForeignBoard(kind.name, *match)
     return None
 
 
-def identify_stranger(heard: bytes) -> Foreign | None:
+def identify_stranger(data: bytes) -> ForeignBoard | None:
     """Return what has sent these bytes: what has a row, or another sketch if they are text.
 
     Sure text has a whole line. None for a robot's bytes, and for noise.
     """
-    found = identify_board(heard)
-    if found is not None or is_robot(heard):
-        return found
-    said = readable_line(heard)
-    return Foreign(OTHER_SKETCH, said, _has_line(heard)) if said else None
+    board = identify_board(data)
+    if board is not None or is_robot(data):
+        return board
+    line = readable_line(data)
+    return ForeignBoard(OTHER_SKETCH, line, _has_line(data)) if line else None
 
 
-def is_robot(heard: bytes) -> bool:
+def is_robot(data: bytes) -> bool:
     """Whether a robot of ours has sent some of these bytes: a whole frame, or a line of text."""
-    for packet in heard.split(b"\0"):
+    for packet in data.split(b"\0"):
         frame = decode_frame(packet) if packet else None
         if frame is not None and (frame.is_reply or frame.number >= FIRST_EVENT):
             return True
-    return last_robot_line(heard) != ""
+    return last_robot_line(data) != ""
 
 
-def last_robot_line(heard: bytes) -> str:
+def last_robot_line(data: bytes) -> str:
     """Return the last whole line of a robot's text, `// OK`, or nothing."""
-    lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", heard)
+    lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", data)
     return _printable(lines[-1].decode("ascii")) if lines else ""
 
 
-def readable_line(heard: bytes) -> str:
+def readable_line(data: bytes) -> str:
     """Return a line of bytes that are text, else an empty text.
 
     Where no line ends all of them have to be.
     """
-    if len(heard) < LEAST_BYTES or len(set(heard)) < LEAST_DIFFERENT_BYTES:
+    if len(data) < LEAST_BYTES or len(set(data)) < LEAST_DIFFERENT_BYTES:
         return ""
-    least = LEAST_PRINTABLE_SHARE if _has_line(heard) else 1.0
-    text = re.sub(r"\x1b\[[0-9;]*m", "", heard.decode("utf-8", "replace"))  # colours
-    good = sum((letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text)
-    if not text or good < least * len(text):
+    least_share = LEAST_PRINTABLE_SHARE if _has_line(data) else 1.0
+    text = re.sub(r"\x1b\[[0-9;]*m", "", data.decode("utf-8", "replace"))  # colours
+    readable_count = sum(
+        (letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text
+    )
+    if not text or readable_count < least_share * len(text):
         return ""
-    rows = [row.strip() for row in text.splitlines() if row.strip()]
-    return _printable(rows[len(rows) // 2]) if rows else ""
+    lines = [row.strip() for row in text.splitlines() if row.strip()]
+    return _printable(lines[len(lines) // 2]) if lines else ""
 
 
-def _has_line(heard: bytes) -> bool:
-    return b"\n" in heard or b"\r" in heard
+def _has_line(data: bytes) -> bool:
+    return b"\n" in data or b"\r" in data
 
 
 def _printable(line: str) -> str:
-    plain = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
-    return "".join(letter for letter in plain if letter.isprintable())[:MOST_TEXT_CHARACTERS]
+    text = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
+    return "".join(letter for letter in text if letter.isprintable())[:MOST_TEXT_CHARACTERS]
 
 
 class Explanation(NamedTuple):
     """What such a board is, perhaps with what it says, and what to do next."""
 
-    said: str
+    meaning: str
     advice: str
 
 
-def sentence(name: str, language: str) -> Explanation:
+def explanation_of(name: str, language: str) -> Explanation:
     """Return the sentences of a row, or of ECHO_SKETCH or OTHER_SKETCH."""
-    said = languages.text(CATALOGUE, f"{name}/said", language)
-    return Explanation(said, languages.text(CATALOGUE, f"{name}/try", language))
+    meaning = languages.text(CATALOGUE, f"{name}/said", language)
+    return Explanation(meaning, languages.text(CATALOGUE, f"{name}/try", language))
 
 
-def explain(found: Foreign, language: str) -> Explanation:
+def explain(board: ForeignBoard, language: str) -> Explanation:
     """Return the sentences of a board, with what it says in the first one."""
-    said, advice = sentence(found.name, language)
-    says = languages.text(CATALOGUE, "says", language)
+    meaning, advice = explanation_of(board.name, language)
+    says_form = languages.text(CATALOGUE, "says", language)
     return Explanation(
-        says.format(what=said, said=printable(found.said, MOST_TEXT_CHARACTERS)), advice
+        says_form.format(what=meaning, said=printable(board.text, MOST_TEXT_CHARACTERS)), advice
     )

@@ -40,8 +40,8 @@ class Frame(NamedTuple):
 
 def encode_frame(frame: Frame) -> bytes:
     """Return the bytes on the wire, including the 0x00 at the end."""
-    kind = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
-    data = bytes((kind, frame.seq, frame.epoch))
+    type_byte = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
+    data = bytes((type_byte, frame.seq, frame.epoch))
     is_large = HEAD_BYTES + len(frame.payload) + CRC_BYTES > SMALL_FRAME
     data += b"\0" * (is_large and not frame.is_sealed) + frame.payload
     data += checksum(data).to_bytes(CRC_BYTES, "little")
@@ -59,14 +59,14 @@ def decode_frame(wire: bytes) -> Frame | None:
     body, crc = data[:-CRC_BYTES], data[-CRC_BYTES:]
     if len(body) < HEAD_BYTES or checksum(body) != int.from_bytes(crc, "little"):
         return None
-    kind, seq, epoch = body[:HEAD_BYTES]
-    number, is_sealed = kind & ~(REPLY | SEALED), bool(kind & SEALED)
+    type_byte, seq, epoch = body[:HEAD_BYTES]
+    number, is_sealed = type_byte & ~(REPLY | SEALED), bool(type_byte & SEALED)
     payload = body[HEAD_BYTES:]
     if len(data) > SMALL_FRAME:
         if payload[0] != 0:
             return None
         payload = payload if is_sealed else payload[1:]
-    return Frame(number, seq, epoch, payload, bool(kind & REPLY), is_sealed)
+    return Frame(number, seq, epoch, payload, bool(type_byte & REPLY), is_sealed)
 
 
 def checksum(data: bytes) -> int:

@@ -47,7 +47,7 @@ T = TypeVar("T")
 
 class Handshake:
     """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
-    has the keys of robots; `epoch` returns the robot's; `place` is where it is reached.
+    has the keys of robots; `current_epoch` returns the robot's; `place` is where it is reached.
 
     `is_open`: the robot has answered HELLO, and has not been lost since. `doubted` is the last
     epoch of which it is known what has ended it, while that of a later one is not.
@@ -60,13 +60,13 @@ class Handshake:
         isa: tuple[int, int],
         state: RobotState,
         keys: KeyRing | None,
-        epoch: Callable[[], int],
+        current_epoch: Callable[[], int],
         place: str = "",
     ) -> None:
         self._nonce, self._kit, self._isa = nonce, kit, isa
         self._state = state
         self._keys = keys
-        self._epoch = epoch
+        self._current_epoch = current_epoch
         self._place = place
         self.robot: DeviceInfo | None = None
         self.is_open = False
@@ -88,7 +88,7 @@ class Handshake:
         reply = yield from requests.send_single(Request("HELLO", values), HelloReply)
         if reply.status == OK:
             device_info = requests.device_info_of(reply.values)
-            if authority.is_other(self._keys, self._place, device_info):
+            if authority.is_impostor(self._keys, self._place, device_info):
                 self.is_open = False
                 return Reply(OTHER_ROBOT, device_info.id)
             must_seal = authority.has_to_seal(self._keys, device_info)
@@ -102,11 +102,11 @@ class Handshake:
             self._state.state = reply.values.state
             is_owned = bool(device_info.values.features & OWNED)
             if is_owned or must_seal:
-                shown = yield from self.show_keys(is_needed=must_seal and not is_owned)
-                if shown.status == STATUSES["STALE"]:  # the robot was reset meanwhile
-                    return as_refusal(shown)
+                key_reply = yield from self.show_keys(is_needed=must_seal and not is_owned)
+                if key_reply.status == STATUSES["STALE"]:  # the robot was reset meanwhile
+                    return as_refusal(key_reply)
                 # what is shown is sealed, and says whether HELLO has told the truth
-                if not is_owned and (shown.status != OK or shown.values.features & OWNED):
+                if not is_owned and (key_reply.status != OK or key_reply.values.features & OWNED):
                     self.is_open = False
                     return Reply(UNPROVEN)
                 return Reply(OK, 0, self.robot.values)
@@ -125,10 +125,10 @@ class Handshake:
         if reply.status != STATUSES["STALE"]:
             return reply
         hello = yield from self.hello()
-        ended = STATE_FAULTED if self._boot == boot else STATE_IDLE
+        resting_state = STATE_FAULTED if self._boot == boot else STATE_IDLE
         if hello.status in (OTHER_ROBOT, UNPROVEN):
             return as_refusal(hello)
-        if hello.status != OK or self._state.state != ended:
+        if hello.status != OK or self._state.state != resting_state:
             return reply
         return (yield from self.with_key(make))  # that came before, and nothing of this was done
 
@@ -141,9 +141,9 @@ class Handshake:
             hello = yield from self.hello()
             if hello.status != OK:
                 return as_refusal(hello)
-        shown = yield from self.show_keys()
-        if shown.status != OK:
-            return as_refusal(reply if shown.status == NOT_OWNER else shown)
+        key_reply = yield from self.show_keys()
+        if key_reply.status != OK:
+            return as_refusal(reply if key_reply.status == NOT_OWNER else key_reply)
         return (yield from make())
 
     def show_keys(
@@ -152,11 +152,13 @@ class Handshake:
         """Show the robot our keys of it; `which` alone if it is given. See `authority`."""
         assert self.robot
         keys, robot, nonce = self._keys, self.robot, self._nonce
-        reply = yield from authority.show_keys(keys, robot, nonce, self._epoch, which, is_needed)
+        reply = yield from authority.show_keys(
+            keys, robot, nonce, self._current_epoch, which, is_needed
+        )
         if reply.status == OK:
             self._take_features(reply.values.features)
             if keys is not None and robot.values.features & SEALS and self._place:
-                keys.meet(self._place, robot.id)
+                keys.remember_robot(self._place, robot.id)
         return reply
 
     def _take_features(self, features: int) -> None:
@@ -208,9 +210,9 @@ class Handshake:
 
     def hold_back(self) -> Exchange[EmptyReply]:
         """Stop the robot so that only the teacher's key, or its button, lets it go on."""
-        shown = yield from self.show_keys(KEY_TEACHER)
-        if shown.status != OK:
-            return as_refusal(shown)
+        key_reply = yield from self.show_keys(KEY_TEACHER)
+        if key_reply.status != OK:
+            return as_refusal(key_reply)
         return (yield from requests.send_single(Request("STOP"), EmptyReply))
 
     def allow_text(self, is_allowed: bool) -> Exchange[TextReply]:
@@ -224,7 +226,7 @@ class Handshake:
         return requests.start(is_detached, self._state.is_latched)
 
     def live(self, code: bytes, kit: int, halts: bool) -> Exchange[ReceiptReply]:
-        robot = yield from self._speak_for(kit)
+        robot = yield from self._announce_kit(kit)
         if halts and not robot.values.features & BREAKPOINTS:
             return Reply(STATUSES["NO_BREAKPOINTS"])
         return (yield from requests.live(code, self._state.is_latched, kit, robot, halts))
@@ -233,7 +235,7 @@ class Handshake:
         self, image: Image, runs: bool, saves: bool, is_detached: bool, kit: int | None
     ) -> Exchange[ReceiptReply]:
         kit = self._kit if kit is None else kit
-        robot = yield from self._speak_for(kit if image.devices else 0)
+        robot = yield from self._announce_kit(kit if image.devices else 0)
         mode = requests.mode_of(image, runs, saves, is_detached)
         is_latched = self._state.is_latched
         return (yield from requests.upload(image, mode, robot, self._isa, is_latched, kit))
@@ -259,7 +261,7 @@ class Handshake:
             self.robot = requests.device_info_of(self.robot.values._replace(name=name))
         return reply
 
-    def _speak_for(self, kit: int) -> Generator[Request, Reply[SentReply], DeviceInfo]:
+    def _announce_kit(self, kit: int) -> Generator[Request, Reply[SentReply], DeviceInfo]:
         """Repeat HELLO with the robot's kit if `kit` is that kit and HELLO named another one;
         return the robot's device info.
 
@@ -300,10 +302,10 @@ _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "disown": Handshake.disown,
     "hold_back": Handshake.hold_back,
     "allow_text": Handshake.allow_text,
-    "wifi": lambda handshake: wifi.tell("TELL"),
-    "join": lambda handshake, network: wifi.give(network),
-    "forget_wifi": lambda handshake: wifi.forget(),
-    "broker": lambda handshake: wifi.tell("TELL_BROKER"),
+    "wifi": lambda handshake: wifi.query("TELL"),
+    "join": lambda handshake, network: wifi.join(network),
+    "forget_wifi": lambda handshake: wifi.forget_network(),
+    "broker": lambda handshake: wifi.query("TELL_BROKER"),
     "use_broker": lambda handshake, broker: wifi.use_broker(broker),
 }
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from tiniscript.base.source import printable
 
 NAME_CHARACTERS = 40
-PS_S = 1.0  # timeout of `ps`
+PS_TIMEOUT_S = 1.0  # timeout of `ps`
 
 
 class Holder(NamedTuple):
@@ -43,20 +43,20 @@ def find_holder(path: str, pid: int | None = None) -> Holder | None:
 
     None where nobody tells.
     """
-    result = next(_pids_with_open_file(path), None) if sys.platform == "linux" else pid
-    result = pid if result is None else result
-    if result is None or result == os.getpid():
+    holder_pid = next(_pids_with_open_file(path), None) if sys.platform == "linux" else pid
+    holder_pid = pid if holder_pid is None else holder_pid
+    if holder_pid is None or holder_pid == os.getpid():
         return None
-    name = _command(result)
-    return None if name is None else Holder(result, printable(name, NAME_CHARACTERS))
+    name = _command(holder_pid)
+    return None if name is None else Holder(holder_pid, printable(name, NAME_CHARACTERS))
 
 
 def is_suspended(pid: int) -> bool:
     """Whether a process is suspended, as with Ctrl-Z."""
     if sys.platform == "linux":
         with suppress(OSError, IndexError):
-            about = Path(f"/proc/{pid}/stat").read_bytes()
-            return about.rpartition(b")")[2].split()[0] in (b"T", b"t")
+            stat_line = Path(f"/proc/{pid}/stat").read_bytes()
+            return stat_line.rpartition(b")")[2].split()[0] in (b"T", b"t")
         return False
     return _ps_column(pid, "state").startswith("T")
 
@@ -64,13 +64,13 @@ def is_suspended(pid: int) -> bool:
 def _pids_with_open_file(path: str) -> Iterator[int]:
     """Yield the processes that have a file open, as far as this user may know that."""
     try:
-        expected = Path(path).stat()
+        port_status = Path(path).stat()
     except (OSError, ValueError):
         return
     for process in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):  # it has ended, or is another user's
             if int(process.name) != os.getpid() and any(
-                os.path.samestat(expected, path.stat()) for path in (process / "fd").iterdir()
+                os.path.samestat(port_status, path.stat()) for path in (process / "fd").iterdir()
                 if path.exists()
             ):  # fmt: skip
                 yield int(process.name)
@@ -87,10 +87,12 @@ def _command(pid: int) -> str | None:
         words = _ps_column(pid, "args").split()
     if not any(words):
         return None
-    verbs = [at for at, word in enumerate(words[:3]) if word in ("tiniscript", "tsc")]
-    verbs += [at for at, word in enumerate(words[:3]) if Path(word).name == "tsc"]
-    if verbs and len(words) > verbs[0] + 1:
-        return f"tsc {words[verbs[0] + 1]}".strip()
+    command_indexes = [
+        index for index, word in enumerate(words[:3]) if word in ("tiniscript", "tsc")
+    ]
+    command_indexes += [index for index, word in enumerate(words[:3]) if Path(word).name == "tsc"]
+    if command_indexes and len(words) > command_indexes[0] + 1:
+        return f"tsc {words[command_indexes[0] + 1]}".strip()
     return Path(words[0]).name
 
 
@@ -102,7 +104,7 @@ def _ps_column(pid: int, column: str) -> str:
     with suppress(OSError, subprocess.SubprocessError):
         completed = subprocess.run(
             ["ps", "-o", f"{column}=", "-p", str(pid)],
-            capture_output=True, text=True, timeout=PS_S, check=False,
+            capture_output=True, text=True, timeout=PS_TIMEOUT_S, check=False,
         )  # fmt: skip
         return completed.stdout.strip()
     return ""

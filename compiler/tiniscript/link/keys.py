@@ -32,11 +32,11 @@ _KEY_KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
 class BadKeys(Exception):
-    """A file that has no keys, or that cannot be read or written: `why` is what the system says."""
+    """A file without keys, or that cannot be read or written; `detail`: what the system says."""
 
-    def __init__(self, why: str = "") -> None:
-        super().__init__(why)
-        self.why = why
+    def __init__(self, detail: str = "") -> None:
+        super().__init__(detail)
+        self.detail = detail
 
 
 class TooManyKeys(BadKeys):
@@ -73,23 +73,23 @@ class KeyFile(KeyRing):
         Raises BadKeys, and TooManyKeys where keys that are there would go for it.
         """
         with self._locked():
-            before = self.all()
-            given = {key.place: key for key in known_seals(keys, before)}
-            rest = [key for key in before if key.is_pending or key.place not in given]
-            changed = [key for key in given.values() if key not in before]
-            if changed:
-                self._write([*rest, *given.values()])
-            return len(changed)
+            stored_keys = self.all()
+            new_keys = {key.slot: key for key in with_known_seals(keys, stored_keys)}
+            other_keys = [key for key in stored_keys if key.is_pending or key.slot not in new_keys]
+            changed_keys = [key for key in new_keys.values() if key not in stored_keys]
+            if changed_keys:
+                self._write([*other_keys, *new_keys.values()])
+            return len(changed_keys)
 
-    def forget(self, robot: int) -> None:
+    def forget(self, robot_id: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
         with self._locked():
-            self._write([key for key in self.all() if key.id != robot])
+            self._write([key for key in self.all() if key.id != robot_id])
 
-    def accept(self, robot: int) -> None:
+    def accept(self, robot_id: int) -> None:
         """Let a robot answer where another one did, or with its name. Raises BadKeys."""
         try:
-            met_robots.accept(self._met_robots_path, robot)
+            met_robots.accept(self._met_robots_path, robot_id)
         except OSError as failure:
             raise BadKeys(failure.strerror or str(failure)) from None
 
@@ -110,24 +110,25 @@ class KeyFile(KeyRing):
         return self.path.with_name("robots.json")
 
     def robot_at(self, place: str) -> int | None:
-        return met_robots.read_met_robots(self._met_robots_path).places.get(place)
+        return met_robots.read_met_robots(self._met_robots_path).id_by_place.get(place)
 
-    def meet(self, place: str, robot: int) -> None:
+    def remember_robot(self, place: str, robot_id: int) -> None:
         if not self._is_for_virtual:
-            met_robots.meet(self._met_robots_path, place, robot)
+            met_robots.remember_robot(self._met_robots_path, place, robot_id)
 
-    def accepts(self, robot: int) -> bool:
+    def accepts(self, robot_id: int) -> bool:
         return (
-            self._accepts_all or robot in met_robots.read_met_robots(self._met_robots_path).accepted
+            self._accepts_all
+            or robot_id in met_robots.read_met_robots(self._met_robots_path).accepted_ids
         )
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
             with self._locked():
-                before = self.all()
-                after = change(before)
-                if after != before:
-                    self._write(after)
+                old_keys = self.all()
+                new_keys = change(old_keys)
+                if new_keys != old_keys:
+                    self._write(new_keys)
         except BadKeys:
             return False
         return True
@@ -156,10 +157,14 @@ class KeyFile(KeyRing):
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
 
-def known_seals(robot_keys: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
+def with_known_seals(
+    robot_keys: Iterable[RobotKey], known_keys: Iterable[RobotKey]
+) -> list[RobotKey]:
     """Return keys with what was known before: that their robots seal."""
-    matches = {key.key for key in before if key.uses_seals}
-    return [key._replace(uses_seals=key.uses_seals or key.key in matches) for key in robot_keys]
+    sealing_keys = {key.key for key in known_keys if key.uses_seals}
+    return [
+        key._replace(uses_seals=key.uses_seals or key.key in sealing_keys) for key in robot_keys
+    ]
 
 
 def is_shared(path: Path) -> bool:
@@ -190,21 +195,21 @@ def encode_keys(keys: Iterable[RobotKey]) -> bytes:
 def decode_keys(data: bytes) -> list[RobotKey]:
     """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
     try:
-        result = json.loads(data)
-        if result["tiniscript_keys"] != 1:
+        document = json.loads(data)
+        if document["tiniscript_keys"] != 1:
             raise BadKeys
-        if len(result["keys"]) > MOST_KEYS:
+        if len(document["keys"]) > MOST_KEYS:
             raise BadKeys
-        return [_key(row) for row in result["keys"]]
+        return [_key(row) for row in document["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
         raise BadKeys from None
 
 
 def _key(row: dict[str, object]) -> RobotKey:
-    robot, kind, key = (str(row[name]) for name in ("id", "kind", "key"))
-    data = bytes.fromhex(key)
+    robot_id, kind, key_hex = (str(row[name]) for name in ("id", "kind", "key"))
+    data = bytes.fromhex(key_hex)
     if (
-        not re.fullmatch("[0-9a-f]{8}", robot)
+        not re.fullmatch("[0-9a-f]{8}", robot_id)
         or len(data) != KEY_BYTES
         or not any(data)
         or kind not in _KEY_KINDS
@@ -212,4 +217,4 @@ def _key(row: dict[str, object]) -> RobotKey:
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
     marks = {field: row.get(mark) is True for mark, field in _MARK_FIELDS.items()}
-    return RobotKey(int(robot, 16), _KEY_KINDS.index(kind), data, name, **marks)
+    return RobotKey(int(robot_id, 16), _KEY_KINDS.index(kind), data, name, **marks)

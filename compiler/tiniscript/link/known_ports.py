@@ -22,7 +22,7 @@ MOST_PORTS = 2000  # ports; the oldest go first
 class KnownPorts(NamedTuple):
     """`names` maps ports to robots' names, the newest first; a name may be empty."""
 
-    last: str | None
+    last_port: str | None
     names: dict[str, str]
 
 
@@ -30,11 +30,11 @@ def remembered_ports() -> KnownPorts:
     """Return the remembered ports."""
     try:
         fields = json.loads(read_limited(_path(), FILE_BYTES))
-        last = fields["last"]
+        last_port = fields["last"]
         names = {str(port): printable(str(name)) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return KnownPorts(None, {})
-    return KnownPorts(last if isinstance(last, str) else None, names)
+    return KnownPorts(last_port if isinstance(last_port, str) else None, names)
 
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
@@ -43,16 +43,18 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     with suppress(OSError, ValueError):
         path.parent.mkdir(parents=True, exist_ok=True)
         with files.lock_file(path):  # other commands do the same
-            before = remembered_ports()
-            first = next(iter(before.names.items()), None)
-            if first == (port, name) and (before.last == port or not is_used):
+            known_ports = remembered_ports()
+            newest = next(iter(known_ports.names.items()), None)
+            if newest == (port, name) and (known_ports.last_port == port or not is_used):
                 return
             others = {
-                value: name for value, name in before.names.items() if not _is_same(value, port)
+                value: name
+                for value, name in known_ports.names.items()
+                if not _is_same(value, port)
             }
             names = {port: name, **others}
-            last = port if is_used else before.last
-            fields = {"last": last, "ports": list(names.items())[:MOST_PORTS]}
+            last_port = port if is_used else known_ports.last_port
+            fields = {"last": last_port, "ports": list(names.items())[:MOST_PORTS]}
             files.replace(path, json.dumps(fields).encode())
 
 

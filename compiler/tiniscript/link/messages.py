@@ -102,10 +102,10 @@ SHOW_PLACE_BYTES = 3  # of a SHOW: its run, and where its instruction is (16 bit
 COUNTER_BYTES = 4
 
 
-def payload_bytes(largest: int, is_sealed: bool = False) -> int:
-    """Return the most bytes of a payload where a frame has `largest` bytes at most."""
-    seal = 1 + COUNTER_BYTES + TAG_BYTES if is_sealed else int(largest > SMALL_FRAME)
-    return largest - HEAD_BYTES - CRC_BYTES - seal
+def payload_bytes(frame_bytes: int, is_sealed: bool = False) -> int:
+    """Return the most bytes of a payload where a frame has `frame_bytes` at most."""
+    extra_bytes = 1 + COUNTER_BYTES + TAG_BYTES if is_sealed else int(frame_bytes > SMALL_FRAME)
+    return frame_bytes - HEAD_BYTES - CRC_BYTES - extra_bytes
 
 
 PAYLOAD_BYTES = payload_bytes(SMALL_FRAME)
@@ -199,15 +199,15 @@ WHEELS = (
 
 
 class Field(NamedTuple):
-    """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them.
+    """`kind` is one of KINDS, or `rest`: all remaining bytes, `least_bytes` to `most_bytes`.
 
-    What `fills_frame` has as many bytes as the frame; `high` is that of a large one.
+    What `fills_frame` has as many bytes as the frame; `most_bytes` is that of a large one.
     """
 
     name: str
     kind: str
-    low: int
-    high: int
+    least_bytes: int
+    most_bytes: int
     fills_frame: bool = False
 
 
@@ -229,7 +229,7 @@ class Message(NamedTuple):
 KINDS = {"u8": "B", "u16": "H", "u32": "I", "i8": "b", "i32": "i"}
 
 
-def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
+def _fields(text: str, bytes_before: int = 0) -> tuple[Field, ...]:
     """Return the fields that a text names, after so many bytes of the payload."""
     fields: list[Field] = []
     for word in text.split():
@@ -237,7 +237,11 @@ def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
         kind, _, range_of_rest = kind.partition("=")
         if kind == "rest":
             low, _, high = range_of_rest.partition("..")
-            room = payload_bytes(LARGE_FRAME) - before - sum(field.high for field in fields)
+            room = (
+                payload_bytes(LARGE_FRAME)
+                - bytes_before
+                - sum(field.most_bytes for field in fields)
+            )
             fields.append(Field(name, kind, int(low), int(high or room), fills_frame=not high))
         else:
             size = struct.calcsize(KINDS[kind])
@@ -322,13 +326,13 @@ MESSAGES = (
              "The program has read another value than before from a sensor. `ms`: since the start."),
 )
 FIRST_ACTING = 6
-RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
-OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know,
-OF_REMOTE = ("KEYS",)  # and only those with a remote control
+RETIRED_NUMBERS = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
+RADIO_MESSAGES = ("WIFI",)  # requests that only robots with WiFi know,
+REMOTE_MESSAGES = ("KEYS",)  # and only those with a remote control
 # These are the last ones, so that the table of a robot without them ends before. A robot that tells
 # readings has breakpoints.
-OF_BREAKPOINTS = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
-OF_READINGS = ("TELL_READINGS",)
+BREAKPOINT_MESSAGES = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
+READING_MESSAGES = ("TELL_READINGS",)
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {
@@ -438,17 +442,17 @@ LINK_FAULTS = (
 # fmt: on
 
 
-def _rows(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
+def _row_numbers(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
     """Return the number of each name: its row in the table. Raises ValueError if it has none."""
-    rows = [name for name, _ in table]
-    return tuple(rows.index(name) for name in names.split())
+    row_names = [name for name, _ in table]
+    return tuple(row_names.index(name) for name in names.split())
 
 
-STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
+STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _row_numbers(
     STATES, "IDLE RUNNING STOPPED FAULTED"
 )
-KEY_OWNER, KEY_TEACHER = _rows(KEYS, "OWNER TEACHER")
-RESUME_GO, RESUME_STEP = _rows(RESUMES, "GO STEP")
+KEY_OWNER, KEY_TEACHER = _row_numbers(KEYS, "OWNER TEACHER")
+RESUME_GO, RESUME_STEP = _row_numbers(RESUMES, "GO STEP")
 (
     SAVED_NOTHING,
     SAVED_SAVING,
@@ -456,7 +460,7 @@ RESUME_GO, RESUME_STEP = _rows(RESUMES, "GO STEP")
     SAVED_LOW_SUPPLY,
     SAVED_OTHER_VERSION,
     SAVED_UNREADABLE,
-) = _rows(SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION UNREADABLE")
+) = _row_numbers(SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION UNREADABLE")
 FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # faults from this number on are not caused by the program
 
 BY_NUMBER = {message.number: message for message in MESSAGES}
@@ -476,7 +480,9 @@ def encode_payload(fields: tuple[Field, ...], values: Mapping[str, int | bytes])
     for field in fields:
         value = values.get(field.name, b"") if field.kind == "rest" else values[field.name]
         if isinstance(value, bytes):
-            assert field.kind == "rest" and field.low <= len(value) <= field.high, field
+            assert field.kind == "rest" and field.least_bytes <= len(value) <= field.most_bytes, (
+                field
+            )
             parts.append(value)
         else:
             parts.append(struct.pack("<" + KINDS[field.kind], value))
@@ -485,22 +491,22 @@ def encode_payload(fields: tuple[Field, ...], values: Mapping[str, int | bytes])
 
 def decode_payload(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
     """Return the values in a payload. Raises Malformed if its length does not fit."""
-    result: dict[str, int | bytes] = {}
-    at = 0
+    values: dict[str, int | bytes] = {}
+    offset = 0
     for field in fields:
-        size = len(payload) - at if field.kind == "rest" else field.low
-        if not field.low <= size <= field.high or at + size > len(payload):
+        size = len(payload) - offset if field.kind == "rest" else field.least_bytes
+        if not field.least_bytes <= size <= field.most_bytes or offset + size > len(payload):
             raise Malformed
-        piece = payload[at : at + size]
-        result[field.name] = (
+        piece = payload[offset : offset + size]
+        values[field.name] = (
             piece if field.kind == "rest" else struct.unpack("<" + KINDS[field.kind], piece)[0]
         )
-        at += size
-    if at != len(payload):
+        offset += size
+    if offset != len(payload):
         raise Malformed
-    return result
+    return values
 
 
 def sizes(fields: tuple[Field, ...]) -> tuple[int, int]:
     """Return the least and the greatest length of a payload with these fields."""
-    return sum(field.low for field in fields), sum(field.high for field in fields)
+    return sum(field.least_bytes for field in fields), sum(field.most_bytes for field in fields)

@@ -20,41 +20,41 @@ FILE_MODE = 0o600  # only this person reads it
 
 
 class MetRobots(NamedTuple):
-    """`places` maps each port to the id of the robot that has proved there who it is."""
+    """`id_by_place` maps each port to the id of the robot that has proved there who it is."""
 
-    places: dict[str, int]
-    accepted: list[int]
+    id_by_place: dict[str, int]
+    accepted_ids: list[int]
 
 
 def read_met_robots(path: Path) -> MetRobots:
     """Return what is in the file."""
     try:
         fields = json.loads(files.read_limited(path, FILE_BYTES))
-        places = {str(place): int(robot, 16) for place, robot in fields["places"].items()}
-        return MetRobots(places, [int(robot, 16) for robot in fields["accepted"]])
+        id_by_place = {str(place): int(robot, 16) for place, robot in fields["places"].items()}
+        return MetRobots(id_by_place, [int(robot, 16) for robot in fields["accepted"]])
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return MetRobots({}, [])
 
 
-def meet(path: Path, place: str, robot: int) -> None:
+def remember_robot(path: Path, place: str, robot_id: int) -> None:
     """Remember which robot is at a place. Where the file cannot be written it is not remembered."""
-    if read_met_robots(path).places.get(place) == robot:
+    if read_met_robots(path).id_by_place.get(place) == robot_id:
         return
 
-    def with_place_added(before: MetRobots) -> MetRobots:
-        others = {value: other for value, other in before.places.items() if value != place}
-        return before._replace(places={**others, place: robot})
+    def with_place_added(met_robots: MetRobots) -> MetRobots:
+        others = {value: other for value, other in met_robots.id_by_place.items() if value != place}
+        return met_robots._replace(id_by_place={**others, place: robot_id})
 
     with suppress(OSError, ValueError):
         _change(path, with_place_added)
 
 
-def accept(path: Path, robot: int) -> None:
+def accept(path: Path, robot_id: int) -> None:
     """Remember that a robot may answer where another one did. Raises OSError."""
 
-    def with_robot_accepted(before: MetRobots) -> MetRobots:
-        others = [item for item in before.accepted if item != robot]
-        return before._replace(accepted=[*others, robot])
+    def with_robot_accepted(met_robots: MetRobots) -> MetRobots:
+        others = [other_id for other_id in met_robots.accepted_ids if other_id != robot_id]
+        return met_robots._replace(accepted_ids=[*others, robot_id])
 
     _change(path, with_robot_accepted)
 
@@ -62,11 +62,12 @@ def accept(path: Path, robot: int) -> None:
 def _change(path: Path, change: Callable[[MetRobots], MetRobots]) -> None:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with files.lock_file(path, FILE_MODE):
-        now = change(read_met_robots(path))
+        met_robots = change(read_met_robots(path))
         fields = {
             "places": {
-                place: f"{robot:08x}" for place, robot in list(now.places.items())[-MOST_PLACES:]
+                place: f"{robot:08x}"
+                for place, robot in list(met_robots.id_by_place.items())[-MOST_PLACES:]
             },
-            "accepted": [f"{robot:08x}" for robot in now.accepted[-MOST_PLACES:]],
+            "accepted": [f"{robot:08x}" for robot in met_robots.accepted_ids[-MOST_PLACES:]],
         }
         files.replace(path, json.dumps(fields, indent=1).encode() + b"\n", FILE_MODE)

@@ -127,14 +127,14 @@ EVENTS: dict[str, type[Event]] = {each._field_defaults["name"]: each for each in
 
 
 class ConnectionLost(Exception):
-    """The connection to the robot has ended; `why` is what the system says.
+    """The connection to the robot has ended; `detail` is what the system says.
 
     `is_server`: the command that held the port has ended. Otherwise the port is gone.
     """
 
-    def __init__(self, why: str = "", is_server: bool = False) -> None:
-        super().__init__(why)
-        self.why = why
+    def __init__(self, detail: str = "", is_server: bool = False) -> None:
+        super().__init__(detail)
+        self.detail = detail
         self.is_server = is_server
 
 
@@ -150,29 +150,29 @@ class Backlog:
 
     def __init__(self) -> None:
         self._events: deque[TimedEvent] = deque()
-        self._missed = 0
+        self._missed_count = 0
 
     def __len__(self) -> int:
-        return len(self._events) + (self._missed > 0)
+        return len(self._events) + (self._missed_count > 0)
 
-    def put(self, told: Iterable[TimedEvent]) -> None:
-        for item in told:
-            if item[1].name == "PLACE":  # the newest one says all
+    def put(self, timed_events: Iterable[TimedEvent]) -> None:
+        for timed_event in timed_events:
+            if timed_event[1].name == "PLACE":  # the newest one says all
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
-            self._events.append(item)
+            self._events.append(timed_event)
             if len(self._events) > MOST_EVENTS:
                 self._drop()
 
     def take(self) -> TimedEvent:
         """Return the next event. Raises IndexError if there is none."""
-        if self._missed:
-            event = MissedEvent(self._missed)
-            self._missed = 0
+        if self._missed_count:
+            event = MissedEvent(self._missed_count)
+            self._missed_count = 0
             return (self._events[0][0] if self._events else 0), event
         return self._events.popleft()
 
     def _drop(self) -> None:
-        self._missed += 1
+        self._missed_count += 1
         for number, (_, event) in enumerate(self._events):
             if event.name in DROPPABLE_EVENTS:
                 del self._events[number]

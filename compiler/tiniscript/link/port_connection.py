@@ -52,13 +52,13 @@ class PortConnection(LinkConnection):
         session.tells_starts = True  # other clients may share the line
         self._port = port
         self._now_ms: Callable[[], int] = getattr(port, "now_ms", now_ms)
-        self._lock = lock
-        self._turn = RLock()  # of the session and of what is kept here
-        self._news = Bell()
+        self._port_lock = lock
+        self._session_lock = RLock()  # of the session and of what is kept here
+        self._bell = Bell()
         self._events = Backlog()
-        self._under_way: list[PendingRequest[Any]] = []
+        self._pending_requests: list[PendingRequest[Any]] = []
         self._listener: Callable[[list[TimedEvent]], None] | None = None
-        self._gone: str | None = None
+        self._end_reason: str | None = None
         self._bug: Exception | None = None
         self._takes_places = False
         self._is_closing = False
@@ -72,42 +72,42 @@ class PortConnection(LinkConnection):
     @property
     def end_reason(self) -> str | None:
         """Return why the port is gone, or None while it is open."""
-        return self._gone
+        return self._end_reason
 
     @property
     def has_ended(self) -> bool:
-        return self._gone is not None
+        return self._end_reason is not None
 
     def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        with self._turn:
+        with self._session_lock:
             request = make(self.session)
-            self._under_way.append(request)
+            self._pending_requests.append(request)
         self._wake()
         return request
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         while True:
-            with self._turn:
+            with self._session_lock:
                 if request.outcome is not None:
                     return request.outcome
-                if self._gone is not None:
-                    raise self._bug or ConnectionLost(self._gone)
-            self._news.wait(LOOK_S)
+                if self._end_reason is not None:
+                    raise self._bug or ConnectionLost(self._end_reason)
+            self._bell.wait(LOOK_S)
             if look is not None:
                 look()
 
     def event(self, limit_s: float = LOOK_S) -> TimedEvent | None:
-        if not self._events and self._gone is None:
-            self._news.wait(limit_s)
-        with self._turn:
+        if not self._events and self._end_reason is None:
+            self._bell.wait(limit_s)
+        with self._session_lock:
             if self._events:
                 return self._events.take()
-            if self._gone is not None:
-                raise self._bug or ConnectionLost(self._gone)
+            if self._end_reason is not None:
+                raise self._bug or ConnectionLost(self._end_reason)
         return None
 
     def stop(self) -> int:
-        with self._turn:
+        with self._session_lock:
             began_ms = self._now_ms()
             self.session.stop(began_ms)
         self._wake()
@@ -115,13 +115,13 @@ class PortConnection(LinkConnection):
 
     def end_run(self, run: int) -> None:
         """End a run whose client has gone; what others have asked for goes on."""
-        with self._turn:
+        with self._session_lock:
             self.session.end_run(run, self._now_ms())
         self._wake()
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
         """Do no more of a request whose client has gone."""
-        with self._turn:
+        with self._session_lock:
             self.session.withdraw(request)
 
     def tell_places(self) -> None:
@@ -129,9 +129,9 @@ class PortConnection(LinkConnection):
 
     def tell(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
-        with self._turn:
+        with self._session_lock:
             self._events.put([(self._now_ms(), event)])
-            self._news.ring()
+            self._bell.ring()
 
     def fail(self, bug: Exception) -> None:
         """End the line because of a bug of ours, which is passed to the waiting caller."""
@@ -143,23 +143,23 @@ class PortConnection(LinkConnection):
 
         The line's thread makes the call, and is blocked until it returns.
         """
-        with self._turn:
+        with self._session_lock:
             self._listener = listener
 
     def runs(self, run: int) -> bool:
         """Return whether a run that was started here is still running."""
-        with self._turn:
+        with self._session_lock:
             return self.session.is_running and self.session.run == run
 
     def close(self) -> None:
-        with self._turn:
+        with self._session_lock:
             self._is_closing = True
         self._wake()
         self._thread.join(2 * LOOK_S)
         with suppress(OSError):  # the port is gone already
             self._port.close()
-        if self._lock is not None:
-            self._lock.close()
+        if self._port_lock is not None:
+            self._port_lock.close()
 
     # -- the thread -------------------------------------------------------------------------------
 
@@ -173,36 +173,36 @@ class PortConnection(LinkConnection):
     def _run(self) -> None:
         try:
             while not self._is_closing:
-                with self._turn:
+                with self._session_lock:
                     data = self.session.poll(self._now_ms())
                     self._notify()
                 if data:
                     self._write(data)
-                heard = self._read()
-                if heard:
-                    with self._turn:
-                        self.note_heard(heard)
-                        self.session.receive(heard, self._now_ms())
+                new_bytes = self._read()
+                if new_bytes:
+                    with self._session_lock:
+                        self.note_heard(new_bytes)
+                        self.session.receive(new_bytes, self._now_ms())
                         self._notify()
-        except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed
-            self._end(str(why))
+        except (OSError, TypeError) as error:  # TypeError: from pyserial, if the port is closed
+            self._end(str(error))
         except Exception as bug:
             self.fail(bug)
 
-    def _end(self, why: str) -> None:
-        with self._turn:
-            self._gone = why
-            self._news.ring()
+    def _end(self, reason: str) -> None:
+        with self._session_lock:
+            self._end_reason = reason
+            self._bell.ring()
             if self._listener is not None:
                 self._listener([])
 
     def _read(self) -> bytes:
         """Wait for a byte and return it with those after it: a socket of pyserial tells of one."""
-        result = bytes(self._port.read(1))
+        data = bytes(self._port.read(1))
         with suppress(OSError):  # the port is gone: the next read says so, after its last bytes
-            while 0 < len(result) < READ_BYTES and (more := self._port.in_waiting):
-                result += self._port.read(more)
-        return result
+            while 0 < len(data) < READ_BYTES and (more := self._port.in_waiting):
+                data += self._port.read(more)
+        return data
 
     def _write(self, data: bytes) -> None:
         with suppress(serial.SerialTimeoutException):  # counts as lost: the session sends it again
@@ -211,13 +211,21 @@ class PortConnection(LinkConnection):
     def _notify(self) -> None:
         """Pass events and outcomes on to the waiting thread and to the listener."""
         time_ms = self._now_ms()
-        messages = [(time_ms, event) for event in self.session.events()]
-        over = [request for request in self._under_way if request.outcome is not None]
-        if over:
-            self._under_way = [request for request in self._under_way if request.outcome is None]
-        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in messages)
-        mine = [item for item in messages if self._takes_places or item[1].name != "PLACE"]
-        self._events.put(mine)
-        self._news.ring()
-        if self._listener is not None and (messages or over):
-            self._listener(messages)
+        timed_events = [(time_ms, event) for event in self.session.events()]
+        finished_requests = [
+            request for request in self._pending_requests if request.outcome is not None
+        ]
+        if finished_requests:
+            self._pending_requests = [
+                request for request in self._pending_requests if request.outcome is None
+            ]
+        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in timed_events)
+        own_events = [
+            timed_event
+            for timed_event in timed_events
+            if self._takes_places or timed_event[1].name != "PLACE"
+        ]
+        self._events.put(own_events)
+        self._bell.ring()
+        if self._listener is not None and (timed_events or finished_requests):
+            self._listener(timed_events)

@@ -49,10 +49,10 @@ def is_name(port: str) -> bool:
 
 def name_in(port: str) -> str:
     """Return the name or address after `://`, in its canonical form."""
-    return canonical(port.partition("://")[2])
+    return canonical_name(port.partition("://")[2])
 
 
-def canonical(name: str) -> str:
+def canonical_name(name: str) -> str:
     """Return a name such that two names of one robot are equal: they ignore case."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
 
@@ -63,7 +63,7 @@ def is_device_address(name: str) -> bool:
     return re.fullmatch(rf"[0-9A-Fa-f]{{2}}(:[0-9A-Fa-f]{{2}}){{5}}|{uuid}", name) is not None
 
 
-def is_there(port: str) -> bool:
+def exists(port: str) -> bool:
     """Return whether a port exists, as far as this is known without opening it."""
     if is_address(port) or sys.platform == "win32":
         return True
@@ -81,10 +81,10 @@ def canonical_port(port: str) -> str:
     if is_network_name(port):
         return TCP + name_in(port).removesuffix(".local")
     if is_address(port):
-        kind, _, rest = port.partition("://")
-        host, colon, number = rest.rpartition(":")
-        host = host.lower()
-        return f"{kind.lower()}://{'127.0.0.1' if host in _LOCAL_HOSTS else host}{colon}{number}"
+        scheme, _, address = port.partition("://")
+        host, colon, port_number = address.rpartition(":")
+        host = "127.0.0.1" if host.lower() in _LOCAL_HOSTS else host.lower()
+        return f"{scheme.lower()}://{host}{colon}{port_number}"
     if sys.platform == "win32":
         return port.upper().removeprefix("\\\\.\\")
     try:

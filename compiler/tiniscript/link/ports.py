@@ -37,11 +37,11 @@ def list_ports() -> list[ListedPort]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
-    matches = []
-    for item in serial.list_serial_ports():
-        description = item.description if item.description != "n/a" else ""
-        matches.append(ListedPort(item.device, printable(description)))  # a device says it
-    return sorted(matches)
+    ports = []
+    for serial_port in serial.list_serial_ports():
+        description = serial_port.description if serial_port.description != "n/a" else ""
+        ports.append(ListedPort(serial_port.device, printable(description)))  # a device says it
+    return sorted(ports)
 
 
 def is_radio(port: str) -> bool:
@@ -54,8 +54,11 @@ def is_radio(port: str) -> bool:
     if sys.platform == "win32":
         from tiniscript.link.transports import serial
 
-        known = {item.device.lower(): item.hwid or "" for item in serial.list_serial_ports()}
-        return "BTHENUM" in known.get(name, "")
+        hardware_by_name = {
+            serial_port.device.lower(): serial_port.hwid or ""
+            for serial_port in serial.list_serial_ports()
+        }
+        return "BTHENUM" in hardware_by_name.get(name, "")
     return False
 
 
@@ -82,14 +85,14 @@ def open_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
     return cast(Port, serial.open_port(port, baud, limit_s, is_exclusive=False))
 
 
-def find_in_reach() -> list[SeenDevice]:
+def find_bluetooth_robots() -> list[SeenDevice]:
     """Search with Bluetooth LE for some seconds, and return the robots. Raises PortError."""
     with _convert_import_error():
         from tiniscript.link.transports import bluetooth
     return bluetooth.list_robots()
 
 
-def find_announced() -> list[AnnouncedRobot]:
+def find_announced_robots() -> list[AnnouncedRobot]:
     """Return the robots that announce themselves in the network. Raises PortError."""
     with _convert_import_error():
         from tiniscript.link.transports import network
@@ -97,7 +100,7 @@ def find_announced() -> list[AnnouncedRobot]:
 
 
 def _transport(port: str) -> Transport:
-    name = next((name for has, name in _TRANSPORTS if has(port)), "serial")
+    name = next((name for matches, name in _TRANSPORTS if matches(port)), "serial")
     with _convert_import_error():
         return cast(Transport, import_module(f"tiniscript.link.transports.{name}"))
 
@@ -107,5 +110,5 @@ def _convert_import_error() -> Iterator[None]:
     """Raise PortError where a package is missing."""
     try:
         yield
-    except ImportError as missing:
-        raise PortError(NOT_INSTALLED, missing.name or str(missing)) from None
+    except ImportError as error:
+        raise PortError(NOT_INSTALLED, error.name or str(error)) from None

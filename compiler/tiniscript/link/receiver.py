@@ -56,12 +56,13 @@ class Receiver:
         self._is_cut = False  # a 0x00 has cut a line: the rest of it is lost
         self._frame_bytes = most_bytes
         self._window = window
-        self._behind: deque[Packet] = deque()  # frames after the packet that waits
+        self._waiting_frames: deque[Packet] = deque()  # frames after the packet that waits
         self._last_ms = 0
 
     def take(self) -> Packet | None:
         """Return the waiting packet, if there is one, and make room for the next."""
-        packet, self.packet = self.packet, self._behind.popleft() if self._behind else None
+        packet = self.packet
+        self.packet = self._waiting_frames.popleft() if self._waiting_frames else None
         return packet
 
     def put(self, byte: int, now_ms: int) -> bool:
@@ -145,7 +146,7 @@ class Receiver:
         elif is_text:  # it would come before its turn
             self.dropped += 1
         else:
-            self._behind.append(packet)
+            self._waiting_frames.append(packet)
 
     def _cut_packet(self) -> None:
         """End the open packet, if there is one, before its end."""
@@ -156,7 +157,7 @@ class Receiver:
         """Return whether a packet that begins now may wait: frames do, and nothing after text."""
         if self.packet is None:
             return True
-        return not self.packet.is_text and len(self._behind) < self._window - 1
+        return not self.packet.is_text and len(self._waiting_frames) < self._window - 1
 
     def _most_bytes(self) -> int:
         return self._frame_bytes if self._data[0] <= LARGE_FIRST else SMALL_PACKET

@@ -23,7 +23,7 @@ MOST_UNANSWERED = 3  # words that may be unanswered: on a slow line no more of t
 _LONG_AGO_MS = -1_000_000
 
 
-class Pressed(NamedTuple):
+class RemoteState(NamedTuple):
     """A bit for each of REMOTE_KEYS that is held, and the pad, in percent to the right and up."""
 
     keys: int = 0
@@ -32,138 +32,142 @@ class Pressed(NamedTuple):
 
     @property
     def is_sound(self) -> bool:
-        is_pad = all(-MOST_PAD <= way <= MOST_PAD for way in (self.x, self.y))
-        return 0 <= self.keys < 1 << len(REMOTE_KEYS) and is_pad
+        is_pad_sound = all(-MOST_PAD <= percent <= MOST_PAD for percent in (self.x, self.y))
+        return 0 <= self.keys < 1 << len(REMOTE_KEYS) and is_pad_sound
 
 
-NOTHING_PRESSED = Pressed()
+NOTHING_PRESSED = RemoteState()
 
 
-def pressed_of(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
+def remote_state_of(names: Iterable[str], x: int = 0, y: int = 0) -> RemoteState:
     """Return what is held, by the names of the keys. Raises ValueError for others, or too much."""
     keys = 0
     for name in names:
         keys |= 1 << REMOTE_KEYS.index(name)
-    result = Pressed(keys, x, y)
-    if not result.is_sound:
-        raise ValueError(result)
-    return result
+    state = RemoteState(keys, x, y)
+    if not state.is_sound:
+        raise ValueError(state)
+    return state
 
 
 class RemoteControl:
     """Each who speaks has a number."""
 
     def __init__(self) -> None:
-        self._held: dict[int, Pressed] = {}  # the newest word last
+        self._states: dict[int, RemoteState] = {}  # the newest word last
         self._until_ms: dict[int, int | None] = {}  # None: from the next look at the clock on
-        self._said, self._said_ms = NOTHING_PRESSED, _LONG_AGO_MS
-        self._unanswered = 0
-        self._asked: dict[int, PendingRequest[EmptyReply]] = {}  # of each, not sent yet
-        self._sent: list[PendingRequest[EmptyReply]] = []
+        self._sent_state, self._sent_ms = NOTHING_PRESSED, _LONG_AGO_MS
+        self._unanswered_count = 0
+        self._waiting_requests: dict[int, PendingRequest[EmptyReply]] = {}  # of each, not sent yet
+        self._sent_requests: list[PendingRequest[EmptyReply]] = []
 
-    def press(self, speaker: int, held: Pressed) -> PendingRequest[EmptyReply]:
+    def press(self, speaker: int, state: RemoteState) -> PendingRequest[EmptyReply]:
         """Hold what somebody holds now, and nothing else; it is over after HOLD_MS.
 
         What he has said before, and nothing of which was sent, is replaced: CANCELLED.
         """
-        assert held.is_sound, held
-        self._held.pop(speaker, None)
-        if held != NOTHING_PRESSED:
-            self._held[speaker], self._until_ms[speaker] = held, None
-        before = self._asked.pop(speaker, None)
-        if before is not None:
-            before.outcome = Reply(CANCELLED)
+        assert state.is_sound, state
+        self._states.pop(speaker, None)
+        if state != NOTHING_PRESSED:
+            self._states[speaker], self._until_ms[speaker] = state, None
+        earlier_request = self._waiting_requests.pop(speaker, None)
+        if earlier_request is not None:
+            earlier_request.outcome = Reply(CANCELLED)
         request: PendingRequest[EmptyReply] = PendingRequest()
-        if self.newest == self._said == NOTHING_PRESSED:
+        if self.combined_state == self._sent_state == NOTHING_PRESSED:
             request.outcome = Reply(OK, 0, EmptyReply())
         else:
-            self._asked[speaker] = request
+            self._waiting_requests[speaker] = request
         return request
 
     def let_go(self, status: int = CANCELLED) -> None:
         """The robot has let all go, or hears nothing: nothing is held before somebody says so."""
-        self._held.clear()
-        self._said, self._unanswered = NOTHING_PRESSED, 0
-        self._take_asked()
-        self._take_reply(Reply(status))
+        self._states.clear()
+        self._sent_state, self._unanswered_count = NOTHING_PRESSED, 0
+        self._note_sent()
+        self._finish_sent(Reply(status))
 
     @property
-    def newest(self) -> Pressed:
+    def combined_state(self) -> RemoteState:
         """All keys that somebody holds, and the pad of who has moved his last."""
-        result = NOTHING_PRESSED
-        for item in self._held.values():
-            pad = (item.x, item.y) if item.x or item.y else (result.x, result.y)
-            result = Pressed(result.keys | item.keys, *pad)
-        return result
+        combined = NOTHING_PRESSED
+        for state in self._states.values():
+            pad = (state.x, state.y) if state.x or state.y else (combined.x, combined.y)
+            combined = RemoteState(combined.keys | state.keys, *pad)
+        return combined
 
     def due_ms(self) -> int | None:
         """Return when to look again, or None."""
-        times = [until for item in self._held if (until := self._until_ms[item]) is not None]
-        newest = self.newest
-        if newest != self._said:
+        times = [
+            until_ms
+            for speaker in self._states
+            if (until_ms := self._until_ms[speaker]) is not None
+        ]
+        combined_state = self.combined_state
+        if combined_state != self._sent_state:
             gap_ms = (
                 REPEAT_MS
-                if self._unanswered == MOST_UNANSWERED
+                if self._unanswered_count == MOST_UNANSWERED
                 else GAP_MS
-                if self._unanswered
+                if self._unanswered_count
                 else 0
             )
-            times.append(self._said_ms + gap_ms)
-        elif 0 < self._unanswered < MOST_UNANSWERED:
-            times.append(self._said_ms + RESEND_MS)
-        elif newest != NOTHING_PRESSED or self._unanswered == MOST_UNANSWERED:
-            times.append(self._said_ms + REPEAT_MS)
+            times.append(self._sent_ms + gap_ms)
+        elif 0 < self._unanswered_count < MOST_UNANSWERED:
+            times.append(self._sent_ms + RESEND_MS)
+        elif combined_state != NOTHING_PRESSED or self._unanswered_count == MOST_UNANSWERED:
+            times.append(self._sent_ms + REPEAT_MS)
         return min(times, default=None)
 
     def expire_and_check_due(self, now_ms: int) -> bool:
         """Whether to say something now. Who has said nothing for HOLD_MS holds nothing."""
-        for speaker in list(self._held):
+        for speaker in list(self._states):
             until_ms = self._until_ms[speaker]
             if until_ms is None:
                 self._until_ms[speaker] = now_ms + HOLD_MS
             elif now_ms >= until_ms:
-                del self._held[speaker]
+                del self._states[speaker]
         due_ms = self.due_ms()
         return due_ms is not None and now_ms >= due_ms
 
     def say(self, now_ms: int) -> dict[str, int | bytes]:
         """Return the newest word, which is sent now."""
-        self._said, self._said_ms = self.newest, now_ms
-        self._unanswered += 1
-        self._take_asked()
+        self._sent_state, self._sent_ms = self.combined_state, now_ms
+        self._unanswered_count += 1
+        self._note_sent()
         return self.word()
 
     def word(self) -> dict[str, int | bytes]:
         """Return the newest word as the message has it."""
-        return dict(self.newest._asdict())
+        return dict(self.combined_state._asdict())
 
     def answer(self, outcome: Reply[Any]) -> None:
         """Take the robot's answer. One that takes no keys is not told of them again."""
-        self._unanswered = 0
+        self._unanswered_count = 0
         if outcome.status == OK:
-            self._take_reply(Reply(OK, 0, EmptyReply()))
+            self._finish_sent(Reply(OK, 0, EmptyReply()))
             return
-        self._held.clear()
-        self._said = NOTHING_PRESSED
-        self._take_asked()
-        self._take_reply(Reply(outcome.status, outcome.detail))
+        self._states.clear()
+        self._sent_state = NOTHING_PRESSED
+        self._note_sent()
+        self._finish_sent(Reply(outcome.status, outcome.detail))
 
     def hear(self) -> None:
         """An earlier word was answered."""
-        self._unanswered = max(0, self._unanswered - 1)
+        self._unanswered_count = max(0, self._unanswered_count - 1)
 
     def miss(self) -> None:
         """No answer has come in time."""
-        self._take_reply(Reply(LOST))
+        self._finish_sent(Reply(LOST))
 
-    def _take_asked(self) -> None:
-        self._sent += self._asked.values()
-        self._asked.clear()
+    def _note_sent(self) -> None:
+        self._sent_requests += self._waiting_requests.values()
+        self._waiting_requests.clear()
 
-    def _take_reply(self, reply: Reply[EmptyReply]) -> None:
-        for pending_request in self._sent:
+    def _finish_sent(self, reply: Reply[EmptyReply]) -> None:
+        for pending_request in self._sent_requests:
             pending_request.outcome = reply
-        self._sent.clear()
+        self._sent_requests.clear()
 
 
 def has_remote(robot: DeviceInfo) -> bool:

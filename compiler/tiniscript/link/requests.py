@@ -59,10 +59,10 @@ ACCEPTING_STATUSES = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_
 
 
 class Pieces(NamedTuple):
-    """What is sent: `data` in pieces of `most` bytes, `window` of them at once."""
+    """What is sent: `data` in pieces of `piece_bytes`, `window` of them at once."""
 
     data: bytes
-    most: int
+    piece_bytes: int
     window: int
 
 
@@ -153,13 +153,13 @@ def as_refusal(reply: Reply[object]) -> Reply[Any]:
     return Reply(reply.status, reply.detail)
 
 
-def send_single(request: Request, kind: type[T]) -> Exchange[T]:
+def send_single(request: Request, reply_type: type[T]) -> Exchange[T]:
     """Send one request; its reply has this type."""
     reply = yield request
     if reply.status != OK:
         return as_refusal(reply)
     values = reply.values
-    assert isinstance(values, kind), (request, values)
+    assert isinstance(values, reply_type), (request, values)
     return Reply(OK, 0, values)
 
 
@@ -167,8 +167,8 @@ def _payload_bytes(robot: DeviceInfo) -> int:
     """Return how long a payload may be: less where frames are sealed, or will be with a key."""
     features = robot.values.features
     is_sealed = bool(features & SEALS and features & (OWNED | YOURS))
-    largest = min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)  # that both ends take
-    return payload_bytes(largest, is_sealed)
+    frame_bytes = min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)  # that both ends take
+    return payload_bytes(frame_bytes, is_sealed)
 
 
 def short_bytes(robot: DeviceInfo) -> int:
@@ -211,9 +211,9 @@ def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
 def _clear_then(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
     """Release the latch, if a stop has set it, before an exchange."""
     if is_latched:
-        cleared = yield from clear()
-        if cleared.status != OK:
-            return as_refusal(cleared)
+        clear_reply = yield from clear()
+        if clear_reply.status != OK:
+            return as_refusal(clear_reply)
     return (yield from exchange)
 
 
@@ -251,7 +251,7 @@ def upload(
 
 
 def _upload_in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
-    most = _payload_bytes(robot) - OFFSET_BYTES
+    piece_bytes = _payload_bytes(robot) - OFFSET_BYTES
     header = {
         "mode": mode,
         "isa_major": image.isa[0],
@@ -262,9 +262,9 @@ def _upload_in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[Re
         "code_length": len(image.code),
     }
     reply = yield from retry_while_busy(Request("BEGIN", header), NextReply)
-    rest = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
+    data = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
     if reply.status == OK:
-        pieces = Pieces(rest, most, robot.values.window)
+        pieces = Pieces(data, piece_bytes, robot.values.window)
         reply = yield from send_single(Request("DATA", pieces=pieces), NextReply)
     if reply.status != OK:
         return as_refusal(reply)
@@ -284,25 +284,25 @@ def fetch() -> Exchange[FetchedImage]:
             return Reply(OK, 0, FetchedImage(image))
 
 
-def retry_while_busy(request: Request, kind: type[T]) -> Exchange[T]:
+def retry_while_busy(request: Request, reply_type: type[T]) -> Exchange[T]:
     """Repeat a request while the robot is busy saving."""
-    reply = yield from send_single(request, kind)
+    reply = yield from send_single(request, reply_type)
     for _ in range(BUSY_TRIES):
         if reply.status != STATUSES["BUSY"]:
             break
-        reply = yield from send_single(request._replace(pause_ms=100), kind)
+        reply = yield from send_single(request._replace(pause_ms=100), reply_type)
     return reply
 
 
-def save_and_confirm(request: Request, kind: type[T]) -> Exchange[T]:
+def save_and_confirm(request: Request, reply_type: type[T]) -> Exchange[T]:
     """Have the robot save data, and repeat the request until it confirms or the tries are over.
 
     If it has not saved, the outcome gives the reason: a program that drives, a low voltage.
     """
-    reply = yield from retry_while_busy(request, kind)
-    tries = low = 0
-    while reply.status in ACCEPTING_STATUSES[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
+    reply = yield from retry_while_busy(request, reply_type)
+    tries = low_tries = 0
+    while reply.status in ACCEPTING_STATUSES[:2] and tries < KEPT_TRIES and low_tries < LOW_TRIES:
         tries += 1
-        reply = yield from retry_while_busy(request._replace(pause_ms=KEPT_PAUSE_MS), kind)
-        low = low + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0
+        reply = yield from retry_while_busy(request._replace(pause_ms=KEPT_PAUSE_MS), reply_type)
+        low_tries = low_tries + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0
     return reply

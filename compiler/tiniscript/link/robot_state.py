@@ -43,18 +43,18 @@ class _Run(NamedTuple):
     number: int
 
 
-class Unnamed(NamedTuple):
+class UnresolvedShow(NamedTuple):
     """A value that has arrived, in an epoch; its program is not looked up yet."""
 
-    show: ShowEvent
+    event: ShowEvent
     epoch: int
 
     @property
     def _run(self) -> _Run | None:
         """The run, or None of an older robot, which does not tell it."""
-        if len(self.show.place) != SHOW_PLACE_BYTES:
+        if len(self.event.place) != SHOW_PLACE_BYTES:
             return None
-        return _Run(self.epoch, self.show.place[0])
+        return _Run(self.epoch, self.event.place[0])
 
 
 def line_error_count(status: StatusReply) -> int:
@@ -66,15 +66,15 @@ class RobotState:
     def __init__(self) -> None:
         self.state = STATE_IDLE
         self.run: int | None = None  # the run that we have started
-        self._ended: int | None = None  # the last run whose end we know
+        self._ended_run: int | None = None  # the last run whose end we know
         self._is_going = False  # our run has begun, and nothing says that it has ended
-        self._is_asked = False  # how it has ended is
-        self.is_cut = False  # a reset has ended it
+        self._is_end_asked = False  # how it has ended is
+        self.has_reset_ended_run = False  # a reset has ended it
         self._event_seq: int | None = None
-        self._place: PlaceEvent | None = None  # the last one that was told
-        self.halted: HaltedEvent | None = None  # where a program is halted
-        self._known: tuple[_Run, int] | None = None  # the newest run whose program is known
-        self._asked: _Run | None = None  # the newest one that was asked about
+        self._last_place: PlaceEvent | None = None  # the last one that was told
+        self.halt_event: HaltedEvent | None = None  # where a program is halted
+        self._known_program: tuple[_Run, int] | None = None  # the newest run whose program is known
+        self._asked_run: _Run | None = None  # the newest one that was asked about
 
     @property
     def is_running(self) -> bool:
@@ -86,15 +86,15 @@ class RobotState:
 
     def reset(self) -> None:
         """Note that the robot was reset: its counters start again."""
-        self.is_cut = self._is_going or self._is_asked
-        self._is_going = self._is_asked = False
-        self._event_seq = self.run = self._ended = self._place = None
-        self._known = self._asked = self.halted = None
+        self.has_reset_ended_run = self._is_going or self._is_end_asked
+        self._is_going = self._is_end_asked = False
+        self._event_seq = self.run = self._ended_run = self._last_place = None
+        self._known_program = self._asked_run = self.halt_event = None
 
     def count_missed(self, seq: int) -> int:
         """Take the number of an event; return how many events before it are missing."""
-        before, self._event_seq = self._event_seq, seq
-        return 0 if before is None else (seq - before - 1) & 0xFF
+        earlier_seq, self._event_seq = self._event_seq, seq
+        return 0 if earlier_seq is None else (seq - earlier_seq - 1) & 0xFF
 
     def may_be_reset(self, values: SentReply) -> bool:
         """Take a reply in another epoch; return whether neither stop nor fault explains that."""
@@ -107,7 +107,7 @@ class RobotState:
         event has."""
         self._learn_program(values, epoch)
         if isinstance(values, (ReceiptReply, ResumeReply)):
-            self.halted = None
+            self.halt_event = None
         if isinstance(values, ReceiptReply):
             self.run = values.run
         if not isinstance(values, (HelloReply, PingReply, StatusReply)):
@@ -117,7 +117,7 @@ class RobotState:
             return False
         if not self._is_going or isinstance(values, HelloReply):
             return False
-        self._is_going, self._is_asked = False, True
+        self._is_going, self._is_end_asked = False, True
         return True
 
     # Which program's SHOW a value is of. Replies and events come in their order: no value of an
@@ -125,38 +125,42 @@ class RobotState:
 
     def _learn_program(self, values: SentReply, epoch: int) -> None:
         if isinstance(values, ReceiptReply):
-            self._known = _Run(epoch, values.run), values.program
+            self._known_program = _Run(epoch, values.run), values.program
         elif isinstance(values, PingReply) and len(values.place) == PLACE_BYTES:
-            self._known = _Run(epoch, values.run), _PLACE.unpack(values.place)[1]
+            self._known_program = _Run(epoch, values.run), _PLACE.unpack(values.place)[1]
         elif isinstance(values, (HelloReply, PingReply, StatusReply)):
             # `program` of STATUS is the one that the robot holds, which need not be what runs
-            if self._known is not None and self._known[0] != (epoch, values.run):
-                self._known = None
+            if self._known_program is not None and self._known_program[0] != (epoch, values.run):
+                self._known_program = None
 
-    def claim_query(self, value: Unnamed) -> bool:
+    def claim_query(self, show: UnresolvedShow) -> bool:
         """Whether only the robot knows the program of a value, and was not asked. It is now."""
-        run = value._run
-        if run is None or run == self._asked or (self._known and self._known[0] == run):
+        run = show._run
+        if (
+            run is None
+            or run == self._asked_run
+            or (self._known_program and self._known_program[0] == run)
+        ):
             return False
-        self._asked = run
+        self._asked_run = run
         return True
 
-    def to_shown_event(self, value: Unnamed) -> ShownEvent:
+    def to_shown_event(self, show: UnresolvedShow) -> ShownEvent:
         """Return a value as the event that it is: with its program and its SHOW, if both are
         known."""
-        number, is_yes_no, place, _ = value.show
-        if self._known is None or value._run != self._known[0]:
-            return ShownEvent(number, is_yes_no)
+        value, is_yes_no, place, _ = show.event
+        if self._known_program is None or show._run != self._known_program[0]:
+            return ShownEvent(value, is_yes_no)
         run, at = _SHOW_PLACE.unpack(place)
-        return ShownEvent(number, is_yes_no, run, self._known[1], at)
+        return ShownEvent(value, is_yes_no, run, self._known_program[1], at)
 
     def has_ended(self, run: int | None) -> bool:
         """Return whether it is known how a run has ended: it was told then, and is told once."""
-        return run is not None and self._ended == run
+        return run is not None and self._ended_run == run
 
     def end(self) -> None:
         """Note that it is known how our run has ended, of which no event has told."""
-        self._ended, self._is_asked = self.run, False
+        self._ended_run, self._is_end_asked = self.run, False
 
     def note_replaced(self) -> list[Event]:
         """Note that a program which waits to be started has ended our run; return what tells so."""
@@ -171,36 +175,36 @@ class RobotState:
         """Take a reply; return where the program is now, if that is another place than before."""
         if not isinstance(values, PingReply):
             return []
-        before, self._place = self._place, None
+        earlier_place, self._last_place = self._last_place, None
         if values.state == STATE_RUNNING and len(values.place) == PLACE_BYTES:
             at, program = _PLACE.unpack(values.place)
-            self._place = PlaceEvent(values.run, program, at)
-        elif before is not None:
-            return [before._replace(at=-1)]
-        return [self._place] if self._place and self._place != before else []
+            self._last_place = PlaceEvent(values.run, program, at)
+        elif earlier_place is not None:
+            return [earlier_place._replace(at=-1)]
+        return [self._last_place] if self._last_place and self._last_place != earlier_place else []
 
     def take(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
-            self._place = self.halted = None  # who is told of the end needs no more
+            self._last_place = self.halt_event = None  # who is told of the end needs no more
         if isinstance(event, HaltedEvent):
-            self.halted = event
+            self.halt_event = event
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self.state = STATE_STOPPED
-            self._is_going = self._is_asked = False
+            self._is_going = self._is_end_asked = False
         if isinstance(event, (DoneEvent, FaultEvent)):
-            self._ended = event.run
+            self._ended_run = event.run
             if isinstance(event, DoneEvent) and event.run == self.run:
                 self.state = STATE_IDLE
-                self._is_going = self._is_asked = False
+                self._is_going = self._is_end_asked = False
 
     def begin(self, run: int) -> None:
         """Note that a run has begun, unless its end arrived before its receipt."""
-        if run != self._ended:
+        if run != self._ended_run:
             self.state = STATE_RUNNING
             self._is_going = True
 
     def clear(self) -> None:
         """Note that the latch is released or the robot is lost."""
         self.state = STATE_IDLE
-        self._place = self.halted = None
-        self._is_going = self._is_asked = False
+        self._last_place = self.halt_event = None
+        self._is_going = self._is_end_asked = False

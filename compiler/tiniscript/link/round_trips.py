@@ -8,9 +8,9 @@ milliseconds. Knows no frame and no clock.
 from __future__ import annotations
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
-LEARNT_MS = 3000  # a timer that was learnt is no longer: somebody may have been suspended
-DOUBLED_MS = 1000  # doubling alone makes none longer
-LIVELY_MS = 400  # the longest timer where the robot has to hear us now and then
+MOST_LEARNT_MS = 3000  # a timer that was learnt is no longer: somebody may have been suspended
+MOST_DOUBLED_MS = 1000  # doubling alone makes none longer
+MOST_LIVELY_MS = 400  # the longest timer where the robot has to hear us now and then
 _MEAN, _VARIATION, _VARIATIONS = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
 
 
@@ -24,14 +24,14 @@ class RoundTrips:
         self._is_certain = False  # an answer belonged to one sending for certain
         self._doublings = 0
 
-    def learn(self, took_ms: int, count: int, is_certain: bool) -> None:
-        """Take how long an answer took that has, with its request, `count` bytes.
+    def learn(self, took_ms: int, byte_count: int, is_certain: bool) -> None:
+        """Take how long an answer took that has, with its request, `byte_count` bytes.
 
         `is_certain` where it was one of several sendings that was answered: where it was not, that
         may have been a later one than the first, from which `took_ms` counts.
         """
         self.least_ms = took_ms if self.least_ms is None else min(self.least_ms, took_ms)
-        byte_ms = took_ms / count
+        byte_ms = took_ms / byte_count
         self._byte_ms = byte_ms if self._byte_ms is None else min(self._byte_ms, byte_ms)
         if not is_certain:
             return
@@ -42,7 +42,7 @@ class RoundTrips:
         self._variation_ms += (abs(self._mean_ms - took_ms) - self._variation_ms) * _VARIATION
         self._mean_ms += (took_ms - self._mean_ms) * _MEAN
 
-    def double(self) -> None:
+    def back_off(self) -> None:
         """No answer has come in time. What was learnt of a request that was sent more than once may
         be too much: where nothing comes, one is waited for half as long, so that it is tried often.
         """
@@ -54,16 +54,16 @@ class RoundTrips:
         """Return how many bytes this line carries in a time at least, as far as answers tell."""
         return int(time_ms / max(10_000 / self._baud, self._byte_ms or 0))
 
-    def wait_ms(self, count: int, is_lively: bool = False) -> int:
-        """Return how long to wait for an answer that has, with its request, `count` bytes.
+    def wait_ms(self, byte_count: int, is_lively: bool = False) -> int:
+        """Return how long to wait for an answer that has, with its request, `byte_count` bytes.
 
         `is_lively`: a robot that is silent is asked again soon, however long answers take.
         """
-        line_ms = ROUND_MS + -(-count * 10_000 // self._baud)
-        learnt_ms = ROUND_MS + count * (self._byte_ms or 0)
+        line_ms = ROUND_MS + -(-byte_count * 10_000 // self._baud)
+        learnt_ms = ROUND_MS + byte_count * (self._byte_ms or 0)
         if self._mean_ms is not None:
             learnt_ms = max(learnt_ms, self._mean_ms + _VARIATIONS * self._variation_ms)
-        needed_ms = max(line_ms, min(int(learnt_ms), LEARNT_MS))
+        needed_ms = max(line_ms, min(int(learnt_ms), MOST_LEARNT_MS))
         doubled_ms = needed_ms << min(self._doublings, 10)
-        wait_ms = min(doubled_ms, max(DOUBLED_MS, needed_ms))
-        return max(line_ms, min(wait_ms, LIVELY_MS)) if is_lively else wait_ms
+        wait_ms = min(doubled_ms, max(MOST_DOUBLED_MS, needed_ms))
+        return max(line_ms, min(wait_ms, MOST_LIVELY_MS)) if is_lively else wait_ms

@@ -17,12 +17,12 @@ _INITIAL_STATE = 0x736F6D6570736575, 0x646F72616E646F6D, 0x6C7967656E657261, 0x7
 
 def siphash(key: bytes, message: bytes) -> bytes:
     """Return the hash of a message under a key of 16 bytes: 8 bytes, little-endian."""
-    halves = [int.from_bytes(key[at : at + 8], "little") for at in (0, 8)]
+    halves = [int.from_bytes(key[offset : offset + 8], "little") for offset in (0, 8)]
     state = [word ^ halves[k % 2] for k, word in enumerate(_INITIAL_STATE)]
     length = len(message)
     padded = message + bytes(7 - length % 8) + bytes([length & 0xFF])
-    for at in range(0, len(padded), 8):
-        word = int.from_bytes(padded[at : at + 8], "little")
+    for offset in range(0, len(padded), 8):
+        word = int.from_bytes(padded[offset : offset + 8], "little")
         state[3] ^= word
         state = _sip_rounds(state, 2)
         state[0] ^= word
@@ -69,30 +69,30 @@ def session_key(
 class Seal:
     def __init__(self, key: bytes) -> None:
         self._key = key
-        self.sent = 0  # the last counter to the robot
-        self.heard = 0  # the last one from it
+        self.sent_counter = 0  # the last counter to the robot
+        self.heard_counter = 0  # the last one from it
 
     def __repr__(self) -> str:  # a key is in no message
-        return f"Seal({self.sent}, {self.heard})"
+        return f"Seal({self.sent_counter}, {self.heard_counter})"
 
     @property
     def is_spent(self) -> bool:
         """Whether no further frame may be sealed: a counter is never used twice."""
-        return self.sent >= LAST_COUNTER
+        return self.sent_counter >= LAST_COUNTER
 
     def seal_frame(self, frame: Frame) -> Frame:
         """Return a frame with the next counter and its MAC, ready to be encoded."""
         assert not self.is_spent
-        self.sent += 1
-        counter = self.sent.to_bytes(COUNTER_BYTES, "little")
-        text = frame.payload
+        self.sent_counter += 1
+        counter = self.sent_counter.to_bytes(COUNTER_BYTES, "little")
+        body = frame.payload
         if (
             frame.number == _WIFI_NUMBER and not frame.is_reply
         ):  # the only one with a secret: a password
-            text = text[:1] + self._mask(counter, text[1:])
-        payload = b"\0" + counter + text
-        whole = frame._replace(payload=payload, is_sealed=True)
-        return whole._replace(payload=payload + self._mac(whole))
+            body = body[:1] + self._mask(counter, body[1:])
+        payload = b"\0" + counter + body
+        sealed_frame = frame._replace(payload=payload, is_sealed=True)
+        return sealed_frame._replace(payload=payload + self._mac(sealed_frame))
 
     def open_frame(self, frame: Frame) -> Frame | None:
         """Return what a sealed frame of the robot says, or None if it is not its next one."""
@@ -104,18 +104,18 @@ class Seal:
         payload, mac = frame.payload[:-TAG_BYTES], frame.payload[-TAG_BYTES:]
         counter = int.from_bytes(payload[1:_PREFIX_BYTES], "little")
         is_right = compare_digest(self._mac(frame._replace(payload=payload)), mac)
-        if not is_right or payload[0] != 0 or counter <= self.heard:
+        if not is_right or payload[0] != 0 or counter <= self.heard_counter:
             return None
-        self.heard = counter
+        self.heard_counter = counter
         return frame._replace(payload=payload[_PREFIX_BYTES:])
 
-    def _mask(self, counter: bytes, text: bytes) -> bytes:
+    def _mask(self, counter: bytes, data: bytes) -> bytes:
         """Cover bytes of the frame with this counter: nobody else can read them."""
         stream = b"".join(
-            siphash(self._key, counter + bytes([k])) for k in range(-(-len(text) // _BLOCK_BYTES))
+            siphash(self._key, counter + bytes([k])) for k in range(-(-len(data) // _BLOCK_BYTES))
         )
-        return bytes(a ^ b for a, b in zip(text, stream, strict=False))
+        return bytes(a ^ b for a, b in zip(data, stream, strict=False))
 
     def _mac(self, frame: Frame) -> bytes:
-        kind = frame.number | REPLY * frame.is_reply | SEALED
-        return siphash(self._key, bytes((kind, frame.seq, frame.epoch)) + frame.payload)
+        type_byte = frame.number | REPLY * frame.is_reply | SEALED
+        return siphash(self._key, bytes((type_byte, frame.seq, frame.epoch)) + frame.payload)

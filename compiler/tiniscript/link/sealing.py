@@ -38,7 +38,7 @@ class Sealing:
         self._seq = (seq + (seq == self._seq)) & 0xFF
         return self._seq
 
-    def open_frame(self, frame: Frame, sent: Transmission, now_ms: int) -> Frame | None:
+    def open_frame(self, frame: Frame, transmission: Transmission, now_ms: int) -> Frame | None:
         """Return what a frame says, or None if it need not be the robot's.
 
         A robot that has not heard our seal for some time has dropped it, and says so without one.
@@ -50,10 +50,10 @@ class Sealing:
             return frame
         if frame.number >= FIRST_EVENT:
             is_believed = now_ms - self.sealed_ms >= AUTHORITY_MS
-        elif sent.is_answered_by(frame):
+        elif transmission.is_answered_by(frame):
             status = frame.payload[0] if frame.payload else OK
-            has_waited = status != OK and sent.tries >= REFUSED_TRIES
-            is_believed = status == NOT_OWNER if sent.seal else has_waited
+            has_waited = status != OK and transmission.tries >= REFUSED_TRIES
+            is_believed = status == NOT_OWNER if transmission.seal else has_waited
         else:
             is_believed = True  # a second answer to what was not sealed: nothing follows from it
         return frame if is_believed else None

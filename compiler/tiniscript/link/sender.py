@@ -14,7 +14,7 @@ class Sender:
         self._sent_ms: int | None = None  # when something was sent last
         self._are_zeros = False  # it was a stop sequence
 
-    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+    def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         """Return the bytes to send now for frames that each end with a 0x00.
 
         `is_repeated`: the first was sent before, or is HELLO, which begins anew.
@@ -24,7 +24,7 @@ class Sender:
         is_silent = sent_ms is None or now_ms - sent_ms >= ZERO_MS
         return b"\0" + frames if is_silent or (is_repeated and not are_zeros) else frames
 
-    def zeros(self, zeros: bytes, now_ms: int) -> bytes:
+    def prepare_stop(self, zeros: bytes, now_ms: int) -> bytes:
         """Return a stop sequence, sent now: no further 0x00 is needed after it."""
         self._sent_ms, self._are_zeros = now_ms, True
         return zeros

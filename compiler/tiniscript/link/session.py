@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import isa_for_needs
 from tiniscript.link.authority import NOT_OWNER, KeyRing
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
+from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.handshake import (
     REQUESTS_WITHOUT_HELLO,
@@ -73,7 +73,7 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.remote import Pressed, RemoteControl, has_remote
+from tiniscript.link.remote import RemoteControl, RemoteState, has_remote
 from tiniscript.link.requests import (
     ACCEPTING_STATUSES,
     OK,
@@ -85,11 +85,11 @@ from tiniscript.link.requests import (
     reply_of,
     send_single,
 )
-from tiniscript.link.robot_state import RobotState, Unnamed
+from tiniscript.link.robot_state import RobotState, UnresolvedShow
 from tiniscript.link.round_trips import RoundTrips
 from tiniscript.link.sealing import SEALED_ONLY_MESSAGES, UNSEALED_MESSAGES, Sealing
 from tiniscript.link.sender import Sender
-from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Window
+from tiniscript.link.transmission import TRIES, StopSender, Transmission, Window
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
@@ -125,35 +125,35 @@ class PendingExchange(PendingRequest[T]):
     def __init__(
         self,
         exchange: Exchange[T],
-        limit_ms: int = DEADLINE_MS,
+        limit_ms: int = EXCHANGE_TIMEOUT_MS,
         starts: bool = False,
         is_own: bool = False,
         ends_runs: bool = False,
-        halts: bool = False,
-        presses: bool = False,
+        ends_orphan: bool = False,
+        presses_keys: bool = False,
     ) -> None:
         self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
         self.epoch: int | None = None  # in which it was asked for, by somebody
         self.is_own = is_own  # made by the session itself
-        self.halts = halts  # the run of a client that has gone
-        self.presses = presses  # keys of a remote control
+        self.ends_orphan = ends_orphan  # the run of a client that has gone
+        self.presses_keys = presses_keys  # keys of a remote control
         self.is_void = False  # it was asked for before a stop: nothing more of it is done
         self.answered_ms = 0  # when the robot has answered last
-        self.waits_for = 0  # the robot's last answer, where it was one of _WAITING_STATUSES, or 0
+        self.waiting_status = 0  # the robot's last one, if of _WAITING_STATUSES, or 0
         self.may_be_done = False  # the robot has not said whether it is
         self.is_midway = False  # a frame of it is under way that does what is asked, or has come
-        self.shown = 0  # how often a key was shown again for it
-        self.resumes: Interrupted | None = None
+        self.key_showings = 0  # how often a key was shown again for it
+        self.interrupted: InterruptedExchange | None = None
 
     @property
     def target(self) -> PendingExchange[Any]:
         """The exchange itself, or the one before which something else is done first."""
-        return self if self.resumes is None else self.resumes.pending
+        return self if self.interrupted is None else self.interrupted.pending
 
 
-class Interrupted(NamedTuple):
+class InterruptedExchange(NamedTuple):
     """An exchange whose request goes on when a key was shown again, or a run is ended, or keys
     were pressed."""
 
@@ -185,23 +185,23 @@ class Session(Requester):
         self._seq = nonce & 0xFF
         self._epoch = 0
         self._baud = baud
-        self._stop = StopSequence()
+        self._stop = StopSender()
         self._is_lost = False  # the link is, and nothing was sent since
         self._talked_ms = 0  # when something was sent, or while nothing runs, answered
-        self._unheard_ms: int | None = None  # since when no heartbeat is answered
+        self._unanswered_since_ms: int | None = None  # since when no heartbeat is answered
         self._remote = RemoteControl()
         self._has_pressed = False  # last, so what waits has its turn
         self._sealing = Sealing()
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
-        self._events: list[Event | Unnamed] = []
-        self._waiting: deque[PendingExchange[Any]] = deque()
+        self._events: list[Event | UnresolvedShow] = []
+        self._queue: deque[PendingExchange[Any]] = deque()
         self._pending: PendingExchange[Any] | None = None
-        self._trips = RoundTrips(baud)
-        self._transmission = Transmission(self._trips)
-        self._orphan: int | None = None  # the run of a client that has gone
-        self._asks_program: PendingExchange[PingReply] | None = None  # of values that wait for it
-        self._told_epoch: int | None = None  # that has begun with the stop that was told last
+        self._round_trips = RoundTrips(baud)
+        self._transmission = Transmission(self._round_trips)
+        self._orphan_run: int | None = None  # the run of a client that has gone
+        self._program_query: PendingExchange[PingReply] | None = None  # of values that wait for it
+        self._told_stop_epoch: int | None = None  # that has begun with the stop that was told last
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -236,7 +236,7 @@ class Session(Requester):
 
     def end_run(self, run: int, now_ms: int) -> None:
         """End a run whose client has gone. What others have asked for goes on."""
-        self._orphan = run
+        self._orphan_run = run
         self._end_orphan(now_ms)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
@@ -244,12 +244,8 @@ class Session(Requester):
 
         A frame that may have started a run is under way until it is answered.
         """
-        if request in self._waiting:
-            self._waiting = deque(
-                pending_exchange
-                for pending_exchange in self._waiting
-                if pending_exchange is not request
-            )
+        if request in self._queue:
+            self._queue = deque(pending for pending in self._queue if pending is not request)
         elif self._pending is None or self._pending.target is not request:
             return
         elif self._may_start():
@@ -313,8 +309,10 @@ class Session(Requester):
             self._lose(now_ms)
             return b""
         self._talked_ms = now_ms
-        if self._unheard_ms is None and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES)):
-            self._unheard_ms = now_ms
+        if self._unanswered_since_ms is None and any(
+            map(self._transmission.is_of, _HEARTBEAT_MESSAGES)
+        ):
+            self._unanswered_since_ms = now_ms
         if any(map(self._transmission.is_of, _ACTING_MESSAGES)):
             self._pending.is_midway = True
         if seal is not None:
@@ -325,13 +323,13 @@ class Session(Requester):
         """Return when to call `poll` next if nothing arrives, or None."""
         if self._stop.due_ms is not None:
             return self._stop.due_ms
-        if self._is_lost and (self._waiting or self._remote.due_ms() is not None):
+        if self._is_lost and (self._queue or self._remote.due_ms() is not None):
             return self._talked_ms + SILENT_MS
         times = [self._remote.due_ms() if self._may_press() else None]
         if self._transmission.is_under_way:
             assert self._pending
             times += [self._transmission.due_ms, self._pending.deadline_ms]
-        elif self._waiting:
+        elif self._queue:
             return 0
         elif (heartbeat_ms := self._heartbeat_ms()) is not None:
             times.append(self._talked_ms + heartbeat_ms)
@@ -340,16 +338,18 @@ class Session(Requester):
     def events(self) -> list[Event]:
         """Return the events since the last call. Values wait until the robot has said which program
         runs, if it is asked; nothing else waits behind them."""
-        pending_exchange = self._asks_program
-        waiting = 0
-        if pending_exchange is not None and pending_exchange.outcome is None:
-            after = takewhile(lambda each: isinstance(each, Unnamed), reversed(self._events))
-            waiting = sum(1 for _ in after)
-        count = len(self._events) - waiting
-        found, self._events = self._events[:count], self._events[count:]
+        count = len(self._events)
+        if self._program_query is not None and self._program_query.outcome is None:
+            count -= sum(
+                1
+                for _ in takewhile(
+                    lambda event: isinstance(event, UnresolvedShow), reversed(self._events)
+                )
+            )
+        events, self._events = self._events[:count], self._events[count:]
         return [
-            self._state.to_shown_event(unnamed) if isinstance(unnamed, Unnamed) else unnamed
-            for unnamed in found
+            self._state.to_shown_event(event) if isinstance(event, UnresolvedShow) else event
+            for event in events
         ]
 
     # -- what is sent -----------------------------------------------------------------------------
@@ -360,34 +360,34 @@ class Session(Requester):
         """
         pending = self._pending
         if pending is None or self._is_heartbeat():
-            return not (self._waiting and self._has_pressed)
-        if pending.resumes is not None or pending.presses:
+            return not (self._queue and self._has_pressed)
+        if pending.interrupted is not None or pending.presses_keys:
             return False
         return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
 
     def _is_heartbeat(self) -> bool:
         """Whether a heartbeat is under way, or keys, before which nothing else is."""
         pending = self._pending
-        is_alone = pending is not None and pending.is_own and pending.resumes is None
+        is_alone = pending is not None and pending.is_own and pending.interrupted is None
         return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
 
     def _press_next(self, now_ms: int) -> None:
         """Send what is held now, if that is due; a word that was not answered is not sent again."""
         if self._transmission.is_of("KEYS") and self._transmission.is_late(now_ms):
-            self._trips.double()
+            self._round_trips.back_off()
             self._remote.miss()
             self._end_press()
         if not self._may_press() or not self._remote.expire_and_check_due(now_ms):
             return
-        keys = self._handshake.open_then(self._keys)
-        press = PendingExchange(keys, DEAF_MS, is_own=True, presses=True)
+        exchange = self._handshake.open_then(self._send_keys)
+        press = PendingExchange(exchange, DEAF_MS, is_own=True, presses_keys=True)
         if self._pending is not None and not self._is_heartbeat():
-            press.resumes = Interrupted(self._pending, self._transmission)
+            press.interrupted = InterruptedExchange(self._pending, self._transmission)
         self._pending, self._has_pressed = press, True
         press.deadline_ms = self._deafness_time_ms(now_ms)
         self._advance(None, now_ms)
 
-    def _keys(self) -> Exchange[PingReply]:
+    def _send_keys(self) -> Exchange[PingReply]:
         """Send what is held: `poll` says what that is."""
         assert self.robot
         if not has_remote(self.robot):
@@ -397,20 +397,22 @@ class Session(Requester):
     def _end_press(self) -> None:
         """Go on with what was under way before a key was pressed."""
         assert self._pending
-        resumes, self._pending = self._pending.resumes, None
+        interrupted, self._pending = self._pending.interrupted, None
         self._transmission.end()
-        if resumes is not None:
-            self._go_on(resumes)
+        if interrupted is not None:
+            self._go_on(interrupted)
 
     def _deafness_time_ms(self, now_ms: int) -> int:
         """Return when the link is lost, if no heartbeat is answered before."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
-            self._unheard_ms = None  # nothing was sent for a while
-        return (now_ms if self._unheard_ms is None else self._unheard_ms) + DEAF_MS
+            self._unanswered_since_ms = None  # nothing was sent for a while
+        return (
+            now_ms if self._unanswered_since_ms is None else self._unanswered_since_ms
+        ) + DEAF_MS
 
     def _next_pending(self, now_ms: int) -> None:
-        if self._waiting:
-            self._pending, self._has_pressed = self._waiting.popleft(), False
+        if self._queue:
+            self._pending, self._has_pressed = self._queue.popleft(), False
         else:
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
@@ -432,12 +434,12 @@ class Session(Requester):
         pending = self._pending
         assert pending
         is_waiting = reply is not None and reply.status in _WAITING_STATUSES
-        pending.waits_for = reply.status if reply is not None and is_waiting else 0
+        pending.waiting_status = reply.status if reply is not None and is_waiting else 0
         pending.answered_ms = now_ms
         try:
             request = next(pending.exchange) if reply is None else pending.exchange.send(reply)
-        except StopIteration as over:
-            self._end_exchange(pending, over.value, now_ms)
+        except StopIteration as finished:
+            self._end_exchange(pending, finished.value, now_ms)
             return
         message = BY_NAME[request.name]
         is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED_MESSAGES
@@ -445,7 +447,7 @@ class Session(Requester):
             pending.exchange.close()
             self._end_exchange(pending, Reply(_STALE_STATUS), now_ms)
             return
-        self._begin(request, now_ms)
+        self._begin_request(request, now_ms)
         self._end_orphan(now_ms)
 
     def _end_exchange(
@@ -453,36 +455,36 @@ class Session(Requester):
     ) -> None:
         self._pending = None
         self._transmission.end()
-        if pending.presses:
+        if pending.presses_keys:
             self._remote.answer(outcome)
-        if pending.resumes is None:
+        if pending.interrupted is None:
             self._finish(pending, outcome)
             self._end_orphan(now_ms)
-        elif pending.halts or pending.presses:
-            self._go_on(pending.resumes)
+        elif pending.ends_orphan or pending.presses_keys:
+            self._go_on(pending.interrupted)
         else:
-            self._resume(pending.resumes, outcome, now_ms)
+            self._resume(pending.interrupted, outcome, now_ms)
 
-    def _begin(self, request: Request, now_ms: int) -> None:
+    def _begin_request(self, request: Request, now_ms: int) -> None:
         """Send a request, and repeat it until it is answered."""
         message = BY_NAME[request.name]
         seal = self._sealing.seal_for(request)
-        number = partial(self._number, seal is not None)
+        next_number = partial(self._next_number, seal is not None)
         if request.pieces is not None:
             self._transmission = Window(
-                self._baud, self._trips, request.pieces, self._epoch, number
+                self._baud, self._round_trips, request.pieces, self._epoch, next_number
             )
             self._transmission.begin_again(now_ms, seal)
             return
         payload = encode_payload(message.request, request.values)
-        frame = Frame(message.number, number(), self._epoch, payload)
+        frame = Frame(message.number, next_number(), self._epoch, payload)
         largest = self.robot.values.largest if self.robot else 0
-        self._transmission = Transmission(self._trips, largest, self.is_running)
+        self._transmission = Transmission(self._round_trips, largest, self.is_running)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ONLY_MESSAGES:
             self._authenticate_again(now_ms)  # before a byte of it is sent
 
-    def _number(self, is_sealed: bool) -> int:
+    def _next_number(self, is_sealed: bool) -> int:
         """Return the number of the next frame."""
         self._seq = (self._seq + 1) & 0xFF
         if is_sealed:
@@ -500,63 +502,63 @@ class Session(Requester):
         if transmission.is_of("KEYS"):
             self._end_press()  # it is not said again: before the next word a key is shown
             return
-        pending.shown += 1
-        self._transmission = Transmission(self._trips)
-        if pending.shown > MOST_KEY_SHOWINGS:  # told to its exchange, that might do it again
+        pending.key_showings += 1
+        self._transmission = Transmission(self._round_trips)
+        if pending.key_showings > MOST_KEY_SHOWINGS:  # told to its exchange, that might do it again
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
             self._pending = None
             return
         self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
-        self._pending.resumes = Interrupted(pending, transmission)
+        self._pending.interrupted = InterruptedExchange(pending, transmission)
         self._pending.deadline_ms = pending.deadline_ms
         self._advance(None, now_ms)
 
-    def _resume(self, interrupted: Interrupted, shown: Reply[Any], now_ms: int) -> None:
+    def _resume(self, interrupted: InterruptedExchange, key_reply: Reply[Any], now_ms: int) -> None:
         self._pending, transmission = interrupted
         seal = self._sealing.seal
         if self._pending.is_void:
             self._advance(Reply(_STALE_STATUS), now_ms)
-        elif shown.status == NOT_OWNER or (shown.status == OK and seal is None):
+        elif key_reply.status == NOT_OWNER or (key_reply.status == OK and seal is None):
             self._transmission = transmission
             self._authenticate_again(now_ms)
-        elif shown.status == OK and transmission.epoch == self._epoch:
+        elif key_reply.status == OK and transmission.epoch == self._epoch:
             self._transmission = transmission
             self._transmission.begin_again(now_ms, seal)
         else:
-            self._advance(Reply(shown.status or _STALE_STATUS, shown.detail), now_ms)
+            self._advance(Reply(key_reply.status or _STALE_STATUS, key_reply.detail), now_ms)
 
     def _end_orphan(self, now_ms: int) -> None:
         """End the run of a client that has gone, between two frames of what others ask for."""
-        if self._orphan is None:
+        if self._orphan_run is None:
             return
-        if not self.is_running or self.run != self._orphan:
-            self._orphan = None  # it has ended
+        if not self.is_running or self.run != self._orphan_run:
+            self._orphan_run = None  # it has ended
             return
         pending, transmission = self._pending, self._transmission
         if pending is not None and (
-            pending.resumes is not None
+            pending.interrupted is not None
             or pending.ends_runs  # by itself
             or transmission.is_sent
             or transmission.is_of("AUTHENTICATE")  # its tag is one of this epoch
         ):
             return
-        self._orphan = None
+        self._orphan_run = None
         stop = send_single(Request("STOP"), EmptyReply)
-        halt = PendingExchange(stop, DEAF_MS, is_own=True, halts=True)
+        stop_exchange = PendingExchange(stop, DEAF_MS, is_own=True, ends_orphan=True)
         if pending is None:
-            self._waiting.appendleft(halt)
+            self._queue.appendleft(stop_exchange)
             return
-        halt.resumes = Interrupted(pending, transmission)
-        halt.deadline_ms = now_ms + halt.limit_ms
-        self._pending = halt
+        stop_exchange.interrupted = InterruptedExchange(pending, transmission)
+        stop_exchange.deadline_ms = now_ms + stop_exchange.limit_ms
+        self._pending = stop_exchange
         self._advance(None, now_ms)
 
-    def _go_on(self, interrupted: Interrupted) -> None:
+    def _go_on(self, interrupted: InterruptedExchange) -> None:
         """Go on with an exchange, of whose request nothing was sent."""
         self._pending, self._transmission = interrupted
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
-        self._transmission.renew(self._epoch, self._number(seal is not None))
+        self._transmission.renew(self._epoch, self._next_number(seal is not None))
         self._transmission.begin_again(self._transmission.due_ms, seal)
 
     def _may_start(self) -> bool:
@@ -578,7 +580,7 @@ class Session(Requester):
 
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
-        if self._pending and not self._pending.presses:
+        if self._pending and not self._pending.presses_keys:
             self._pending.target.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
@@ -604,7 +606,7 @@ class Session(Requester):
         if self._pending and reply.status not in (OK, *ACCEPTING_STATUSES):
             self._pending.is_midway = False  # it was refused
         self._transmission.learn(frame, now_ms)
-        self._unheard_ms = None
+        self._unanswered_since_ms = None
         if not self.is_running:
             self._talked_ms = now_ms  # who asks again after an answer finds the line free
         if (
@@ -626,27 +628,27 @@ class Session(Requester):
         if message.name in UNSEALED_MESSAGES and reply.status != OK:
             self._sealing.seal = None
         if values is not None:
-            is_other = self._handshake.is_in_doubt and not self._try_to_settle(values)
+            is_other_epoch = self._handshake.is_in_doubt and not self._try_to_settle(values)
             if message.name == "CLEAR":
                 self._state.clear()
-            if message.name == "STOP" and self._pending and self._pending.halts:
+            if message.name == "STOP" and self._pending and self._pending.ends_orphan:
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
             has_ended = self._state.learn(values, frame.epoch)
             if self.tells_places:
                 self._events += self._state.update_place(values)
-            if has_ended and not is_other and isinstance(values, StatusReply):
+            if has_ended and not is_other_epoch and isinstance(values, StatusReply):
                 self._tell_end(values)
-            elif has_ended or (is_other and self._handshake.is_open):
-                self._look_first(has_ended, is_other)
+            elif has_ended or (is_other_epoch and self._handshake.is_open):
+                self._queue_requery(has_ended, is_other_epoch)
         self._advance(reply, now_ms)
-        if self._state.is_cut:
-            self._state.is_cut = False
+        if self._state.has_reset_ended_run:
+            self._state.has_reset_ended_run = False
             self._events.append(RestartedEvent())
 
     def _note_late(self, frame: Frame) -> None:
         """An answer to an earlier word of a remote control: the robot is there."""
         if frame.number == BY_NAME["KEYS"].number:
-            self._unheard_ms = None
+            self._unanswered_since_ms = None
             self._remote.hear()
 
     # An epoch ends with a stop, a fault or a reset, or when another session begins. A stop alone
@@ -658,23 +660,23 @@ class Session(Requester):
             self._handshake.doubted_epoch = self._epoch
         self._epoch = frame.epoch
 
-    def _is_next(self, epoch: int) -> bool:
+    def _is_next_epoch(self, epoch: int) -> bool:
         """Whether one stop or fault, and nothing else, has ended the epoch before this one."""
-        before = self._handshake.doubted_epoch
-        return before is not None and epoch == (before + 1) & 0xFF
+        doubted_epoch = self._handshake.doubted_epoch
+        return doubted_epoch is not None and epoch == (doubted_epoch + 1) & 0xFF
 
     def _is_one_fault(self, state: int, epoch: int) -> bool:
-        return state == STATE_FAULTED and self._is_next(epoch)
+        return state == STATE_FAULTED and self._is_next_epoch(epoch)
 
     def _try_to_settle(self, values: SentReply) -> bool:
         """Whether a reply tells all that must be known of the epoch before for now."""
         if isinstance(values, (PingReply, StatusReply)):
-            is_far = self._handshake.is_open and not self._is_next(self._epoch)
-            if is_far or self._state.may_be_reset(values):
+            has_gap = self._handshake.is_open and not self._is_next_epoch(self._epoch)
+            if has_gap or self._state.may_be_reset(values):
                 return False
             is_stop = not self._is_one_fault(values.state, self._epoch)
         elif self._transmission.is_of("STOP"):
-            is_stop = not (self._pending and self._pending.halts)
+            is_stop = not (self._pending and self._pending.ends_orphan)
         else:
             return True  # what needs to know more says HELLO
         self._handshake.doubted_epoch = None
@@ -689,7 +691,7 @@ class Session(Requester):
             self._doubt(frame)  # somebody has asked for HELLO, which is the first to notice it
         self._epoch = frame.epoch
         if not is_same:
-            self._told_epoch = None  # its epochs begin anew
+            self._told_stop_epoch = None  # its epochs begin anew
         if is_same and self._pending and self._pending.target.may_be_done:
             self._pending.target.is_void = True
         if self._handshake.is_in_doubt:
@@ -701,14 +703,14 @@ class Session(Requester):
                 self._void(frame.epoch if is_same else None)
         self._handshake.doubted_epoch = None
 
-    def _void(self, began: int | None = None) -> None:
+    def _void(self, began_epoch: int | None = None) -> None:
         """The robot was stopped: do nothing that was asked for before. Questions are answered.
 
-        `began`: the epoch that has begun so, if what was asked for in it is known to be later.
+        `began_epoch`: the one that has begun so, if what was asked for in it is known to be later.
         """
         self._remote.let_go()
-        for pending in (*self._waiting, *([self._pending] if self._pending else [])):
-            if began is None or pending.target.epoch != began:
+        for pending in (*self._queue, *([self._pending] if self._pending else [])):
+            if began_epoch is None or pending.target.epoch != began_epoch:
                 pending.target.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
@@ -722,7 +724,7 @@ class Session(Requester):
         still for so long. An answer to DATA that brings nothing new is no progress.
         """
         pending = self._pending
-        if pending is None or pending.target.is_whole or reply.status != OK:
+        if pending is None or pending.target.is_limit_total or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
@@ -742,16 +744,16 @@ class Session(Requester):
             next_offset = reply.values.next
         return not self._transmission.take(frame, next_offset, now_ms)
 
-    def _look_first(self, has_ended: bool, is_other: bool) -> None:
-        if is_other:
+    def _queue_requery(self, has_ended: bool, is_other_epoch: bool) -> None:
+        if is_other_epoch:
             self._handshake.is_open = False  # if this is lost, what is asked next finds out
-        again = self._look_again(has_ended, is_other)
-        self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
+        exchange = self._requery(has_ended, is_other_epoch)
+        self._queue.appendleft(PendingExchange(exchange, DEAF_MS, is_own=True))
 
-    def _look_again(self, has_ended: bool, is_other: bool) -> Exchange[StatusReply]:
-        """Ask who the robot is now that its epoch is an `is_other` one, and how a run has ended."""
+    def _requery(self, has_ended: bool, is_other_epoch: bool) -> Exchange[StatusReply]:
+        """Ask who the robot is now that another epoch has begun, and how a run has ended."""
         run = self._state.run
-        if is_other:
+        if is_other_epoch:
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return as_refusal(hello)
@@ -789,7 +791,7 @@ class Session(Requester):
         if missed:
             self._events.append(MissedEvent(missed))
         if message.name == ShowEvent._field_defaults["name"]:
-            self._take_value(Unnamed(ShowEvent(**values), frame.epoch))
+            self._take_show(UnresolvedShow(ShowEvent(**values), frame.epoch))
             return
         event = EVENTS[message.name](**values)
         if isinstance(event, StoppedEvent):
@@ -802,12 +804,12 @@ class Session(Requester):
                     self._state.take(event)
                     return
                 self._stop.end()
-            elif frame.epoch == self._told_epoch or (
+            elif frame.epoch == self._told_stop_epoch or (
                 self._handshake.is_open and self.is_latched and frame.epoch == self._epoch
             ):
                 return  # a repeated answer to the same stop
-            self._told_epoch = frame.epoch
-        if isinstance(event, HaltedEvent) and event == self._state.halted:
+            self._told_stop_epoch = frame.epoch
+        if isinstance(event, HaltedEvent) and event == self._state.halt_event:
             return  # it still is
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self._take_end(event, frame)
@@ -817,18 +819,18 @@ class Session(Requester):
         if not is_told:
             self._events.append(event)
 
-    def _take_value(self, value: Unnamed) -> None:
+    def _take_show(self, show: UnresolvedShow) -> None:
         """Tell a value. If nobody here has started its run the robot is asked which program it is,
         unless that would have to wait."""
-        event = self._state.to_shown_event(value)
-        self._events.append(value if event.at < 0 else event)
-        is_free = not self._waiting and (self._pending is None or self._pending.is_own)
+        event = self._state.to_shown_event(show)
+        self._events.append(show if event.at < 0 else event)
+        is_free = not self._queue and (self._pending is None or self._pending.is_own)
         if not (is_free and self._handshake.is_open and self._has_places):
             return
-        if self._state.claim_query(value):
-            ask = self._handshake.with_key(lambda: ping(PLACE_QUESTION))
-            self._asks_program = PendingExchange(ask, DEAF_MS, is_own=True)
-            self._waiting.append(self._asks_program)
+        if self._state.claim_query(show):
+            exchange = self._handshake.with_key(lambda: ping(PLACE_QUESTION))
+            self._program_query = PendingExchange(exchange, DEAF_MS, is_own=True)
+            self._queue.append(self._program_query)
 
     @property
     def _has_places(self) -> bool:
@@ -846,25 +848,27 @@ class Session(Requester):
     def _take_end(self, event: StoppedEvent | FaultEvent, frame: Frame) -> None:
         """Take the event that announces another epoch."""
         self._doubt(frame)
-        is_halt = event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.halts
+        is_orphan_end = (
+            event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.ends_orphan
+        )
         if isinstance(event, StoppedEvent):
-            is_other = self._handshake.is_in_doubt and not self._is_next(frame.epoch)
+            is_other_epoch = self._handshake.is_in_doubt and not self._is_next_epoch(frame.epoch)
             self._handshake.doubted_epoch = None
-            if not is_halt:
+            if not is_orphan_end:
                 self._void()
-            if is_other and self._handshake.is_open:  # a reset may have come before this stop
-                self._look_first(has_ended=False, is_other=True)
+            if is_other_epoch and self._handshake.is_open:  # a reset may have come before this stop
+                self._queue_requery(has_ended=False, is_other_epoch=True)
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
             self._handshake.doubted_epoch = None
             self._transmission.renew(self._epoch)
-            if self._pending and self._pending.resumes:
-                self._pending.resumes.transmission.renew(self._epoch)
+            if self._pending and self._pending.interrupted:
+                self._pending.interrupted.transmission.renew(self._epoch)
 
     def _ask_for_proof(self, event: StoppedEvent) -> None:
         """Have the robot say under seal that it was stopped, if it was we who did that."""
         if self._stop.is_sent:
             self._stop.end()
-            self._waiting.append(PendingExchange(self._proof(event), DEAF_MS, is_own=True))
+            self._queue.append(PendingExchange(self._proof(event), DEAF_MS, is_own=True))
 
     def _proof(self, event: StoppedEvent) -> Exchange[StatusReply]:
         reply = yield from self._handshake.prove_stopped(lambda: self._sealing.seal is not None)
@@ -880,12 +884,14 @@ class Session(Requester):
     def press(
         self, keys: int = 0, x: int = 0, y: int = 0, speaker: int = 0
     ) -> PendingRequest[EmptyReply]:
-        return self._remote.press(speaker, Pressed(keys, x, y))
+        return self._remote.press(speaker, RemoteState(keys, x, y))
 
     def _ask(
-        self, name: str, kind: type[T], starts: bool = False, /, **given: object
+        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
     ) -> PendingExchange[T]:
-        make: Callable[[], Exchange[T]] = partial(exchange_by_name(name), self._handshake, **given)
+        make: Callable[[], Exchange[T]] = partial(
+            exchange_by_name(name), self._handshake, **arguments
+        )
         if name == "hello":
             exchange = make()
         elif name in REQUESTS_WITHOUT_HELLO:
@@ -899,7 +905,7 @@ class Session(Requester):
     ) -> PendingExchange[T]:
         pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
         pending.epoch = self._epoch
-        self._waiting.append(pending)
+        self._queue.append(pending)
         return pending
 
     def _heartbeat(self) -> Exchange[PingReply]:
@@ -910,7 +916,7 @@ class Session(Requester):
     def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
         pending.outcome = outcome
         if outcome.status == OK and pending.ends_runs:
-            self._orphan = None
+            self._orphan_run = None
             if not pending.starts:
                 self._events += self._state.note_replaced()
         if not pending.starts or outcome.status != OK:
@@ -925,13 +931,13 @@ class Session(Requester):
         assert self._pending
         pending, self._pending = self._pending.target, None
         # a robot that answers, but waits for too long, is not lost
-        is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
-        if pending.waits_for and not self._transmission.is_sent:
+        is_there = pending.waiting_status and now_ms - pending.answered_ms <= DEAF_MS
+        if pending.waiting_status and not self._transmission.is_sent:
             with suppress(StopIteration):  # nothing of it is under way: it learns that
                 pending.exchange.send(Reply(CANCELLED))
         self._transmission.end()
-        self._unheard_ms = None
-        pending.outcome = Reply(pending.waits_for if is_there else LOST)
+        self._unanswered_since_ms = None
+        pending.outcome = Reply(pending.waiting_status if is_there else LOST)
         if pending.is_own:
             self._close()
 
@@ -951,16 +957,16 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            expected = self._pending.target
-            is_midway = status == CANCELLED and expected.is_midway
-            expected.outcome = Reply(status, DETAIL_MIDWAY if is_midway else 0)
-        self._pending = self._orphan = self._handshake.doubted_epoch = None
+            target = self._pending.target
+            is_midway = status == CANCELLED and target.is_midway
+            target.outcome = Reply(status, DETAIL_MIDWAY if is_midway else 0)
+        self._pending = self._orphan_run = self._handshake.doubted_epoch = None
         self._transmission.end()
-        self._unheard_ms = None
+        self._unanswered_since_ms = None
         self._remote.let_go(status)
         self._cancel_waiting(status)
 
     def _cancel_waiting(self, status: int) -> None:
-        for pending in self._waiting:
+        for pending in self._queue:
             pending.outcome = Reply(status)
-        self._waiting.clear()
+        self._queue.clear()

@@ -19,10 +19,10 @@ from tiniscript.link.messages import FIRST_RULE, FIRST_STATUS, STATUS_NAMES
 CATALOGUE = "statuses"
 
 
-class Sentence(NamedTuple):
+class StatusText(NamedTuple):
     """The message, and what to do next, which may be empty."""
 
-    said: str
+    message: str
     advice: str
 
 
@@ -30,11 +30,11 @@ def name_of(status: int) -> str:
     """Return the name of a status, a refusal or a rule; the number if it is unknown."""
     if status in STATUS_NAMES:
         return STATUS_NAMES[status]
-    numbered = {number: name for name, (number, _) in {**REFUSALS, **RULES}.items()}
-    return numbered.get(status, str(status))
+    name_by_number = {number: name for name, (number, _) in {**REFUSALS, **RULES}.items()}
+    return name_by_number.get(status, str(status))
 
 
-def sentence(status: int, detail: int, lang: str) -> Sentence:
+def status_text(status: int, detail: int, lang: str) -> StatusText:
     """Return the sentence for a status and its detail number."""
     name = name_of(status)
     if languages.find_text(CATALOGUE, f"{name}/said", lang) is not None:
@@ -49,6 +49,6 @@ def sentence(status: int, detail: int, lang: str) -> Sentence:
         "version": f"{detail >> 8}.{detail & 0xFF}",
         "name": name,
     }
-    text = languages.text(CATALOGUE, f"{key}/said", lang)
+    message = languages.text(CATALOGUE, f"{key}/said", lang)
     advice = languages.find_text(CATALOGUE, f"{key}/try", lang) or ""
-    return Sentence(text.format(**values), advice.format(**values))
+    return StatusText(message.format(**values), advice.format(**values))

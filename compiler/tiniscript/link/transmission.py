@@ -32,14 +32,14 @@ LONG_TRIES = 1  # of a long frame, before it is sent more than once at a time
 
 class Transmission:
     def __init__(
-        self, trips: RoundTrips, largest: int = SMALL_FRAME, is_lively: bool = False
+        self, round_trips: RoundTrips, answer_bytes: int = SMALL_FRAME, is_lively: bool = False
     ) -> None:
-        """`largest` is how many bytes the frame of an answer has at most, before COBS;
+        """`answer_bytes` is how many bytes the frame of an answer has at most, before COBS;
         `is_lively`: the robot runs a program that ends when it hears nothing.
         """
-        self._trips = trips
+        self._round_trips = round_trips
         self._is_lively = is_lively
-        self._largest = min(max(largest, SMALL_FRAME), LARGE_FRAME)
+        self._answer_bytes = min(max(answer_bytes, SMALL_FRAME), LARGE_FRAME)
         self.frame: Frame | None = None
         self.seal: Seal | None = None
         self.epoch = 0  # that the frame bears
@@ -96,15 +96,18 @@ class Transmission:
 
     def is_answered_by(self, frame: Frame) -> bool:
         """Return whether a reply belongs to this request; others are repeated answers."""
-        ours = self.frame
-        return ours is not None and (frame.number, frame.seq) == (ours.number, ours.seq)
+        own_frame = self.frame
+        return own_frame is not None and (frame.number, frame.seq) == (
+            own_frame.number,
+            own_frame.seq,
+        )
 
     def learn(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes."""
         if self.tries == 0:
             return  # nothing of it was sent: it answers something else
-        count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
-        self._trips.learn(now_ms - self._began_ms, count, self.tries == 1)
+        byte_count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
+        self._round_trips.learn(now_ms - self._began_ms, byte_count, self.tries == 1)
 
     def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
@@ -112,28 +115,28 @@ class Transmission:
         wire = encode_frame(self.frame if self.seal is None else self.seal.seal_frame(self.frame))
         is_hello = self.is_of("HELLO")  # which looks for a robot that is not there yet
         if self.tries > 0:
-            self._trips.double()
+            self._round_trips.back_off()
         else:
             self._began_ms, self._wire_bytes = now_ms, len(wire)
         self.tries += 1
         self.is_sent = True
-        for _ in range(self._copies(len(wire))):
+        for _ in range(self._copy_count(len(wire))):
             wire += encode_frame(
                 self.frame if self.seal is None else self.seal.seal_frame(self.frame)
             )
-        count = len(wire) + self._largest + 2
-        self.due_ms = now_ms + self._trips.wait_ms(count, self._is_lively or is_hello)
-        return sender.frames(wire, now_ms, self.tries > 1 or is_hello)
+        byte_count = len(wire) + self._answer_bytes + 2
+        self.due_ms = now_ms + self._round_trips.wait_ms(byte_count, self._is_lively or is_hello)
+        return sender.prepare_frames(wire, now_ms, self.tries > 1 or is_hello)
 
-    def _copies(self, wire_bytes: int) -> int:
+    def _copy_count(self, wire_bytes: int) -> int:
         """Return how many more of this frame are sent with it. Of a line that loses a byte now and
         then hardly one long frame comes whole, so it gets as many as it carries in half the wait;
         the robot does one of them, and answers each.
         """
         if wire_bytes <= SMALL_FRAME + WIRE_BYTES or self.tries <= LONG_TRIES:
             return 0
-        wait_ms = self._trips.wait_ms(wire_bytes + self._largest + 2, self._is_lively)
-        return max(0, self._trips.bytes_in(wait_ms // 2) // wire_bytes - 1)
+        wait_ms = self._round_trips.wait_ms(wire_bytes + self._answer_bytes + 2, self._is_lively)
+        return max(0, self._round_trips.bytes_in(wait_ms // 2) // wire_bytes - 1)
 
 
 WIRE_BYTES = 4  # of a frame on the wire: what COBS adds to a long one, and its zeros
@@ -160,33 +163,40 @@ class Window(Transmission):
     """
 
     def __init__(
-        self, baud: int, trips: RoundTrips, pieces: Pieces, epoch: int, number: Callable[[], int]
+        self,
+        baud: int,
+        round_trips: RoundTrips,
+        pieces: Pieces,
+        epoch: int,
+        next_number: Callable[[], int],
     ) -> None:
-        """`number` returns the number of each frame: another one each time."""
-        super().__init__(trips)
+        """`next_number` returns the number of each frame: another one each time."""
+        super().__init__(round_trips)
         self._data = pieces.data
-        ahead = baud * MOST_QUEUED_MS // 10_000  # bytes
-        small = payload_bytes(SMALL_FRAME) - OFFSET_BYTES
-        self._longest = self._most = min(pieces.most, max(small, ahead // 2 - FRAME_BYTES))
-        fitting = ahead // (self._most + FRAME_BYTES)
-        self._window = self._allowed = max(1, min(pieces.window, LARGE_WINDOW, fitting))
+        queued_bytes = baud * MOST_QUEUED_MS // 10_000  # bytes
+        small_piece_bytes = payload_bytes(SMALL_FRAME) - OFFSET_BYTES
+        self._longest_piece_bytes = self._piece_bytes = min(
+            pieces.piece_bytes, max(small_piece_bytes, queued_bytes // 2 - FRAME_BYTES)
+        )
+        fitting_count = queued_bytes // (self._piece_bytes + FRAME_BYTES)
+        self._window = self._allowed_count = max(1, min(pieces.window, LARGE_WINDOW, fitting_count))
         self.epoch = epoch
-        self._number = number
-        self._room = trips.bytes_in(SLOW_MS)  # for what is under way, with its answers
-        self._next = 0  # what the robot wants next
-        self._sent = 0  # offset of the byte after the last one that was sent
-        self._under_way: deque[SentPiece] = deque()
-        self._before: deque[SentPiece] = deque(maxlen=MOST_REMEMBERED_PIECES)  # taken for lost
+        self._next_number = next_number
+        self._room_bytes = round_trips.bytes_in(SLOW_MS)  # for what is under way, with its answers
+        self._next_offset = 0  # what the robot wants next
+        self._sent_offset = 0  # offset of the byte after the last one that was sent
+        self._sent_pieces: deque[SentPiece] = deque()
+        self._lost_pieces: deque[SentPiece] = deque(maxlen=MOST_REMEMBERED_PIECES)  # taken for lost
         self._lost_ms = 0  # when what is under way is taken for lost
-        self._is_again = False
+        self._is_repeated = False
         self._is_over = False
 
     def begin_again(self, due_ms: int, seal: Seal | None) -> None:
         """Send what the robot has not taken, from then on."""
         super().begin_again(due_ms, seal)
-        self._under_way.clear()
-        self._before.clear()
-        self._sent = self._next
+        self._sent_pieces.clear()
+        self._lost_pieces.clear()
+        self._sent_offset = self._next_offset
 
     @property
     def is_under_way(self) -> bool:
@@ -198,94 +208,105 @@ class Window(Transmission):
     def is_answered_by(self, frame: Frame) -> bool:
         is_data = frame.number == _DATA.number and not self._is_over
         return is_data and any(
-            piece.seq == frame.seq for piece in (*self._under_way, *self._before)
+            piece.seq == frame.seq for piece in (*self._sent_pieces, *self._lost_pieces)
         )
 
     def learn(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes: each sending has a number of its own."""
-        for piece in (*self._before, *self._under_way):
+        for piece in (*self._lost_pieces, *self._sent_pieces):
             if piece.seq == reply.seq:
                 took_ms = now_ms - piece.sent_ms
-                self._trips.learn(took_ms, piece.wire_bytes, is_certain=True)
-                is_quick = took_ms <= (self._trips.least_ms or 0) + SLOW_MS
-                self._room = max(
-                    0, self._room + (piece.wire_bytes if is_quick else -piece.wire_bytes)
+                self._round_trips.learn(took_ms, piece.wire_bytes, is_certain=True)
+                is_quick = took_ms <= (self._round_trips.least_ms or 0) + SLOW_MS
+                self._room_bytes = max(
+                    0, self._room_bytes + (piece.wire_bytes if is_quick else -piece.wire_bytes)
                 )
 
     def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the frames that may be sent now."""
         self.is_sent = True
-        if self._under_way and now_ms >= self._lost_ms:
+        if self._sent_pieces and now_ms >= self._lost_ms:
             self._go_back()
-            self._allowed = 1
-            self._trips.double()
+            self._allowed_count = 1
+            self._round_trips.back_off()
         wire = b""
         while (length := self._next_bytes()) > 0:
             if self.seal is not None and self.seal.is_spent:
                 break
-            frame = self._frame(self._sent, length)
+            frame = self._frame(self._sent_offset, length)
             wire += encode_frame(frame if self.seal is None else self.seal.seal_frame(frame))
-            self._sent += length
+            self._sent_offset += length
             wire_bytes = len(frame.payload) + FRAME_BYTES + REPLY_BYTES
-            self._under_way.append(SentPiece(frame.seq, self._sent, now_ms, wire_bytes))
+            self._sent_pieces.append(SentPiece(frame.seq, self._sent_offset, now_ms, wire_bytes))
         self._wait(now_ms)
         if not wire:
             return b""
-        is_again, self._is_again = self._is_again, False
-        return sender.frames(wire, now_ms, is_again)
+        is_repeated, self._is_repeated = self._is_repeated, False
+        return sender.prepare_frames(wire, now_ms, is_repeated)
 
     def take(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
         """Take the reply to a frame that was sent; return whether all has arrived.
 
         `next_offset` of None: the robot has not looked at the frame, as a later one came before it.
         """
-        has_come = next_offset is not None and next_offset > self._next
+        has_come = next_offset is not None and next_offset > self._next_offset
         if next_offset is not None and has_come:
-            self._next = next_offset
-            self._sent = max(self._sent, next_offset)
+            self._next_offset = next_offset
+            self._sent_offset = max(self._sent_offset, next_offset)
             self.tries = 0
-            self._most = min(self._most + MORE_BYTES, self._longest)
-            self._allowed = min(self._allowed + 1, self._window)
-        while self._under_way and self._under_way[0].end <= self._next:
-            self._under_way.popleft()
-        if any(piece.seq == frame.seq for piece in self._under_way):
+            self._piece_bytes = min(self._piece_bytes + MORE_BYTES, self._longest_piece_bytes)
+            self._allowed_count = min(self._allowed_count + 1, self._window)
+        while self._sent_pieces and self._sent_pieces[0].end <= self._next_offset:
+            self._sent_pieces.popleft()
+        if any(piece.seq == frame.seq for piece in self._sent_pieces):
             self._go_back()  # this one, or one before it, was not taken
         elif not has_come:
             return False  # late, and known
         self._wait(now_ms)
         if self._next_bytes() > 0:
             self.due_ms = now_ms
-        return self._next >= len(self._data)
+        return self._next_offset >= len(self._data)
 
     def _go_back(self) -> None:
-        self._before += self._under_way
-        self._under_way.clear()
-        self._sent = self._next
-        self._is_again = True
+        self._lost_pieces += self._sent_pieces
+        self._sent_pieces.clear()
+        self._sent_offset = self._next_offset
+        self._is_repeated = True
         self.tries += 1
         if self.tries > 1:
-            self._most = max(min(LEAST_BYTES, self._longest), self._most // 2)
+            self._piece_bytes = max(
+                min(LEAST_BYTES, self._longest_piece_bytes), self._piece_bytes // 2
+            )
 
     def _next_bytes(self) -> int:
         """Return how many bytes the next piece has, or 0 while none may be sent."""
-        length = min(self._most, len(self._data) - self._sent)
-        room = self._room - self._count() - FRAME_BYTES - REPLY_BYTES - OFFSET_BYTES
-        if not self._under_way:
+        length = min(self._piece_bytes, len(self._data) - self._sent_offset)
+        room = (
+            self._room_bytes
+            - self._count_bytes_under_way()
+            - FRAME_BYTES
+            - REPLY_BYTES
+            - OFFSET_BYTES
+        )
+        if not self._sent_pieces:
             return min(length, max(room, LEAST_BYTES))
-        return length if len(self._under_way) < self._allowed and room >= length else 0
+        return length if len(self._sent_pieces) < self._allowed_count and room >= length else 0
 
-    def _frame(self, at: int, length: int) -> Frame:
-        values: dict[str, int | bytes] = {"offset": at, "bytes": self._data[at : at + length]}
+    def _frame(self, offset: int, length: int) -> Frame:
+        values: dict[str, int | bytes] = {
+            "offset": offset,
+            "bytes": self._data[offset : offset + length],
+        }
         return Frame(
-            _DATA.number, self._number(), self.epoch, encode_payload(_DATA.request, values)
+            _DATA.number, self._next_number(), self.epoch, encode_payload(_DATA.request, values)
         )
 
-    def _count(self) -> int:
+    def _count_bytes_under_way(self) -> int:
         """Return how many bytes are under way, with their answers."""
-        return sum(piece.wire_bytes for piece in self._under_way)
+        return sum(piece.wire_bytes for piece in self._sent_pieces)
 
     def _wait(self, now_ms: int) -> None:
-        wait_ms = self._trips.wait_ms(self._count())
+        wait_ms = self._round_trips.wait_ms(self._count_bytes_under_way())
         self._lost_ms = self.due_ms = now_ms + wait_ms
 
 
@@ -293,7 +314,7 @@ STOP_MS = 100  # between two stop sequences
 CONFIRM_MS = 6000  # timeout: then other frames are sent again
 
 
-class StopSequence:
+class StopSender:
     """`due_ms` is the time of the next stop sequence, or None if there is nothing to stop."""
 
     def __init__(self) -> None:
@@ -320,4 +341,4 @@ class StopSequence:
     def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         self.due_ms = now_ms + STOP_MS
-        return sender.zeros(bytes(STOP_BYTES), now_ms)
+        return sender.prepare_stop(bytes(STOP_BYTES), now_ms)

@@ -29,11 +29,11 @@ class Pace(NamedTuple):
     @property
     def rises(self) -> bool:
         """Whether the robot is faster at 80 % than at 40, or not measured: it takes no other."""
-        lines = (self[:2], self[2:])
-        return all(at_40 < at_80 or (at_40, at_80) == (0, 0) for at_40, at_80 in lines)
+        speeds = (self[:2], self[2:])
+        return all(at_40 < at_80 or (at_40, at_80) == (0, 0) for at_40, at_80 in speeds)
 
     def data(self) -> bytes:
-        return struct.pack("<4H", *(round(100 * item) for item in self))
+        return struct.pack("<4H", *(round(100 * speed) for speed in self))
 
 
 class Trim(NamedTuple):
@@ -69,7 +69,7 @@ def trim_from_reply(reply: TrimReply) -> Trim:
     """Return the trim in the reply to TRIM."""
     pace = None
     if len(reply.pace) == PACE_BYTES:
-        pace = Pace(*(item / 100 for item in struct.unpack("<4H", reply.pace)))
+        pace = Pace(*(hundredths / 100 for hundredths in struct.unpack("<4H", reply.pace)))
     return Trim(
         bool(reply.wheels & EXCHANGED),
         bool(reply.wheels & LEFT_REVERSED),

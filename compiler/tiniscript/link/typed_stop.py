@@ -22,7 +22,7 @@ _CTRL_C = re.compile(rb"\x03+")
 def is_typed_stop(line: bytes) -> bool:
     """Return whether a line of text, without its end, is a typed stop."""
     letters = bytearray()
-    for byte in _read(line):
+    for byte in _strip_keys_and_comment(line):
         if byte in _DELETE_KEYS:
             del letters[-1:]
         elif byte < 0x80 and chr(byte).isalnum():
@@ -32,7 +32,7 @@ def is_typed_stop(line: bytes) -> bool:
 
 def stops_at_once(line: bytes) -> bool:
     """Return whether what has come of a line stops what runs before the line ends."""
-    return _IMMEDIATE_STOP.search(_BLANKS.sub(b"", _read(line))) is not None
+    return _IMMEDIATE_STOP.search(_BLANKS.sub(b"", _strip_keys_and_comment(line))) is not None
 
 
 def is_at_stop(data: bytes) -> bool:
@@ -41,6 +41,6 @@ def is_at_stop(data: bytes) -> bool:
     return is_typed_stop(line) or stops_at_once(line) or _CTRL_C.fullmatch(line) is not None
 
 
-def _read(line: bytes) -> bytes:
+def _strip_keys_and_comment(line: bytes) -> bytes:
     """Return what is looked at: no keys, and no comment."""
     return _COMMENT.split(_KEY.sub(b"", line), 1)[0]

@@ -66,7 +66,7 @@ class BrokerSettings(NamedTuple):
         return (
             len(self.address) == 4
             and 0 < self.port < 1 << 16
-            and is_class(self.group)
+            and is_class_name(self.group)
             and len(self.user) <= NETWORK_BYTES
             and len(self.password) <= PASSWORD_BYTES
             and len(self.name) <= BROKER_NAME_BYTES
@@ -81,21 +81,21 @@ class BrokerSettings(NamedTuple):
         return f"BrokerSettings({self.group!r})"
 
 
-def is_class(name: str) -> bool:
+def is_class_name(name: str) -> bool:
     """Return whether a class may be called so: its name is a part of topics."""
     return re.fullmatch(rf"[a-z0-9-]{{1,{CLASS_BYTES}}}", name) is not None
 
 
-def tell(step: str) -> Exchange[WifiReply]:
+def query(step: str) -> Exchange[WifiReply]:
     """TELL: ask what the WiFi is set to; TELL_BROKER: what the broker is."""
     return requests.send_single(_request(step), WifiReply)
 
 
-def forget() -> Exchange[WifiReply]:
+def forget_network() -> Exchange[WifiReply]:
     return requests.save_and_confirm(_request("FORGET"), WifiReply)
 
 
-def give(network: Network) -> Exchange[WifiReply]:
+def join(network: Network) -> Exchange[WifiReply]:
     """Give the robot a network, in the parts that find room in a frame, and have it kept."""
     steps = [_request("NETWORK", network.name), *_parts("PASSWORD", network.password)]
     return _run_steps(steps, "HOST" if network.is_access_point else "JOIN")
@@ -105,8 +105,8 @@ def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
     """Give the robot a broker, or none, and have it kept."""
     steps = [_request("BROKER")]
     if broker is not None:
-        place = broker.address + broker.port.to_bytes(2, "little") + broker.group.encode()
-        steps = [_request("BROKER", place), _request("BROKER_USER", broker.user)]
+        endpoint = broker.address + broker.port.to_bytes(2, "little") + broker.group.encode()
+        steps = [_request("BROKER", endpoint), _request("BROKER_USER", broker.user)]
         steps += _parts("BROKER_PASSWORD", broker.password) + _parts("BROKER_NAME", broker.name)
         if broker.tls is not None:
             steps.append(_request("BROKER_TLS", broker.tls.date.to_bytes(4, "little")))
@@ -125,14 +125,14 @@ def _request(step: str, text: bytes = b"") -> Request:
 
 def _parts(step: str, text: bytes) -> list[Request]:
     """Return what brings a text in the parts that find room in a frame."""
-    parts = range(0, len(text), WIFI_TEXT_BYTES)
-    return [_request(step, text[k : k + WIFI_TEXT_BYTES]) for k in parts]
+    offsets = range(0, len(text), WIFI_TEXT_BYTES)
+    return [_request(step, text[offset : offset + WIFI_TEXT_BYTES]) for offset in offsets]
 
 
-def _run_steps(steps: list[Request], last: str) -> Exchange[WifiReply]:
+def _run_steps(steps: list[Request], last_step: str) -> Exchange[WifiReply]:
     """Take the steps up to the first that is refused, then the one that has them kept."""
     for step in steps:
         reply = yield from requests.send_single(step, WifiReply)
         if reply.status != OK:
             return reply
-    return (yield from requests.save_and_confirm(_request(last), WifiReply))
+    return (yield from requests.save_and_confirm(_request(last_step), WifiReply))

@@ -23,38 +23,38 @@ class Wire:
     def send(self, data: bytes) -> None:
         try:
             self._port.write(data)
-        except TypeError as why:  # from pyserial, if the port is closed
-            raise OSError(str(why)) from None
+        except TypeError as error:  # from pyserial, if the port is closed
+            raise OSError(str(error)) from None
 
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
-        result = b""
-        wait = wait_ms
-        while len(result) < MOST_BYTES:
-            more = self._read(wait)
+        data = b""
+        limit_ms = wait_ms
+        while len(data) < MOST_BYTES:
+            more = self._read(limit_ms)
             if not more:
                 break
-            result += more
-            wait = quiet_ms
-        return result
+            data += more
+            limit_ms = quiet_ms
+        return data
 
     def _read(self, wait_ms: int) -> bytes:
         try:
             self._port.timeout = wait_ms / 1000
-            result = bytes(self._port.read(1))
-            waiting = self._port.in_waiting if result else 0
+            data = bytes(self._port.read(1))
+            waiting = self._port.in_waiting if data else 0
             if waiting:
                 self._port.timeout = 0
-                result += self._port.read(waiting)
-            return result
-        except TypeError as why:  # as above
-            raise OSError(str(why)) from None
+                data += self._port.read(waiting)
+            return data
+        except TypeError as error:  # as above
+            raise OSError(str(error)) from None
 
     def set_baud(self, baud: int) -> None:
         try:
             self._port.baudrate = baud
-        except (ValueError, NotImplementedError) as why:  # a port that has no such speed
-            raise OSError(str(why)) from None
+        except (ValueError, NotImplementedError) as error:  # a port that has no such speed
+            raise OSError(str(error)) from None
         self._drop_input()
 
     def reset_board(self) -> None:

@@ -59,7 +59,7 @@ class Entrances:
             if code in self._used and not peers.tells_users():
                 self.token = new_token()
             result = self._codes.get(code)
-            if result is None or (result.is_for_here and not peers.is_here(peer)):
+            if result is None or (result.is_for_here and not peers.is_on_this_computer(peer)):
                 return ""
             del self._codes[code]
             self._used.add(code)
@@ -73,7 +73,7 @@ class Entrances:
 
 def may_be_owner(peer: socket.socket) -> bool:
     """Whether a connection is of this user, or of another computer."""
-    return peers.is_of_this_user(peer) or not peers.is_here(peer)
+    return peers.is_of_this_user(peer) or not peers.is_on_this_computer(peer)
 
 
 def new_token() -> str:

@@ -138,7 +138,7 @@ class HostedRobot:
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
         """What another command has started is for that command to attend to."""
-        if client.connection.held_by:
+        if client.connection.holder_verb:
             return
         assert isinstance(client.connection, PortConnection)
         session = client.connection.session
@@ -159,7 +159,7 @@ class HostedRobot:
             return False
         opening.remember(self.port, robot.name)
         self.name = robot.name
-        self.attending.tell([{"connected": about(robot), "held_by": line.held_by}])
+        self.attending.tell([{"connected": about(robot), "held_by": line.holder_verb}])
         return True
 
     def _part(self, link: RobotLink) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 from tiniscript.base.languages import languages
 from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
-from tiniscript.link.port_names import canonical_port, is_there
+from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import PARTS_S, HostedRobot
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
@@ -165,8 +165,8 @@ def list_ports() -> list[Json]:
     about = {item.port: item.description for item in ports.list_ports()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names
-              if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip
-    names.sort(key=lambda port: port != known.last)
+              if port not in names and exists(port) and not directory.is_gone(port)]  # fmt: skip
+    names.sort(key=lambda port: port != known.last_port)
     return [
         {
             "port": port,

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.keys import BadKeys, decode_keys, encode_keys, known_seals
+from tiniscript.link.keys import BadKeys, decode_keys, encode_keys, with_known_seals
 from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.link.session import Session
@@ -40,7 +40,7 @@ class PageKeys(KeyRing):
 
     def add(self, data: bytes) -> int:
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
-        given = known_seals(decode_keys(data), self.keys)
+        given = with_known_seals(decode_keys(data), self.keys)
         for key in given:
             self.settle(key)
         return len(given)

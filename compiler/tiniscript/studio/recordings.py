@@ -17,7 +17,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.version import __version__
 from tiniscript.link.messages import UNTOLD
 from tiniscript.link.payloads import ReadingEvent
-from tiniscript.link.remote import Pressed
+from tiniscript.link.remote import RemoteState
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.studio.world_form import Form, form_of, toml_of
 from tiniscript.virtual import worlds
@@ -82,10 +82,10 @@ class Row(NamedTuple):
         return [*self] if self.at >= 0 else [*self[:2]]
 
     @property
-    def pressed(self) -> Pressed | None:
+    def pressed(self) -> RemoteState | None:
         """What somebody holds from then on, if that is what the row says."""
         match = _KEYS.fullmatch(self.event)
-        return Pressed(*map(int, match.groups())) if match else None
+        return RemoteState(*map(int, match.groups())) if match else None
 
 
 class Recording(NamedTuple):

@@ -22,14 +22,14 @@ from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import (
-    DEADLINE_MS,
+    EXCHANGE_TIMEOUT_MS,
     FOREIGN,
     STATUS,
     LinkConnection,
     PendingRequest,
     Requester,
+    find_stranger,
     reason_of,
-    stranger,
 )
 from tiniscript.link.messages import (
     BREAKPOINTS,
@@ -57,16 +57,16 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     TrimReply,
 )
-from tiniscript.link.remote import Pressed, has_remote
+from tiniscript.link.remote import RemoteState, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
-from tiniscript.link.statuses import name_of, sentence
+from tiniscript.link.statuses import name_of, status_text
 from tiniscript.link.trim import Trim, trim_from_reply
 from tiniscript.studio.recordings import ToldReadings
 
 Json = dict[str, Any]
 T = TypeVar("T")
 
-LIMIT_MS = DEADLINE_MS  # for a robot that is known: it is silent, or busy with saving
+LIMIT_MS = EXCHANGE_TIMEOUT_MS  # for a robot that is known: it is silent, or busy with saving
 LONGEST_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
@@ -259,7 +259,7 @@ class RobotLink:
 
     def _failure(self, reply: Reply[Any]) -> Json:
         reason = reason_of(self._connection, reply)
-        found = stranger(self._connection) if reason == FOREIGN else None
+        found = find_stranger(self._connection) if reason == FOREIGN else None
         if found is not None:
             from tiniscript.link.foreign import explain
 
@@ -267,7 +267,7 @@ class RobotLink:
             return {"failure": reason, "said": said, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
-        said, advice = sentence(reply.status, reply.detail, self.language)
+        said, advice = status_text(reply.status, reply.detail, self.language)
         return {"failure": name_of(reply.status), "said": said, "advice": advice}
 
     # -- events -----------------------------------------------------------------------------------
@@ -363,7 +363,9 @@ def _trim(request: Json) -> _Make:
 
 def _keys(request: Json) -> _Make:
     keys = whole_number(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
-    held = Pressed(keys, *(whole_number(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
+    held = RemoteState(
+        keys, *(whole_number(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y"))
+    )
     return lambda session: session.press(*held)
 
 

@@ -12,7 +12,7 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import NOTHING_PRESSED, Pressed
+from tiniscript.link.remote import NOTHING_PRESSED, RemoteState
 from tiniscript.link.requests import OK
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.recordings import DOWN, HALT, HELD, UP, Row, Rows
@@ -216,7 +216,7 @@ class Simulation:
     def press(self, keys: int, x: int, y: int) -> None:
         """Hold these keys of a remote control and its pad so, until something else is said; who
         says nothing for half a second of the robot's time holds nothing."""
-        pressed, now_ms = Pressed(keys, x, y), self.robot.now_ms
+        pressed, now_ms = RemoteState(keys, x, y), self.robot.now_ms
         if pressed == self._pressed and (
             pressed == NOTHING_PRESSED or now_ms - self._said_ms < SAID_MS
         ):

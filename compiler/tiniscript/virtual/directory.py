@@ -59,7 +59,7 @@ def running_robots() -> list[RunningRobot]:
     for path in paths:
         robot = _read(path)
         if robot is not None and _is_listening(robot.address):
-            if not peers.is_of_another(_number_of(robot.address)):
+            if not peers.is_of_another_user(_number_of(robot.address)):
                 found_robots.append(robot)
         else:
             withdraw(path)
@@ -73,7 +73,7 @@ def is_of_another(port: str) -> bool:
     address = canonical_port(port)
     if not address.startswith(PREFIX) or not _is_listening(address):
         return False
-    return _read(_path(address)) is not None and peers.is_of_another(_number_of(address))
+    return _read(_path(address)) is not None and peers.is_of_another_user(_number_of(address))
 
 
 def unclaimed_robots() -> list[RunningRobot]:

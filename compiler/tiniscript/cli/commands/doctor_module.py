@@ -86,7 +86,7 @@ def _wanted_settings(options: Namespace) -> WantedSettings:
             )  # fmt: skip
         baud = baud_of_text[options.baud]
     wanted_settings = WantedSettings(name, options.pin, baud)
-    misfits = [set_up.misfit(wanted_settings, dialect) for dialect in DIALECTS]
+    misfits = [set_up.unsupported_setting(wanted_settings, dialect) for dialect in DIALECTS]
     if all(misfits):
         _refuse(wanted_settings, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
     return wanted_settings
@@ -130,29 +130,29 @@ class _SetUp:
         status_line = StatusLine()
         module = find_module(
             self.wire,
-            look=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
+            on_baud=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
         )
         status_line.end()
         if module is None:
             return _print_finding(sure_finding("module_silent"), self.language)
-        misfit = set_up.misfit(self.wanted_settings, module.dialect)
+        misfit = set_up.unsupported_setting(self.wanted_settings, module.dialect)
         if misfit:
             _refuse(self.wanted_settings, module.dialect, misfit)
-        plan = set_up.steps(self.wanted_settings, module.dialect)
+        plan = set_up.plan_steps(self.wanted_settings, module.dialect)
         current_settings = self._read_settings(module)
         self._introduce(module, current_settings)
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
-            self.begun_steps += [step for step in plan if step.what == BAUD]
+            self.begun_steps += [step for step in plan if step.setting == BAUD]
             outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._print_plan(plan)
-        is_done = all(outcome.how in GOOD_OUTCOMES for outcome in outcomes)
+        is_done = all(outcome.status in GOOD_OUTCOMES for outcome in outcomes)
         if not plan:
             pin = "123456"[: module.dialect.pin_digits]
             print(self._text("module_nothing", port=self.port, pin=pin))
         elif outcomes and is_done:
-            key = "module_then_button" if module.dialect.is_fixed else "module_then"
+            key = "module_then_button" if module.dialect.keeps_baud else "module_then"
             print(self._text(key))
         return 0 if is_done else 3
 
@@ -162,16 +162,16 @@ class _SetUp:
     def _read_settings(self, module: Module) -> dict[str, str]:
         """Return what the module tells of what it keeps. Its PIN is not asked."""
         dialect = module.dialect
-        questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
+        questions = {NAME: dialect.name_question, BAUD: dialect.baud_question}
         values = {
-            setting: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
+            setting: value_of(ask(self.wire, question, dialect.line_end, dialect.wait_ms))
             for setting, question in questions.items()
             if question
         }
         if BAUD in values:
             baud_text = values[BAUD].split(",")[0]
             values[BAUD] = next(
-                (str(baud) for baud, value in dialect.bauds.items() if value == baud_text), ""
+                (str(baud) for baud, value in dialect.baud_codes.items() if value == baud_text), ""
             )
         return {setting: printable_name(value) for setting, value in values.items() if value}
 
@@ -190,14 +190,14 @@ class _SetUp:
 
     def _print_plan(self, plan: list[Step]) -> None:
         for step in plan:
-            description = self._text(f"module_what_{step.what}", value=step.value)
+            description = self._text(f"module_what_{step.setting}", value=step.value)
             commands = self._text("module_plan_or").join(step.commands)
             print(f"{description}: " + self._text("module_plan", commands=commands))
 
     def _print_outcome(self, outcome: Outcome) -> None:
         step, outcome_name, reply_text = outcome
-        name = self._text(f"module_what_{step.what}", value=step.value)
-        if step.what == BAUD and outcome_name == DONE:
+        name = self._text(f"module_what_{step.setting}", value=step.value)
+        if step.setting == BAUD and outcome_name == DONE:
             outcome_name = "done_baud" if reply_text == step.value else "done_later"
         reply_text = printable_name(reply_text) or self._text("module_no_word")
         _print_finding(

@@ -20,7 +20,7 @@ from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.authority import ownership_of
-from tiniscript.link.connection import stranger
+from tiniscript.link.connection import find_stranger
 from tiniscript.link.foreign import explain
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKING_VERB
@@ -63,8 +63,8 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             open_client(port, robot, LOOKING_VERB, baud, language, OPEN_TIMEOUT_S)
         ) as client:
             reply = client.hello()
-            device_info, has_bytes = client.connection.robot, client.connection.heard
-            foreign_board = stranger(client.connection)
+            device_info, has_bytes = client.connection.robot, client.connection.heard_count
+            foreign_board = find_stranger(client.connection)
     except CommandError as error:
         return {"answer": None, "said": error.plain_sentence(language)}
     except RobotError as error:
@@ -89,5 +89,8 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "said": sentence,
         }
     if foreign_board is not None and (foreign_board.has_row or foreign_board.is_sure):
-        return {"answer": None, "said": Sentence(explain(foreign_board, language).said.rstrip("."))}
+        return {
+            "answer": None,
+            "said": Sentence(explain(foreign_board, language).meaning.rstrip(".")),
+        }
     return {"answer": None, "said": text("port_other" if has_bytes else "port_quiet", language)}

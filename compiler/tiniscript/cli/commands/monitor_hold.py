@@ -20,10 +20,10 @@ from tiniscript.link.requests import OK
 def run(options: Namespace, language: str) -> int:
     try:
         with connect(options, language) as connection:
-            if connection.connection.held_by:
+            if connection.connection.holder_verb:
                 values = {
                     "port": printable_name(connection.port),
-                    "verb": connection.connection.held_by,
+                    "verb": connection.connection.holder_verb,
                 }
                 raise CommandError(3, "held_already", **values)
             if connection.server is None:

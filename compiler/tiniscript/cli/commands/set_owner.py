@@ -9,7 +9,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, ownership_of
-from tiniscript.link.connection import CLAIM_LIMIT_MS
+from tiniscript.link.connection import CLAIM_TIMEOUT_MS
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
 from tiniscript.link.outcomes import UNKEPT
@@ -28,7 +28,7 @@ def run(options: Namespace, language: str) -> int:
 def _claim(connection: Connection, key_kind: int) -> None:
     request = connection.connection.begin(lambda session: session.claim(key_kind))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
-    sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
+    sentence = connection.text("claim_hold", seconds=CLAIM_TIMEOUT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:

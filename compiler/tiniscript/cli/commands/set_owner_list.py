@@ -101,7 +101,10 @@ def _accept(key_file: KeyFile, robot_id: str, language: str) -> None:
 
 def _key_file_error(key_file: KeyFile, key: str, error: BadKeys) -> CommandError:
     return CommandError(
-        2, key, file=printable_name(str(key_file.path)), why=f": {error.why}" if error.why else ""
+        2,
+        key,
+        file=printable_name(str(key_file.path)),
+        why=f": {error.detail}" if error.detail else "",
     )
 
 

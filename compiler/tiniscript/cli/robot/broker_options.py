@@ -12,7 +12,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
-from tiniscript.link.wifi import is_class
+from tiniscript.link.wifi import is_class_name
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
 DEFAULT_GROUP = "class"  # of who names none
@@ -38,7 +38,7 @@ def broker_address(options: Namespace, is_tls: bool = False) -> BrokerAddress:
 def group_name(options: Namespace) -> str:
     """Return the name of the class. Raises CommandError."""
     name = DEFAULT_GROUP if options.group is None else str(options.group)
-    if not is_class(name):
+    if not is_class_name(name):
         raise CommandError(2, "class_bad_name", found=printable_name(name) or "''")
     return name
 

@@ -29,7 +29,7 @@ from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
 if TYPE_CHECKING:
-    from tiniscript.link.transports.broker import Access, Broker, Present
+    from tiniscript.link.transports.broker import Access, Broker, RobotPresence
 
 STOP_MESSAGES = 3  # messages to all, as each may be lost
 UPLOAD_VERB = "upload"  # the verb that asks most of a fleet's options
@@ -66,11 +66,11 @@ class Classroom:
         name, password_text = (data.decode("utf-8", "surrogateescape") for data in (user, password))
         return Access(name, password_text, bool(options.tls), options.trust)
 
-    def present_robots(self) -> list[Present]:
+    def present_robots(self) -> list[RobotPresence]:
         """Return the robots that the broker knows, those that have gone, too."""
         with convert_port_error(f"mqtt://{self.address}"):
             try:
-                known_robots = self.broker.present(self.group)
+                known_robots = self.broker.list_robots(self.group)
             finally:
                 for topic, size in self.broker.skipped_topics.items():
                     say_aside(
@@ -80,7 +80,7 @@ class Classroom:
             raise CommandError(3, "class_empty", group=self.group, host=str(self.address))
         return known_robots
 
-    def options_for(self, present_robots: list[Present], verb: str = "class") -> Namespace:
+    def options_for(self, present_robots: list[RobotPresence], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
 
         Only who has them drive has to attend to them.

@@ -33,7 +33,7 @@ from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
 from tiniscript.link.port_names import is_address, is_built_in
 from tiniscript.link.requests import DeviceInfo, Reply
-from tiniscript.link.statuses import sentence
+from tiniscript.link.statuses import status_text
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -311,7 +311,7 @@ class Connection(Client):
 
     def refusal_text(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""
-        meaning, advice = sentence(reply.status, reply.detail, self.language)
+        meaning, advice = status_text(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
             name = shipped_name_of_kit(reply.detail)
             if name is not None:
@@ -393,7 +393,7 @@ def _select_port(options: Namespace, language: str) -> str:
         return inputs.check_port(port)
     if (usable_port := opening.usable_last_port()) is not None:
         return usable_port
-    last_port = known_ports.remembered_ports().last
+    last_port = known_ports.remembered_ports().last_port
     virtual_robots = (
         directory.unclaimed_robots() if can_start_virtual else directory.running_robots()
     )

@@ -24,7 +24,7 @@ from tiniscript.doctor.system import System
 from tiniscript.library import opening
 from tiniscript.library.known_kits import robot_name_of_kit
 from tiniscript.link import ports
-from tiniscript.link.authority import has_to_seal, is_other
+from tiniscript.link.authority import has_to_seal, is_impostor
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import OWNED, SEALS
@@ -99,7 +99,7 @@ def _has_key(robot_id: int) -> bool:
 def _doubt_cause(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
     keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
-    if is_other(keys, canonical_port(port), info):
+    if is_impostor(keys, canonical_port(port), info):
         return "other_robot"
     is_proven = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
     return "unproven" if has_to_seal(keys, info) and not is_proven else ""

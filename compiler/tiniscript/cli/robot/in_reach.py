@@ -19,7 +19,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import (
     BLE,
     TCP,
-    canonical,
+    canonical_name,
     canonical_port,
     is_bluetooth,
     is_network_name,
@@ -63,20 +63,20 @@ def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
 
 
 def _find_by_radio(known_ports: list[str], language: str) -> ReachableRobots:
-    devices = ports.find_in_reach()
-    names = [canonical(device.name) for device in devices]
+    devices = ports.find_bluetooth_robots()
+    names = [canonical_name(device.name) for device in devices]
     rows = []
     for device, name in zip(devices, names, strict=True):
         sentence = text("radio_port", language)
         sentence = f"{device.name}, {sentence}" if device.name else sentence
-        meanings = {canonical(device.address)} | ({name} if names.count(name) == 1 else set())
+        meanings = {canonical_name(device.address)} | ({name} if names.count(name) == 1 else set())
         rows.append((BLE + device.address, {BLE + device for device in meanings}, sentence))
     canonical_of = {port: BLE + name_in(port) for port in known_ports if is_bluetooth(port)}
     return _name_robots(rows, canonical_of)
 
 
 def _find_by_name(known_ports: list[str], language: str) -> ReachableRobots:
-    announced_robots = ports.find_announced()
+    announced_robots = ports.find_announced_robots()
     rows = []
     for announced_robot in announced_robots:
         name = (

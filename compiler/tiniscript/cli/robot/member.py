@@ -17,7 +17,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
-from tiniscript.link.port_names import canonical_port, is_there
+from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.link.sharing.registry import find_all
 from tiniscript.virtual import directory
 
@@ -52,7 +52,7 @@ def targets(options: Namespace) -> list[Target]:
     if options.all:
         candidate_ports = [registration.port for registration in find_all()]
         candidate_ports += [
-            port for port in names_by_port if is_there(port) and not directory.is_gone(port)
+            port for port in names_by_port if exists(port) and not directory.is_gone(port)
         ]
         from tiniscript.link import ports
 

@@ -7,7 +7,7 @@ from tiniscript.cli.robot.connect import describe_port, describe_virtual_robot
 from tiniscript.cli.robot.in_reach import ReachableRobots, running_servers
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports, ports
-from tiniscript.link.port_names import canonical_port, is_there
+from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.virtual import directory
 
 EMPTY_REACH = ReachableRobots({}, [], [], [])  # nothing was searched
@@ -30,7 +30,7 @@ def list_rows(
             port
             for port in remembered_ports.names
             if port not in descriptions
-            and is_there(port)
+            and exists(port)
             and port not in in_reach.other_ports
             and not directory.is_gone(port)
         ]
@@ -47,7 +47,7 @@ def list_rows(
             "port": port,
             "description": descriptions.get(port, ""),
             "remembered": remembered_ports.names.get(port),
-            "is_last_used": remembered_ports.last == port,
+            "is_last_used": remembered_ports.last_port == port,
             "is_virtual": port in virtual_by_address,
             "held_by": verb_of_port.get(canonical_port(port)),
         }

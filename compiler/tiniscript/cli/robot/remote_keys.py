@@ -16,7 +16,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
-from tiniscript.link.remote import NOTHING_PRESSED, Pressed, has_remote, pressed_of
+from tiniscript.link.remote import NOTHING_PRESSED, RemoteState, has_remote, remote_state_of
 from tiniscript.link.requests import OK, Reply
 
 FIRST_HOLD_S, REPEAT_HOLD_S = 0.7, 0.15  # for which a press holds a key
@@ -63,8 +63,10 @@ class HeldKeys:
         is_repeat = now_s < self._release_s.get(name, now_s)
         self._release_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
-    def keys_at(self, now_s: float) -> Pressed:
-        return pressed_of(name for name, release_s in self._release_s.items() if now_s < release_s)
+    def keys_at(self, now_s: float) -> RemoteState:
+        return remote_state_of(
+            name for name, release_s in self._release_s.items() if now_s < release_s
+        )
 
 
 class TerminalRemote:

@@ -34,4 +34,4 @@ def hold_back(connection: Connection) -> None:
 
 def may_be_opened(connection: Connection) -> bool:
     """Whether the port's server has ended during the stop, so that the port can be opened now."""
-    return bool(connection.connection.held_by) and connection.connection.has_ended
+    return bool(connection.connection.holder_verb) and connection.connection.has_ended

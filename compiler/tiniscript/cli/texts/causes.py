@@ -37,7 +37,7 @@ def sentences_of(
     if cause in ("no_port", "charging_cable") and gap_values.get("ports"):
         evidence_key, advice_key = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
-        meaning, advice = (Sentence(part) for part in foreign.sentence(cause, language))
+        meaning, advice = (Sentence(part) for part in foreign.explanation_of(cause, language))
         if cause == foreign.ECHO_SKETCH:
             evidence_key = "seen_echo_sketch"
         elif cause == foreign.OTHER_SKETCH and not gap_values["said"]:

@@ -34,17 +34,17 @@ class WantedSettings(NamedTuple):
 class Step(NamedTuple):
     """What is set, to which value, by which commands: the first that is taken counts."""
 
-    what: str
+    setting: str
     value: str
     commands: tuple[str, ...]
 
 
 class Outcome(NamedTuple):
-    """How a step has ended; `said` is what the module answered, or the speed at which it is."""
+    """How a step has ended; `answer` is what the module answered, or the speed at which it is."""
 
     step: Step
-    how: str
-    said: str = ""
+    status: str
+    answer: str = ""
 
 
 def name_for(robot_id: int) -> str:
@@ -52,7 +52,7 @@ def name_for(robot_id: int) -> str:
     return f"{NAME_START}{robot_id & 0xFFFF:04X}"
 
 
-def misfit(wanted: WantedSettings, dialect: Dialect) -> str:
+def unsupported_setting(wanted: WantedSettings, dialect: Dialect) -> str:
     """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
     name, pin, baud = wanted
     if name is not None and (
@@ -63,19 +63,19 @@ def misfit(wanted: WantedSettings, dialect: Dialect) -> str:
     is_number = pin is not None and pin.isascii() and pin.isdigit()
     if pin is not None and not (is_number and len(pin) == dialect.pin_digits):
         return PIN
-    return BAUD if baud is not None and baud not in dialect.bauds else ""
+    return BAUD if baud is not None and baud not in dialect.baud_codes else ""
 
 
-def steps(wanted: WantedSettings, dialect: Dialect) -> list[Step]:
+def plan_steps(wanted: WantedSettings, dialect: Dialect) -> list[Step]:
     """Return what is to be sent, in this order. Nothing is sent here."""
     name, pin, baud = wanted
     plan = (
-        (NAME, name, dialect.names, name),
-        (PIN, pin, dialect.pins, pin),
-        (BAUD, baud, dialect.speeds, None if baud is None else dialect.bauds[baud]),
+        (NAME, name, dialect.name_commands, name),
+        (PIN, pin, dialect.pin_commands, pin),
+        (BAUD, baud, dialect.baud_commands, None if baud is None else dialect.baud_codes[baud]),
     )
-    return [Step(what, str(value), tuple(form.format(written) for form in forms))
-            for what, value, forms, written in plan if value is not None]  # fmt: skip
+    return [Step(setting, str(value), tuple(form.format(code) for form in forms))
+            for setting, value, forms, code in plan if value is not None]  # fmt: skip
 
 
 def apply_steps(
@@ -84,36 +84,40 @@ def apply_steps(
     """Do the steps, and stop at the first that goes wrong. `on_outcome` gets each at once."""
     outcomes: list[Outcome] = []
     for step in plan:
-        outcome = _set(wire, module.dialect, step)
-        if step.what == BAUD and outcome.how != REFUSED:
+        outcome = _apply_step(wire, module.dialect, step)
+        if step.setting == BAUD and outcome.status != REFUSED:
             outcome = _check_speed(wire, module, outcome)
         outcomes.append(outcome)
         on_outcome(outcome)
-        if outcome.how not in GOOD_OUTCOMES:
+        if outcome.status not in GOOD_OUTCOMES:
             return outcomes
     return outcomes
 
 
-def _set(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
+def _apply_step(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
     """Send the forms of a command until one is taken and the module tells the value."""
-    question = {NAME: dialect.ask_name, PIN: dialect.ask_pin, BAUD: dialect.ask_baud}[step.what]
+    question = {
+        NAME: dialect.name_question,
+        PIN: dialect.pin_question,
+        BAUD: dialect.baud_question,
+    }[step.setting]
     outcome = Outcome(step, SILENT)
     for command in step.commands:
-        text = ask(wire, command, dialect.ending, dialect.wait_ms)
-        if is_ok(text):
+        answer = ask(wire, command, dialect.line_end, dialect.wait_ms)
+        if is_ok(answer):
             if not question:
-                return Outcome(step, UNSEEN, text)
-            answer = ask(wire, question, dialect.ending, dialect.wait_ms)
-            now = value_of(answer)
-            if not answer and not is_there(wire, dialect):
-                return Outcome(step, SILENT, text)
-            if not now:
-                return Outcome(step, UNSEEN, text)
-            if _is_same(step, dialect, answer):
-                return Outcome(step, DONE, now)
-            outcome = Outcome(step, DIFFERS, now)
-        elif text and outcome.how != DIFFERS:
-            outcome = Outcome(step, REFUSED, text if is_error(text) else "")
+                return Outcome(step, UNSEEN, answer)
+            value_answer = ask(wire, question, dialect.line_end, dialect.wait_ms)
+            value = value_of(value_answer)
+            if not value_answer and not is_there(wire, dialect):
+                return Outcome(step, SILENT, answer)
+            if not value:
+                return Outcome(step, UNSEEN, answer)
+            if _is_same(step, dialect, value_answer):
+                return Outcome(step, DONE, value)
+            outcome = Outcome(step, DIFFERS, value)
+        elif answer and outcome.status != DIFFERS:
+            outcome = Outcome(step, REFUSED, answer if is_error(answer) else "")
     return outcome
 
 
@@ -123,28 +127,28 @@ def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
     Firmware that wants a PIN in quotes tells `+PIN:"1234"`. Where an older one tells
     `+PSWD:"1234"`, it has kept the quotes.
     """
-    now = value_of(answer)
-    if step.what == BAUD:
-        return now.split(",")[0] in (step.value, dialect.bauds[int(step.value)])
+    value = value_of(answer)
+    if step.setting == BAUD:
+        return value.split(",")[0] in (step.value, dialect.baud_codes[int(step.value)])
     if answer.startswith("+PIN:"):
-        now = now.strip('"')
-    return now == step.value
+        value = value.strip('"')
+    return value == step.value
 
 
 def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
     """Return whether the module is at its new speed, else at which one it is."""
     dialect, step = module.dialect, outcome.step
     baud = int(step.value)
-    if dialect.is_fixed:
-        return outcome._replace(how=LOST) if outcome.how == SILENT else outcome
-    if dialect.restart:
-        ask(wire, dialect.restart, dialect.ending, dialect.wait_ms)
+    if dialect.keeps_baud:
+        return outcome._replace(status=LOST) if outcome.status == SILENT else outcome
+    if dialect.restart_command:
+        ask(wire, dialect.restart_command, dialect.line_end, dialect.wait_ms)
         wire.receive(RESTART_MS, RESTART_MS)
     wire.set_baud(baud)
     if is_there(wire, dialect):
         return Outcome(step, DONE, step.value)
-    elsewhere = find_module(wire, wakes=False)
-    if elsewhere is None:
+    module_there = find_module(wire, wakes=False)
+    if module_there is None:
         return Outcome(step, LOST, step.value)
-    how = DONE if elsewhere.baud == baud else ELSEWHERE
-    return Outcome(step, how, str(elsewhere.baud))
+    status = DONE if module_there.baud == baud else ELSEWHERE
+    return Outcome(step, status, str(module_there.baud))

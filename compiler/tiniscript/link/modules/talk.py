@@ -39,12 +39,12 @@ class Module(NamedTuple):
     version: str
 
 
-def ask(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
+def ask(wire: Wire, command: str, line_end: bytes, wait_ms: int) -> str:
     """Send a command and return the answer, or an empty text where none comes.
 
     Some clones say a command again before they answer it: that is no part of the answer.
     """
-    wire.send(command.encode("ascii") + ending)
+    wire.send(command.encode("ascii") + line_end)
     text = wire.receive(wait_ms).decode("ascii", "replace").strip()
     return text.removeprefix(command).lstrip()
 
@@ -52,31 +52,31 @@ def ask(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
 def find_module(
     wire: Wire,
     bauds: Sequence[int] = BAUDS,
-    look: Callable[[int], None] = lambda baud: None,
+    on_baud: Callable[[int], None] = lambda baud: None,
     wakes: bool = True,
 ) -> Module | None:
-    """Return the module on a wire, or None where none answers. `look` is told each speed.
+    """Return the module on a wire, or None where none answers. `on_baud` is told each speed.
 
     `wakes`: where none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
     """
     wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # what was sent before is no part of a command
     for is_awake in (False, True) if wakes else (False,):
         for baud in bauds:
-            look(baud)
+            on_baud(baud)
             wire.set_baud(baud)
             if is_awake:
                 wire.send(b"w" * WAKE_BYTES)
                 wire.receive(ANSWER_MS)
-            ending = _find_line_ending(wire)
-            if ending is not None:
-                dialect, version = _identify_dialect(wire, ending)
+            line_end = _find_line_ending(wire)
+            if line_end is not None:
+                dialect, version = _identify_dialect(wire, line_end)
                 return Module(dialect, baud, version[:MOST_VERSION_CHARACTERS])
     return None
 
 
 def is_there(wire: Wire, dialect: Dialect) -> bool:
     """Whether a module of this kind answers at the speed that the wire has."""
-    return any(is_ok(ask(wire, "AT", dialect.ending, dialect.wait_ms)) for _ in range(TRIES))
+    return any(is_ok(ask(wire, "AT", dialect.line_end, dialect.wait_ms)) for _ in range(TRIES))
 
 
 def _find_line_ending(wire: Wire) -> bytes | None:
@@ -93,33 +93,33 @@ def _find_line_ending(wire: Wire) -> bytes | None:
     return CRLF if _is_accepted(text) else None
 
 
-def _is_accepted(said: str) -> bool:
-    return "OK" in said.split()
+def _is_accepted(answer: str) -> bool:
+    return "OK" in answer.split()
 
 
-def _identify_dialect(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
+def _identify_dialect(wire: Wire, line_end: bytes) -> tuple[Dialect, str]:
     """Return which module this is, and what it says of itself."""
-    if not ending:
-        text = ask(wire, "AT+VERSION", ending, SLOW_ANSWER_MS)
+    if not line_end:
+        text = ask(wire, "AT+VERSION", line_end, SLOW_ANSWER_MS)
         if text.startswith("OK") and not text.startswith("OK+") and text != "OK":
             return HC06, text.removeprefix("OK")
-        more = ask(wire, "AT+VERR?", ending, SLOW_ANSWER_MS)
-        if "HM" in more.upper() or text.startswith("OK+") or "HM" in text.upper():
-            return HM10, more or text
+        release = ask(wire, "AT+VERR?", line_end, SLOW_ANSWER_MS)
+        if "HM" in release.upper() or text.startswith("OK+") or "HM" in text.upper():
+            return HM10, release or text
         return HC06, text
-    text = ask(wire, "AT+VERSION", ending, ANSWER_MS)
+    text = ask(wire, "AT+VERSION", line_end, ANSWER_MS)
     if "BT05" in text.upper():
         return BT05, _version_line(text)
     if text.startswith("+VERSION="):
         return CC41, _version_line(text)
-    role = ask(wire, "AT+ROLE?", ending, ANSWER_MS)
+    role = ask(wire, "AT+ROLE?", line_end, ANSWER_MS)
     if role.startswith("+ROLE"):
-        text = ask(wire, "AT+VERSION?", ending, ANSWER_MS)
+        text = ask(wire, "AT+VERSION?", line_end, ANSWER_MS)
         return (HC05_3 if ":3." in text else HC05), _version_line(text)
     return (HC06_3, _version_line(text)) if not is_error(text) else (HC05, "")
 
 
-def _version_line(said: str) -> str:
+def _version_line(answer: str) -> str:
     """Return the version in an answer: its first line, without what it is called."""
-    first = said.splitlines()[0] if said else ""
-    return first.removeprefix("+").removeprefix("VERSION").lstrip(":=")
+    first_line = answer.splitlines()[0] if answer else ""
+    return first_line.removeprefix("+").removeprefix("VERSION").lstrip(":=")

@@ -26,7 +26,7 @@ HOST = "127.0.0.1"
 _NO_SOCKET_ERRORS = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
 
-class End(NamedTuple):
+class SocketOwner(NamedTuple):
     """The other end of a connection.
 
     What a process has closed has no inode. The kernel says 0, as of root, of its user then; Linux
@@ -49,17 +49,17 @@ def is_of_this_user(peer: socket.socket) -> bool:
     if sys.platform != "linux":
         return True
     try:
-        there, here = peer.getpeername(), peer.getsockname()
+        peer_address, own_address = peer.getpeername(), peer.getsockname()
     except OSError:  # it has gone
         return False
     try:
-        result = _socket_owner(there, here)
-    except OSError as why:  # a system that has no answer to that lets everybody in
-        return why.errno not in _NO_SOCKET_ERRORS
-    return result.is_open and result.user in (os.geteuid(), ROOT_USER)
+        owner = _socket_owner(peer_address, own_address)
+    except OSError as error:  # a system that has no answer to that lets everybody in
+        return error.errno not in _NO_SOCKET_ERRORS
+    return owner.is_open and owner.user in (os.geteuid(), ROOT_USER)
 
 
-def is_of_another(number: int) -> bool:
+def is_of_another_user(number: int) -> bool:
     """Whether another user than this one and root listens at a port of 127.0.0.1.
 
     False where nobody listens there, and where nobody tells.
@@ -67,10 +67,10 @@ def is_of_another(number: int) -> bool:
     if sys.platform == "win32":
         return False
     try:
-        result = _socket_owner((HOST, number), ("0.0.0.0", 0))
+        owner = _socket_owner((HOST, number), ("0.0.0.0", 0))
     except OSError:
         return False
-    return result.user not in (os.geteuid(), ROOT_USER)
+    return owner.user not in (os.geteuid(), ROOT_USER)
 
 
 def tells_users() -> bool:
@@ -78,7 +78,7 @@ def tells_users() -> bool:
     return sys.platform == "linux"
 
 
-def is_here(peer: socket.socket) -> bool:
+def is_on_this_computer(peer: socket.socket) -> bool:
     """Whether the other end of an accepted connection is in this computer."""
     try:
         with socket.socket() as probe:
@@ -88,19 +88,19 @@ def is_here(peer: socket.socket) -> bool:
     return True
 
 
-def _socket_owner(there: tuple[str, int], here: tuple[str, int]) -> End:
-    """Return what the kernel knows of the socket at `there`. Raises OSError."""
+def _socket_owner(peer_address: tuple[str, int], own_address: tuple[str, int]) -> SocketOwner:
+    """Return what the kernel knows of the socket at `peer_address`. Raises OSError."""
     if sys.platform != "linux":
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
-    addresses = socket.inet_aton(there[0]), socket.inet_aton(here[0])
-    ends = _SOCKET_ENDS.pack(there[1], here[1], *addresses, 0, _NO_COOKIE)
-    ask = _REQUEST_BODY.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
-    head = _HEAD.pack(_HEAD.size + len(ask), _BY_FAMILY, _REQUEST, 1, 0)
+    addresses = socket.inet_aton(peer_address[0]), socket.inet_aton(own_address[0])
+    ends = _SOCKET_ENDS.pack(peer_address[1], own_address[1], *addresses, 0, _NO_COOKIE)
+    request = _REQUEST_BODY.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
+    head = _HEAD.pack(_HEAD.size + len(request), _BY_FAMILY, _REQUEST, 1, 0)
     with socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, _SOCK_DIAG) as kernel:
-        kernel.send(head + ask)
+        kernel.send(head + request)
         data = kernel.recv(8192)
     if _HEAD.unpack_from(data)[1] == _ERROR:
         number = -struct.unpack_from("=i", data, _HEAD.size)[0]
         raise OSError(number, os.strerror(number))
     *_, user, inode = _ANSWER.unpack_from(data, _HEAD.size)
-    return End(user, inode)
+    return SocketOwner(user, inode)

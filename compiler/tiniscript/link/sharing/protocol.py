@@ -58,7 +58,7 @@ class Greeting(NamedTuple):
     rest: bytes  # the bytes after the greeting
 
 
-def greeting(data: bytes) -> Greeting | None:
+def read_greeting(data: bytes) -> Greeting | None:
     """Return the greeting that data begins with, or None while it is still incomplete.
 
     Raises BadMessage where data is no greeting.
@@ -101,22 +101,22 @@ def message_of(line: bytes) -> JsonMessage:
     return result
 
 
-def field(message: JsonMessage, name: str, kind: type[T]) -> T:
+def read_field(message: JsonMessage, name: str, field_type: type[T]) -> T:
     """Return a field of this kind. Raises BadMessage where it is something else."""
-    result = message.get(name)
-    if type(result) is not kind:  # True is no whole number
+    value = message.get(name)
+    if type(value) is not field_type:  # True is no whole number
         raise BadMessage
-    return result
+    return value
 
 
-def number(message: JsonMessage, name: str) -> int:
-    return field(message, name, int)
+def read_int(message: JsonMessage, name: str) -> int:
+    return read_field(message, name, int)
 
 
-def data(message: JsonMessage, name: str) -> bytes:
+def read_bytes(message: JsonMessage, name: str) -> bytes:
     """Return a field of bytes in hex. Raises BadMessage where it is something else."""
     try:
-        return bytes.fromhex(field(message, name, str))
+        return bytes.fromhex(read_field(message, name, str))
     except ValueError:
         raise BadMessage from None
 
@@ -128,32 +128,38 @@ def to_json_values(values: Mapping[str, int | bytes]) -> JsonMessage:
     }
 
 
-def values(message: JsonMessage) -> dict[str, int | bytes]:
+def read_values(message: JsonMessage) -> dict[str, int | bytes]:
     """Return the fields of a reply or an event. Raises BadMessage."""
-    result = message.get("values")
-    if not isinstance(result, dict):
+    fields = message.get("values")
+    if not isinstance(fields, dict):
         raise BadMessage
     return {
-        key: number(result, key) if type(value) is int else data(result, key)
-        for key, value in result.items()
+        key: read_int(fields, key) if type(value) is int else read_bytes(fields, key)
+        for key, value in fields.items()
     }
 
 
-def reply(message: JsonMessage, kind: type[T]) -> Reply[T]:
-    """Return the reply in a message, with values of the type `kind`. Raises BadMessage."""
-    status, detail, found = number(message, "status"), number(message, "detail"), values(message)
+def read_reply(message: JsonMessage, reply_type: type[T]) -> Reply[T]:
+    """Return the reply in a message, with values of the type `reply_type`. Raises BadMessage."""
+    status, detail, payload_values = (
+        read_int(message, "status"),
+        read_int(message, "detail"),
+        read_values(message),
+    )
     if status != OK:
         return Reply(status, detail)
     try:
-        return Reply(OK, detail, make_payload(kind, found))
+        return Reply(OK, detail, make_payload(reply_type, payload_values))
     except Malformed:
         raise BadMessage from None
 
 
-def event(message: JsonMessage) -> tuple[int, Event]:
+def read_event(message: JsonMessage) -> tuple[int, Event]:
     """Return the time (ms) and the event of a message. Raises BadMessage."""
     try:
-        return number(message, "ms"), event_of(field(message, "event", str), values(message))
+        return read_int(message, "ms"), event_of(
+            read_field(message, "event", str), read_values(message)
+        )
     except Malformed:
         raise BadMessage from None
 
@@ -165,11 +171,13 @@ def event_fields(event: Event) -> dict[str, int | bytes]:
     return fields
 
 
-def make_payload(kind: type[T], values: Mapping[str, int | bytes]) -> T:
+def make_payload(payload_type: type[T], values: Mapping[str, int | bytes]) -> T:
     """Return a payload with these values. Raises Malformed if it has other fields."""
-    if {name: type(value) for name, value in values.items()} != _types(cast(Hashable, kind)):
+    if {name: type(value) for name, value in values.items()} != _field_types(
+        cast(Hashable, payload_type)
+    ):
         raise Malformed
-    make: Callable[..., T] = kind
+    make: Callable[..., T] = payload_type
     return make(**values)
 
 
@@ -181,6 +189,8 @@ def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
 
 
 @cache
-def _types(kind: Hashable) -> dict[str, object]:
+def _field_types(payload_type: Hashable) -> dict[str, object]:
     """Return the type of each field, without an event's name."""
-    return {name: value for name, value in get_type_hints(kind).items() if value in (int, bytes)}
+    return {
+        name: value for name, value in get_type_hints(payload_type).items() if value in (int, bytes)
+    }

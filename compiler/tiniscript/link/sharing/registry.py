@@ -83,13 +83,13 @@ def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None
     """
     if not is_meant(_read(path)):
         return
-    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW_ENDING}")
+    aside_path = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW_ENDING}")
     with suppress(OSError):
-        path.rename(aside)
-        if not is_meant(_read(aside)) and not path.exists():
-            aside.rename(path)
+        path.rename(aside_path)
+        if not is_meant(_read(aside_path)) and not path.exists():
+            aside_path.rename(path)
         else:
-            aside.unlink()
+            aside_path.unlink()
 
 
 def tidy() -> None:
@@ -132,17 +132,17 @@ def forget(port: str) -> None:
         _path(port).unlink(missing_ok=True)
 
 
-def claim(port: str) -> IO[bytes] | None:
+def lock_port(port: str) -> IO[bytes] | None:
     """Return a file that is locked for this process, or None where another process has the lock.
 
     Systems lock serial ports, but not addresses: two processes could use the same one. The lock
     ends with the file, or with the process. Raises OSError where nothing can be locked.
     """
     _make_folder()
-    return _try_lock(lock_of(port))
+    return _try_lock(lock_path(port))
 
 
-def lock_of(port: str) -> Path:
+def lock_path(port: str) -> Path:
     """Return the path of the file that is locked for an address."""
     return _path(port).with_suffix(".lock")
 
@@ -207,8 +207,8 @@ def _read(path: Path) -> Registration | None:
     """Return the registration in a file, if only this user can have written it."""
     try:
         if sys.platform != "win32":
-            about = path.parent.stat()
-            if about.st_uid != os.geteuid() or about.st_mode & 0o077:
+            folder_status = path.parent.stat()
+            if folder_status.st_uid != os.geteuid() or folder_status.st_mode & 0o077:
                 return None
         fields = json.loads(read_limited(path, FILE_BYTES))
         fields.setdefault("is_alias", False)  # older versions have no aliases

@@ -23,7 +23,7 @@ from tiniscript.link.messages import (
     TRIM_BYTES,
     Field,
 )
-from tiniscript.link.remote import Pressed
+from tiniscript.link.remote import RemoteState
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
@@ -34,29 +34,31 @@ T = TypeVar("T")
 
 
 class ClientRequest(PendingRequest[T]):
-    """A request of a client: the values of its reply have the type `kind`."""
+    """A request of a client: the values of its reply have the type `reply_type`."""
 
-    def __init__(self, do: str, kind: type[T], starts: bool = False, **fields: object) -> None:
+    def __init__(
+        self, name: str, reply_type: type[T], starts: bool = False, /, **fields: object
+    ) -> None:
         self.starts = starts
-        self.message: JsonMessage = {"do": do, **fields}
-        self.kind = kind
+        self.message: JsonMessage = {"do": name, **fields}
+        self.reply_type = reply_type
 
 
 class ClientRequests(Requester):
     """All requests of a client: the same as those of a session."""
 
     def _ask(
-        self, name: str, kind: type[T], starts: bool = False, /, **given: object
+        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
     ) -> ClientRequest[T]:
-        return ClientRequest(name, kind, starts, **_fields(given))
+        return ClientRequest(name, reply_type, starts, **_message_fields(arguments))
 
 
-def _fields(given: Mapping[str, object]) -> JsonMessage:
+def _message_fields(arguments: Mapping[str, object]) -> JsonMessage:
     """Return the fields of a message: bytes are hex, and a tuple's own stand beside the others."""
     fields: JsonMessage = {}
-    for name, value in given.items():
+    for name, value in arguments.items():
         if hasattr(value, "_asdict"):
-            fields |= _fields(value._asdict())
+            fields |= _message_fields(value._asdict())
         elif isinstance(value, (bytes, tuple)):
             fields[name] = bytes(value).hex()
         elif value is not None:
@@ -71,21 +73,21 @@ def request_maker(
 
     `speaker` is who presses keys.
     """
-    name = protocol.field(message, "do", str)
-    given = (
+    name = protocol.read_field(message, "do", str)
+    arguments = (
         _ARGUMENT_READERS[name](message)
         if name in _ARGUMENT_READERS
-        else _as_message(name, message)
+        else _message_arguments(name, message)
     )
     if name == "press":
-        given += (speaker,)
+        arguments += (speaker,)
 
-    def with_limit(session: Requester) -> PendingRequest[Any]:
-        request: PendingRequest[Any] = getattr(session, name)(*given)
+    def make_request(session: Requester) -> PendingRequest[Any]:
+        request: PendingRequest[Any] = getattr(session, name)(*arguments)
         request.limit_ms = limit_ms
         return request
 
-    return with_limit
+    return make_request
 
 
 def is_detached(message: JsonMessage) -> bool:
@@ -93,28 +95,30 @@ def is_detached(message: JsonMessage) -> bool:
     return message.get("is_detached") is True
 
 
-def _as_message(name: str, message: JsonMessage) -> tuple[object, ...]:
+def _message_arguments(name: str, message: JsonMessage) -> tuple[object, ...]:
     """Return the fields of the link's message of that name, which such a request is given."""
     if name not in vars(Requester) or name.upper() not in BY_NAME:
         raise BadMessage
-    return tuple(_field(message, item) for item in BY_NAME[name.upper()].request)
+    return tuple(_field(message, field) for field in BY_NAME[name.upper()].request)
 
 
 def _field(message: JsonMessage, field: Field) -> int | bytes:
     """Return what a message says for a field of the link's. Raises BadMessage."""
     if field.kind == "rest":
-        return _bytes(message, field.name, field.low, min(field.high, SEALED_PAYLOAD_BYTES))
-    bits = 8 * field.high
+        return _bytes(
+            message, field.name, field.least_bytes, min(field.most_bytes, SEALED_PAYLOAD_BYTES)
+        )
+    bits = 8 * field.most_bytes
     lowest = -(1 << bits - 1) if field.kind.startswith("i") else 0
-    number = protocol.number(message, field.name)
+    number = protocol.read_int(message, field.name)
     if not 0 <= number - lowest < 1 << bits:
         raise BadMessage
     return number
 
 
-def _bounded_number(message: JsonMessage, name: str, limit: int, usual: int | None = None) -> int:
+def _bounded_number(message: JsonMessage, name: str, limit: int, default: int | None = None) -> int:
     """Return a number from 0 on, below the limit. Raises BadMessage."""
-    number = protocol.number(message if usual is None else {name: usual, **message}, name)
+    number = protocol.read_int(message if default is None else {name: default, **message}, name)
     if not 0 <= number < limit:
         raise BadMessage
     return number
@@ -122,14 +126,14 @@ def _bounded_number(message: JsonMessage, name: str, limit: int, usual: int | No
 
 def _bytes(message: JsonMessage, name: str, least: int, most: int) -> bytes:
     """Return so many bytes. Raises BadMessage."""
-    data = protocol.data(message, name)
+    data = protocol.read_bytes(message, name)
     if not least <= len(data) <= most:
         raise BadMessage
     return data
 
 
 def _pressed_keys(message: JsonMessage) -> tuple[object, ...]:
-    pressed = Pressed(*(protocol.number(message, name) for name in Pressed._fields))
+    pressed = RemoteState(*(protocol.read_int(message, name) for name in RemoteState._fields))
     if not pressed.is_sound:
         raise BadMessage
     return pressed
@@ -143,7 +147,7 @@ def _places(message: JsonMessage) -> tuple[int, ...]:
 
 
 def _trim(message: JsonMessage) -> bytes:
-    trim = protocol.data(message, "trim")
+    trim = protocol.read_bytes(message, "trim")
     if len(trim) not in (0, TRIM_BYTES, TRIM_BYTES + PACE_BYTES):
         raise BadMessage
     return trim
@@ -158,7 +162,7 @@ def _network(message: JsonMessage) -> Network:
     password = _bytes(message, "password", LEAST_PASSWORD, PASSWORD_BYTES)
     if b"\0" in name + password:
         raise BadMessage
-    return Network(name, password, protocol.field(message, "is_access_point", bool))
+    return Network(name, password, protocol.read_field(message, "is_access_point", bool))
 
 
 def _broker(message: JsonMessage) -> BrokerSettings | None:
@@ -166,14 +170,14 @@ def _broker(message: JsonMessage) -> BrokerSettings | None:
         return None
     tls = None
     if "trust" in message:
-        tls = Tls(protocol.data(message, "trust"), protocol.number(message, "date"))
+        tls = Tls(protocol.read_bytes(message, "trust"), protocol.read_int(message, "date"))
     broker = BrokerSettings(
-        protocol.data(message, "address"),
-        protocol.number(message, "port"),
-        protocol.field(message, "group", str),
-        protocol.data(message, "user"),
-        protocol.data(message, "password"),
-        protocol.data(message, "name"),
+        protocol.read_bytes(message, "address"),
+        protocol.read_int(message, "port"),
+        protocol.read_field(message, "group", str),
+        protocol.read_bytes(message, "user"),
+        protocol.read_bytes(message, "password"),
+        protocol.read_bytes(message, "name"),
         tls,
     )
     if not broker.is_sound:
@@ -182,7 +186,7 @@ def _broker(message: JsonMessage) -> BrokerSettings | None:
 
 
 def _image(message: JsonMessage) -> Image:
-    start = protocol.field(message, "start", str)
+    start = protocol.read_field(message, "start", str)
     if start not in STARTS[:2]:
         raise BadMessage
     major, minor = _bytes(message, "isa", 2, 2)
@@ -198,7 +202,7 @@ def _image(message: JsonMessage) -> Image:
 
 
 def _upload(message: JsonMessage) -> tuple[object, ...]:
-    flags = (protocol.field(message, name, bool) for name in ("runs", "saves", "is_detached"))
+    flags = (protocol.read_field(message, name, bool) for name in ("runs", "saves", "is_detached"))
     return (_image(message), *flags, _kit(message))
 
 
@@ -214,12 +218,12 @@ _ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     "break_at": lambda message: (_places(message),),
     "claim": lambda message: (_bounded_number(message, "which", len(KEYS)),),
     "disown": lambda message: (_bounded_number(message, "which", len(KEYS)),),
-    "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
-    "tell_readings": lambda message: (protocol.field(message, "is_on", bool),),
-    "start": lambda message: (protocol.field(message, "is_detached", bool),),
+    "allow_text": lambda message: (protocol.read_field(message, "is_allowed", bool),),
+    "tell_readings": lambda message: (protocol.read_field(message, "is_on", bool),),
+    "start": lambda message: (protocol.read_field(message, "is_detached", bool),),
     "live": lambda message: (
-        protocol.data(message, "code"), _kit(message),
-        protocol.field({"halts": False, **message}, "halts", bool),
+        protocol.read_bytes(message, "code"), _kit(message),
+        protocol.read_field({"halts": False, **message}, "halts", bool),
     ),
     "upload": _upload,
     "join": lambda message: (_network(message),),

@@ -66,8 +66,8 @@ class ConnectedClient:
         self.messages = protocol.MessageReader(protocol.LINE_BYTES)
         self.speaker = 0  # its number, once it presses keys
         self.requests: dict[int, ServedRequest] = {}
-        self.out = bytearray()
-        self.missed = 0  # number of events
+        self.output = bytearray()
+        self.missed_count = 0  # number of events
         self.takes_places = False
 
 
@@ -81,41 +81,41 @@ class Server:
     """Shares a line until `close`. Raises OSError where the line cannot be shared."""
 
     def __init__(
-        self, line: PortConnection, port: str, baud: int, verb: str,
+        self, connection: PortConnection, port: str, baud: int, verb: str,
         is_latched: Callable[[], bool] = lambda: False,
     ) -> None:  # fmt: skip
         """`is_latched`: somebody has just stopped the robot, and no client starts anything."""
-        self._line = line
+        self._connection = connection
         self._is_latched = is_latched
-        self._listening = socket.create_server((protocol.HOST, 0))
-        self._listening.setblocking(False)
-        number = self._listening.getsockname()[1]
+        self._listening_socket = socket.create_server((protocol.HOST, 0))
+        self._listening_socket.setblocking(False)
+        number = self._listening_socket.getsockname()[1]
         token, answer = os.urandom(16).hex(), os.urandom(16).hex()
         name = canonical_port(port)
         self.registration = Registration(name, number, token, answer, verb, baud, os.getpid())
-        self._names = [self.registration]
-        address = canonical_port(line.address or port)
+        self._registrations = [self.registration]
+        address = canonical_port(connection.address or port)
         if address != name:
-            self._names.append(self.registration._replace(port=address, is_alias=True))
-        self._bell, self._wire = socket.socketpair()
-        self._bell.setblocking(False)
-        self._wire.setblocking(False)
-        self._told: deque[TimedEvent] = deque()
+            self._registrations.append(self.registration._replace(port=address, is_alias=True))
+        self._wake_sender, self._wake_receiver = socket.socketpair()
+        self._wake_sender.setblocking(False)
+        self._wake_receiver.setblocking(False)
+        self._told_events: deque[TimedEvent] = deque()
         self._clients: list[ConnectedClient] = []
-        self._speakers = 0
+        self._speaker_count = 0
         self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
-        self._left_requests: list[ServedRequest] = []  # of clients that have left
+        self._orphaned_requests: list[ServedRequest] = []  # of clients that have left
         self._is_closing = False
         self._selector = selectors.DefaultSelector()
-        self._selector.register(self._listening, selectors.EVENT_READ)
-        self._selector.register(self._wire, selectors.EVENT_READ)
+        self._selector.register(self._listening_socket, selectors.EVENT_READ)
+        self._selector.register(self._wake_receiver, selectors.EVENT_READ)
         try:
-            for registration in self._names:
+            for registration in self._registrations:
                 registry.write(registration)
         except OSError:
             self._close_all()
             raise
-        line.listen(self._on_events)
+        connection.listen(self._on_events)
         self._thread = Thread(target=self._run, name="server", daemon=True)
         self._thread.start()
 
@@ -123,7 +123,7 @@ class Server:
     def has_run(self) -> bool:
         """Whether a client has started the current run, and the run ends with that client."""
         owner = self._owner
-        return owner is not None and self._line.runs(owner[1])
+        return owner is not None and self._connection.runs(owner[1])
 
     @property
     def is_needed(self) -> bool:
@@ -140,7 +140,7 @@ class Server:
         requests = [request for client in clients for request in list(client.requests.values())]
         return self.has_run or any(
             request.pending.outcome is None and request.pending.starts and not request.is_detached
-            for request in (*requests, *list(self._left_requests))
+            for request in (*requests, *list(self._orphaned_requests))
         )
 
     def close(self) -> None:
@@ -151,38 +151,38 @@ class Server:
 
     # -- from the thread of the line --------------------------------------------------------------
 
-    def _on_events(self, told: list[TimedEvent]) -> None:
-        self._told += told
+    def _on_events(self, timed_events: list[TimedEvent]) -> None:
+        self._told_events += timed_events
         self._ring()
 
     def _ring(self) -> None:
         with suppress(OSError):  # the buffer is full: the thread wakes anyway
-            self._bell.send(b"\0")
+            self._wake_sender.send(b"\0")
 
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
         try:
-            while not self._is_closing and self._line.end_reason is None:
+            while not self._is_closing and self._connection.end_reason is None:
                 self._attend()
             self._pass_on_outcomes()  # a run may have begun in this moment
         except Exception as bug:
-            self._line.fail(bug)
+            self._connection.fail(bug)
         finally:
-            for name in self._names:
-                registry.remove(name)
+            for registration in self._registrations:
+                registry.remove(registration)
             self._announce_end()
             self._close_all()
 
     def _attend(self) -> None:
-        is_asked = any(client.requests for client in self._clients)
-        is_busy = self._owner or self._left_requests or is_asked
+        has_requests = any(client.requests for client in self._clients)
+        is_busy = self._owner or self._orphaned_requests or has_requests
         for key, mask in self._selector.select(PAUSE_S if is_busy else REST_S):
-            if key.fileobj is self._listening:
+            if key.fileobj is self._listening_socket:
                 self._let_in()
-            elif key.fileobj is self._wire:
+            elif key.fileobj is self._wake_receiver:
                 with suppress(OSError):
-                    self._wire.recv(4096)
+                    self._wake_receiver.recv(4096)
             elif key.data in self._clients:
                 if mask & selectors.EVENT_READ:
                     self._read(key.data)
@@ -190,11 +190,11 @@ class Server:
                     self._write(key.data)
         self._pass_on_outcomes()
         self._pass_on_events()
-        self._look_after()
+        self._check_timeouts()
 
     def _let_in(self) -> None:
         try:
-            peer, _ = self._listening.accept()
+            peer, _ = self._listening_socket.accept()
         except (BlockingIOError, ConnectionError):  # the client has left already
             return
         except OSError:  # this process has too many files open
@@ -236,13 +236,13 @@ class Server:
             self._drop(client)
 
     def _handle_message(self, client: ConnectedClient, message: JsonMessage) -> None:
-        action = protocol.field(message, "do", str)
+        action = protocol.read_field(message, "do", str)
         if action == "stop":
-            self._line.stop()
+            self._connection.stop()
         elif action == "beat":
             self._send(client, {"beat": True})
         elif action == "places":
-            client.takes_places = self._line.session.tells_places = True
+            client.takes_places = self._connection.session.tells_places = True
         else:
             self._begin(client, message)
 
@@ -252,7 +252,7 @@ class Server:
         Until the token is right, nothing else is read. Raises BadMessage.
         """
         client.greeting += data
-        greeting = protocol.greeting(client.greeting)
+        greeting = protocol.read_greeting(client.greeting)
         if greeting is None:
             return b""
         if not hmac.compare_digest(greeting.token, self.registration.token.encode()):
@@ -265,22 +265,22 @@ class Server:
 
     def _begin(self, client: ConnectedClient, message: JsonMessage) -> None:
         """Begin a client's request."""
-        number = protocol.number(message, "id")
-        limit_ms = min(max(1, protocol.number(message, "limit_ms")), 60_000)
+        number = protocol.read_int(message, "id")
+        limit_ms = min(max(1, protocol.read_int(message, "limit_ms")), 60_000)
         if number in client.requests or len(client.requests) >= MOST_REQUESTS:
             raise BadMessage
-        robot = self._line.robot
-        if message["do"] == "hello" and robot and self._line.session.is_open:  # already known
+        robot = self._connection.robot
+        if message["do"] == "hello" and robot and self._connection.session.is_open:  # already known
             self._tell_outcome(client, number, Reply(OK, 0, robot.values))
             return
         if message["do"] == "press" and not client.speaker:
-            self._speakers += 1
-            client.speaker = self._speakers
+            self._speaker_count += 1
+            client.speaker = self._speaker_count
         make = request_maker(message, limit_ms, client.speaker)
         if self._is_latched() and message["do"] in _STARTING_REQUESTS:
             self._tell_outcome(client, number, Reply(CANCELLED))
             return
-        client.requests[number] = ServedRequest(self._line.begin(make), is_detached(message))
+        client.requests[number] = ServedRequest(self._connection.begin(make), is_detached(message))
 
     def _pass_on_outcomes(self) -> None:
         for client in list(self._clients):
@@ -294,10 +294,10 @@ class Server:
                     done_bytes = request.pending.done_bytes
                     client.requests[number] = request._replace(told_bytes=done_bytes)
                     self._send(client, {"id": number, "done_bytes": done_bytes})
-        for request in self._left_requests:
+        for request in self._orphaned_requests:
             self._note_owner(request, None)
-        self._left_requests = [
-            request for request in self._left_requests if request.pending.outcome is None
+        self._orphaned_requests = [
+            request for request in self._orphaned_requests if request.pending.outcome is None
         ]
 
     def _note_owner(self, request: ServedRequest, client: ConnectedClient | None) -> None:
@@ -309,10 +309,10 @@ class Server:
             return
         receipt: ReceiptReply = outcome.values
         run = receipt.run
-        if not self._line.runs(run):
+        if not self._connection.runs(run):
             return
         if client is None:
-            self._line.end_run(run)
+            self._connection.end_run(run)
         else:
             self._owner = client, run
 
@@ -323,15 +323,15 @@ class Server:
             "status": outcome.status,
             "detail": outcome.detail,
             "values": protocol.to_json_values(values),
-            "heard": self._line.heard,
-            "came": self._line.came.hex(),
-            "is_echoed": self._line.is_echoed,
-            "boot": self._line.boot,
+            "heard": self._connection.heard_count,
+            "came": self._connection.early_bytes.hex(),
+            "is_echoed": self._connection.is_echoed,
+            "boot": self._connection.boot,
         })  # fmt: skip
 
     def _pass_on_events(self) -> None:
-        while self._told:
-            time_ms, event = self._told.popleft()
+        while self._told_events:
+            time_ms, event = self._told_events.popleft()
             # a late end may belong to the previous run
             if event.name in _ENDING_EVENTS and self._owner is not None and not self.has_run:
                 self._owner = None
@@ -340,19 +340,19 @@ class Server:
                     self._tell_event(client, time_ms, event)
 
     def _tell_event(self, client: ConnectedClient, time_ms: int, event: Event) -> None:
-        if event.name == "PLACE" and not (client.takes_places and len(client.out) <= FULL_BYTES):
+        if event.name == "PLACE" and not (client.takes_places and len(client.output) <= FULL_BYTES):
             return
-        if len(client.out) > FULL_BYTES and event.name in _DROPPABLE_EVENTS:
-            client.missed += 1
+        if len(client.output) > FULL_BYTES and event.name in _DROPPABLE_EVENTS:
+            client.missed_count += 1
             return
-        if client.missed:
-            missed, client.missed = client.missed, 0
-            self._tell_event(client, time_ms, MissedEvent(missed))
+        if client.missed_count:
+            missed_count, client.missed_count = client.missed_count, 0
+            self._tell_event(client, time_ms, MissedEvent(missed_count))
         values = protocol.to_json_values(protocol.event_fields(event))
         message: JsonMessage = {"event": event.name, "ms": time_ms, "values": values}
         self._send(client, message)
 
-    def _look_after(self) -> None:
+    def _check_timeouts(self) -> None:
         now_s = monotonic()
         for client in list(self._clients):
             if not client.verb and now_s - client.heard_s > GREETING_S:
@@ -363,7 +363,7 @@ class Server:
     def _end_run(self) -> None:
         """End the run of a client that has left."""
         if self._owner is not None:
-            self._line.end_run(self._owner[1])
+            self._connection.end_run(self._owner[1])
         self._owner = None
 
     def _drop(self, client: ConnectedClient) -> None:
@@ -373,10 +373,10 @@ class Server:
         self._selector.unregister(client.peer)
         client.peer.close()
         for request in client.requests.values():
-            self._line.withdraw(request.pending)
-            self._left_requests.append(request)
+            self._connection.withdraw(request.pending)
+            self._orphaned_requests.append(request)
         if client.speaker:
-            self._line.begin(lambda session: session.press(speaker=client.speaker))
+            self._connection.begin(lambda session: session.press(speaker=client.speaker))
         if self._owner is not None and self._owner[0] is client:
             self._end_run()
         self._tell_own_command(client, LeftEvent)
@@ -385,42 +385,50 @@ class Server:
         self, client: ConnectedClient, event: type[JoinedEvent] | type[LeftEvent]
     ) -> None:
         if client.verb not in ("", protocol.LOOKING_VERB):
-            self._line.tell(event(client.verb.encode()))
+            self._connection.tell(event(client.verb.encode()))
 
     # -- what clients are told --------------------------------------------------------------------
 
     def _send(self, client: ConnectedClient, message: JsonMessage) -> None:
-        client.out += protocol.encode_message(message)
-        if len(client.out) > TOO_FULL_BYTES:
+        client.output += protocol.encode_message(message)
+        if len(client.output) > TOO_FULL_BYTES:
             self._drop(client)
         else:
             self._write(client)
 
     def _write(self, client: ConnectedClient) -> None:
         try:
-            sent = client.peer.send(client.out) if client.out else 0
-            del client.out[:sent]
+            sent_count = client.peer.send(client.output) if client.output else 0
+            del client.output[:sent_count]
         except BlockingIOError:
             pass
         except OSError:
             self._drop(client)
             return
-        expected = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
+        event_mask = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.output else 0)
         if client in self._clients:
-            self._selector.modify(client.peer, expected, client)
+            self._selector.modify(client.peer, event_mask, client)
 
     def _announce_end(self) -> None:
         """Tell all clients that the connection has ended, and why."""
-        gone = self._line.end_reason
-        over: JsonMessage = {"over": "ended" if gone is None else "gone", "why": gone or ""}
+        reason = self._connection.end_reason
+        end_message: JsonMessage = {
+            "over": "ended" if reason is None else "gone",
+            "why": reason or "",
+        }
         for client in list(self._clients):
             if client.verb:
-                self._send(client, over)
+                self._send(client, end_message)
             with suppress(OSError):
                 client.peer.shutdown(socket.SHUT_WR)
 
     def _close_all(self) -> None:
         for client in self._clients:
             client.peer.close()
-        for item in (self._listening, self._bell, self._wire, self._selector):
-            item.close()
+        for resource in (
+            self._listening_socket,
+            self._wake_sender,
+            self._wake_receiver,
+            self._selector,
+        ):
+            resource.close()

@@ -44,21 +44,21 @@ class SharedConnection(LinkConnection):
     """The connection through a server that has sent its greeting."""
 
     def __init__(
-        self, peer: socket.socket, registration: Registration, rest: protocol.MessageReader
+        self, peer: socket.socket, registration: Registration, reader: protocol.MessageReader
     ) -> None:
         self._robot: DeviceInfo | None = None
         self._boot = 0
-        self.held_by = registration.verb
+        self.holder_verb = registration.verb
         self.baud = registration.baud
         self._peer = peer
-        self._messages = rest
+        self._reader = reader
         self._requests = ClientRequests()
-        self._pending: dict[int, ClientRequest[Any]] = {}
-        self._count = 0
+        self._pending_requests: dict[int, ClientRequest[Any]] = {}
+        self._request_count = 0
         self._events: deque[tuple[int, Event]] = deque()
-        self._over: ConnectionLost | None = None
+        self._end: ConnectionLost | None = None
         self._heartbeat_s = 0.0  # when the last heartbeat was sent
-        self._unanswered_s: float | None = None  # since when a heartbeat is
+        self._unanswered_since_s: float | None = None  # since when a heartbeat is
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -70,20 +70,20 @@ class SharedConnection(LinkConnection):
 
     @property
     def has_ended(self) -> bool:
-        return self._over is not None
+        return self._end is not None
 
     def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         request = make(self._requests)
         assert isinstance(request, ClientRequest)
-        self._count += 1
-        self._pending[self._count] = request
-        self._send({**request.message, "id": self._count, "limit_ms": request.limit_ms})
+        self._request_count += 1
+        self._pending_requests[self._request_count] = request
+        self._send({**request.message, "id": self._request_count, "limit_ms": request.limit_ms})
         return request
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         while request.outcome is None:
-            if self._over is not None:
-                raise self._over
+            if self._end is not None:
+                raise self._end
             self._listen(LOOK_S)
             if look is not None:
                 look()
@@ -91,8 +91,8 @@ class SharedConnection(LinkConnection):
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         if not self._events:
-            if self._over is not None:
-                raise self._over
+            if self._end is not None:
+                raise self._end
             self._listen(limit_s)
         return self._events.popleft() if self._events else None
 
@@ -111,56 +111,56 @@ class SharedConnection(LinkConnection):
         try:
             self._peer.settimeout(SEND_S)
             self._peer.sendall(protocol.encode_message(message))
-        except OSError as why:
+        except OSError as error:
             # messages that arrived earlier may give a better reason
-            self._over = self._over or ConnectionLost(str(why), is_server=True)
+            self._end = self._end or ConnectionLost(str(error), is_server=True)
 
     def _listen(self, limit_s: float) -> None:
         """Read and handle messages until some arrive or the time is over."""
         now_s = monotonic()
         if now_s - self._heartbeat_s >= protocol.HEARTBEAT_S:
             self._heartbeat_s = now_s
-            if self._unanswered_s is None:
-                self._unanswered_s = now_s
+            if self._unanswered_since_s is None:
+                self._unanswered_since_s = now_s
             self._send({"do": "beat"})
         try:
             self._peer.settimeout(max(limit_s, 0.001))
             data = self._peer.recv(65536)
             if not data:
                 raise ConnectionError
-            self._unanswered_s = None
-            for message in self._messages.put(data):
+            self._unanswered_since_s = None
+            for message in self._reader.put(data):
                 self._handle_message(message)
         except TimeoutError:
-            if self._unanswered_s is not None and now_s - self._unanswered_s > DEAF_S:
-                self._over = ConnectionLost("", is_server=True)
-        except (OSError, BadMessage) as why:
-            self._over = self._over or ConnectionLost(str(why), is_server=True)
+            if self._unanswered_since_s is not None and now_s - self._unanswered_since_s > DEAF_S:
+                self._end = ConnectionLost("", is_server=True)
+        except (OSError, BadMessage) as error:
+            self._end = self._end or ConnectionLost(str(error), is_server=True)
 
     def _handle_message(self, message: JsonMessage) -> None:
         if "over" in message:
             is_server = message["over"] != "gone"
-            self._over = ConnectionLost(protocol.field(message, "why", str), is_server)
+            self._end = ConnectionLost(protocol.read_field(message, "why", str), is_server)
         elif "event" in message:
-            self._events.append(protocol.event(message))
+            self._events.append(protocol.read_event(message))
         elif "id" in message:
             self._take_outcome(message)
 
     def _take_outcome(self, message: JsonMessage) -> None:
-        number = protocol.number(message, "id")
-        request = self._pending.get(number)
+        number = protocol.read_int(message, "id")
+        request = self._pending_requests.get(number)
         if request is None:
             raise BadMessage
         if "done_bytes" in message:
-            request.done_bytes = protocol.number(message, "done_bytes")
+            request.done_bytes = protocol.read_int(message, "done_bytes")
             return
-        self.heard = protocol.number(message, "heard")
-        self.came = protocol.data(message, "came")
-        self.is_echoed = protocol.field(message, "is_echoed", bool)
-        self._boot = protocol.number(message, "boot")
-        reply = protocol.reply(message, request.kind)
+        self.heard_count = protocol.read_int(message, "heard")
+        self.early_bytes = protocol.read_bytes(message, "came")
+        self.is_echoed = protocol.read_field(message, "is_echoed", bool)
+        self._boot = protocol.read_int(message, "boot")
+        reply = protocol.read_reply(message, request.reply_type)
         request.outcome = reply
-        del self._pending[number]
+        del self._pending_requests[number]
         if reply.status == OK:
             self._learn(request, reply.values)
 
@@ -201,15 +201,15 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
         peer.sendall(
             protocol.encode_message({"tsc": __version__, "token": registration.token, "verb": verb})
         )
-        rest = protocol.MessageReader(protocol.LINE_BYTES)
-        result = _read_greeting(peer, rest)
-        if protocol.field(result[0], "answer", str) != registration.answer:
+        reader = protocol.MessageReader(protocol.LINE_BYTES)
+        messages = _read_greeting(peer, reader)
+        if protocol.read_field(messages[0], "answer", str) != registration.answer:
             raise BadMessage  # another program listens there now
-        version = protocol.field(result[0], "tsc", str)
+        version = protocol.read_field(messages[0], "tsc", str)
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
-        client = SharedConnection(peer, registration, rest)
-        for message in result[1:]:
+        client = SharedConnection(peer, registration, reader)
+        for message in messages[1:]:
             client._handle_message(message)
         return client
     except (OSError, BadMessage, OtherVersion) as failure:
@@ -221,7 +221,7 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
         return None
 
 
-def _read_greeting(peer: socket.socket, rest: protocol.MessageReader) -> list[JsonMessage]:
+def _read_greeting(peer: socket.socket, reader: protocol.MessageReader) -> list[JsonMessage]:
     """Return the greeting of a server and what follows it."""
     end_s = monotonic() + ANSWER_S
     while (left_s := end_s - monotonic()) > 0:
@@ -229,7 +229,7 @@ def _read_greeting(peer: socket.socket, rest: protocol.MessageReader) -> list[Js
         data = peer.recv(65536)
         if not data:
             raise ConnectionError
-        result = rest.put(data)
-        if result:
-            return result
+        messages = reader.put(data)
+        if messages:
+            return messages
     raise TimeoutError

@@ -1,6 +1,6 @@
 """The ways in which bytes reach a robot, a file for each: `link.ports` finds the one for a port.
 
-Each has `resolved`, which finds the address of a name, and `opened`, which opens an address.
+Each has `resolve`, which finds the address of a name, and `open_port`, which opens an address.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from bleak.exc import BleakDeviceNotFoundError, BleakError
 
 from tiniscript.link import errors
 from tiniscript.link.errors import PortError
-from tiniscript.link.port_names import BLE, canonical, name_in
+from tiniscript.link.port_names import BLE, canonical_name, name_in
 from tiniscript.link.transports import WRITE_S
 from tiniscript.link.transports import bluetooth_search as search
 from tiniscript.link.transports.event_loop import EventLoop, shared_loop
@@ -34,27 +34,27 @@ LEAST_WRITE_BYTES = 20  # bytes of a write before more is negotiated
 T = TypeVar("T")
 
 
-class Module(NamedTuple):
+class UartService(NamedTuple):
     """A way of sending bytes over Bluetooth LE.
 
     `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and takes
     no more than LEAST_WRITE_BYTES in one write, whatever was negotiated.
     """
 
-    service: str
-    writes: str
-    notifies: str
+    service_uuid: str
+    write_uuid: str
+    notify_uuid: str
     is_paced: bool
 
 
-MODULES = (
-    Module(
+UART_SERVICES = (
+    UartService(
         search.NORDIC_UART,
         "6e400002-b5a3-f393-e0a9-e50e24dcca9e",
         "6e400003-b5a3-f393-e0a9-e50e24dcca9e",
         is_paced=False,
     ),
-    Module(
+    UartService(
         search.HM10,
         "0000ffe1-0000-1000-8000-00805f9b34fb",
         "0000ffe1-0000-1000-8000-00805f9b34fb",
@@ -71,16 +71,18 @@ def resolve(port: str) -> str:
     """
     loop = shared_loop()
     device = _run(loop, search.find_device(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
-    address = canonical(device.address)
+    address = canonical_name(device.address)
     _found_devices[address] = device
     return BLE + address
 
 
 def list_robots() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
-    limit_s = search.LISTED_S + search.LEAVE_S * 2
-    seen_devices = _run(shared_loop(), search.robots(), limit_s)
-    _found_devices.update({canonical(item.address): item.device for item in seen_devices})
+    limit_s = search.LIST_S + search.LEAVE_S * 2
+    seen_devices = _run(shared_loop(), search.find_robots(), limit_s)
+    _found_devices.update(
+        {canonical_name(seen_device.address): seen_device.device for seen_device in seen_devices}
+    )
     return seen_devices
 
 
@@ -106,7 +108,7 @@ class BluetoothPort(PushedTransport):
         self._loop = loop
         self._byte_s = UART_BITS / baud
         self._client: BleakClient | None = None
-        self._writes: BleakGATTCharacteristic | None = None
+        self._write_characteristic: BleakGATTCharacteristic | None = None
         self._is_paced = False
         self._ready_s = 0.0  # when the module has room again, in the loop's time
 
@@ -121,13 +123,13 @@ class BluetoothPort(PushedTransport):
 
     def write(self, data: bytes) -> None:
         """Send bytes in pieces. Pieces that do not get through in time are lost."""
-        if self._gone:
-            raise OSError(self._gone)
+        if self._end_reason:
+            raise OSError(self._end_reason)
         limit_s = WRITE_S + len(data) * self._byte_s
         with suppress(TimeoutError, asyncio.TimeoutError, BleakError, OSError, EOFError):
             self._loop.run(self._send(data), limit_s)
-        if self._gone:
-            raise OSError(self._gone)
+        if self._end_reason:
+            raise OSError(self._end_reason)
 
     def close(self) -> None:
         client, self._client = self._client, None
@@ -140,43 +142,49 @@ class BluetoothPort(PushedTransport):
     async def _connect(self, client: BleakClient) -> None:
         async with _connect_lock():  # BlueZ fails where two connections are made at once
             await asyncio.wait_for(client.connect(), CONNECT_S)
-        for module in MODULES:
+        for uart_service in UART_SERVICES:
             service = next(
                 (
-                    bleak_gattservice
-                    for bleak_gattservice in client.services
-                    if bleak_gattservice.uuid == module.service
+                    candidate
+                    for candidate in client.services
+                    if candidate.uuid == uart_service.service_uuid
                 ),
                 None,
             )
             if service is None:
                 continue
-            writes = service.get_characteristic(module.writes)
-            notifies = service.get_characteristic(module.notifies)
-            if writes is None or notifies is None:
+            write_characteristic = service.get_characteristic(uart_service.write_uuid)
+            notify_characteristic = service.get_characteristic(uart_service.notify_uuid)
+            if write_characteristic is None or notify_characteristic is None:
                 continue
-            if not any(property.startswith("write") for property in writes.properties):
+            if not any(
+                property.startswith("write") for property in write_characteristic.properties
+            ):
                 continue
-            self._writes, self._is_paced = writes, module.is_paced
-            await client.start_notify(notifies, lambda _, data: self.bring(data))
+            self._write_characteristic, self._is_paced = write_characteristic, uart_service.is_paced
+            await client.start_notify(notify_characteristic, lambda _, data: self.bring(data))
             return
         raise PortError(errors.NO_ROBOT)
 
     async def _send(self, data: bytes) -> None:
-        assert self._client is not None and self._writes is not None
+        assert self._client is not None and self._write_characteristic is not None
         time = asyncio.get_running_loop().time
-        response = "write-without-response" not in self._writes.properties
+        needs_response = "write-without-response" not in self._write_characteristic.properties
         while data:
             size = LEAST_WRITE_BYTES
             if not self._is_paced:
-                size = max(LEAST_WRITE_BYTES, self._writes.max_write_without_response_size)
+                size = max(
+                    LEAST_WRITE_BYTES, self._write_characteristic.max_write_without_response_size
+                )
             piece, data = data[:size], data[size:]
             await asyncio.sleep(self._ready_s - time())
             try:
-                await self._client.write_gatt_char(self._writes, piece, response=response)
-            except Exception as why:
+                await self._client.write_gatt_char(
+                    self._write_characteristic, piece, response=needs_response
+                )
+            except Exception as error:
                 if not self._client.is_connected:
-                    self.end(str(why))
+                    self.end(str(error))
                 raise
             if self._is_paced:
                 self._ready_s = time() + len(piece) * self._byte_s

@@ -20,7 +20,7 @@ from bleak.exc import BleakBluetoothNotAvailableError, BleakBluetoothNotAvailabl
 
 from tiniscript.link import errors
 from tiniscript.link.errors import PortError
-from tiniscript.link.port_names import canonical, is_device_address
+from tiniscript.link.port_names import canonical_name, is_device_address
 
 NORDIC_UART = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
@@ -28,13 +28,17 @@ SERVICES = (NORDIC_UART, HM10)
 
 SEARCH_S = 10.0  # for one robot
 LINGER_S = 1.5  # after a name was seen: an HM-10 says its own once in 1.3 s, and two may have one
-LISTED_S = 4.0  # for all robots
+LIST_S = 4.0  # for all robots
 LEAVE_S = 3.0  # timeout of the end of a scan
 MAX_NAMES_SHOWN = 8  # names in a sentence
 MOST_DEVICES = 1000  # that a scan keeps
 
-_Denied = BleakBluetoothNotAvailableReason
-_FORBIDDEN = (_Denied.DENIED_BY_USER, _Denied.DENIED_BY_SYSTEM, _Denied.DENIED_BY_UNKNOWN)
+_Unavailable = BleakBluetoothNotAvailableReason
+_FORBIDDEN = (
+    _Unavailable.DENIED_BY_USER,
+    _Unavailable.DENIED_BY_SYSTEM,
+    _Unavailable.DENIED_BY_UNKNOWN,
+)
 
 
 class SeenDevice(NamedTuple):
@@ -53,33 +57,33 @@ class _Scan:
     """The scan of this process, as long as somebody searches."""
 
     def __init__(self) -> None:
-        self.seen: dict[str, SeenDevice] = {}
-        self.news = asyncio.Event()
-        self._searches = 0
+        self.seen_devices: dict[str, SeenDevice] = {}
+        self.change = asyncio.Event()
+        self._search_count = 0
         self._scanner: BleakScanner | None = None
-        self._turn = asyncio.Lock()
+        self._lock = asyncio.Lock()
 
     async def __aenter__(self) -> _Scan:
-        async with self._turn:
-            if self._searches == 0:
-                self.seen = {}
+        async with self._lock:
+            if self._search_count == 0:
+                self.seen_devices = {}
                 self._scanner = BleakScanner(self._notice)
-                started = asyncio.ensure_future(self._scanner.start())
+                start = asyncio.ensure_future(self._scanner.start())
                 try:
-                    await asyncio.shield(started)  # one that begins cannot be ended yet
-                    for device in await _connected():
+                    await asyncio.shield(start)  # one that begins cannot be ended yet
+                    for device in await _connected_devices():
                         self._keep(SeenDevice(device, device.name or "", True))
                 except BaseException:
-                    await asyncio.wait([started])
+                    await asyncio.wait([start])
                     await self._end()
                     raise
-            self._searches += 1
+            self._search_count += 1
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        async with self._turn:
-            self._searches -= 1
-            if self._searches == 0:
+        async with self._lock:
+            self._search_count -= 1
+            if self._search_count == 0:
                 await self._end()
 
     async def _end(self) -> None:
@@ -90,19 +94,19 @@ class _Scan:
 
     def _notice(self, device: BLEDevice, advertisement: AdvertisementData) -> None:
         services = {service_uuid.lower() for service_uuid in advertisement.service_uuids}
-        before = self.seen.get(device.address)
-        name = advertisement.local_name or device.name or (before.name if before else "")
-        is_robot = bool(services & set(SERVICES)) or (before is not None and before.is_robot)
+        earlier = self.seen_devices.get(device.address)
+        name = advertisement.local_name or device.name or (earlier.name if earlier else "")
+        is_robot = bool(services & set(SERVICES)) or (earlier is not None and earlier.is_robot)
         self._keep(SeenDevice(device, name, is_robot))
 
     def _keep(self, seen_device: SeenDevice) -> None:
-        if seen_device.address in self.seen or len(self.seen) < MOST_DEVICES:
-            self.seen[seen_device.address] = seen_device
-            self.news.set()
-            self.news = asyncio.Event()
+        if seen_device.address in self.seen_devices or len(self.seen_devices) < MOST_DEVICES:
+            self.seen_devices[seen_device.address] = seen_device
+            self.change.set()
+            self.change = asyncio.Event()
 
 
-async def _connected() -> list[BLEDevice]:
+async def _connected_devices() -> list[BLEDevice]:
     """Return the robots that this computer is connected to: they are not seen in a scan.
 
     BlueZ keeps a connection when the program that made it is killed.
@@ -123,36 +127,44 @@ async def find_device(name: str) -> BLEDevice:
     is_address = is_device_address(name)
     loop = asyncio.get_running_loop()
     end_s = loop.time() + SEARCH_S
-    matches: dict[str, SeenDevice] = {}
+    matching_devices: dict[str, SeenDevice] = {}
     async with _scan() as scan:
         while loop.time() < end_s:
-            news = scan.news
-            is_first = not matches
-            matches = {
-                address: seen
-                for address, seen in scan.seen.items()
-                if canonical(address if is_address else seen.name) == name
+            change = scan.change
+            is_first = not matching_devices
+            matching_devices = {
+                address: device
+                for address, device in scan.seen_devices.items()
+                if canonical_name(address if is_address else device.name) == name
             }
-            if matches and is_address:
+            if matching_devices and is_address:
                 break
-            if matches and is_first:
+            if matching_devices and is_first:
                 end_s = min(end_s, loop.time() + LINGER_S)
             with suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(news.wait(), max(0.0, end_s - loop.time()))
-        robots = sorted({seen.name or seen.address for seen in scan.seen.values() if seen.is_robot})
-    if not matches:
+                await asyncio.wait_for(change.wait(), max(0.0, end_s - loop.time()))
+        robots = sorted(
+            {
+                device.name or device.address
+                for device in scan.seen_devices.values()
+                if device.is_robot
+            }
+        )
+    if not matching_devices:
         raise PortError(errors.NOT_FOUND, ", ".join(robots[:MAX_NAMES_SHOWN]))
-    if len(matches) > 1:
-        raise PortError(errors.SEVERAL, ", ".join(f"ble://{match}" for match in sorted(matches)))
-    return next(iter(matches.values())).device
+    if len(matching_devices) > 1:
+        raise PortError(
+            errors.SEVERAL, ", ".join(f"ble://{match}" for match in sorted(matching_devices))
+        )
+    return next(iter(matching_devices.values())).device
 
 
-async def robots() -> list[SeenDevice]:
+async def find_robots() -> list[SeenDevice]:
     """Return all robots in reach, by name."""
     async with _scan() as scan:
-        await asyncio.sleep(LISTED_S)
-        there = [seen for seen in scan.seen.values() if seen.is_robot]
-    return sorted(there, key=lambda seen: (seen.name, seen.address))
+        await asyncio.sleep(LIST_S)
+        found_robots = [device for device in scan.seen_devices.values() if device.is_robot]
+    return sorted(found_robots, key=lambda seen: (seen.name, seen.address))
 
 
 def reason_of(failure: Exception) -> str:

@@ -27,7 +27,7 @@ from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.link.port_names import MQTT
 from tiniscript.link.transports import READ_S
 from tiniscript.link.transports.pushed import PushedTransport
-from tiniscript.link.wifi import is_class
+from tiniscript.link.wifi import is_class_name
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
 ROOT = "tiniscript"
@@ -48,18 +48,18 @@ _PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})
 
 
 class Access(NamedTuple):
-    """How this process signs in: nobody's name is none; `trusted` is a file with a certificate."""
+    """How this process signs in: nobody's name is none; `trusted_file` has a certificate."""
 
     user: str = ""
     password: str = ""
     is_tls: bool = False
-    trusted: str | None = None
+    trusted_file: str | None = None
 
     def __repr__(self) -> str:  # a password is in no message
         return f"Access({self.user!r})"
 
 
-class Present(NamedTuple):
+class RobotPresence(NamedTuple):
     """A robot that has said that it is there, or for which the broker says that it is not."""
 
     id: str
@@ -72,9 +72,9 @@ _brokers: dict[tuple[str, int], Broker] = {}
 _lock = Lock()
 
 
-def port_of(host: str, port: int, group: str, robot: str) -> str:
+def port_of(host: str, port: int, group: str, robot_id: str) -> str:
     """Return the port of a robot."""
-    return f"{MQTT}{host}:{port}/{group}/{robot}"
+    return f"{MQTT}{host}:{port}/{group}/{robot_id}"
 
 
 def sign_in(host: str, port: int, access: Access) -> None:
@@ -91,27 +91,27 @@ def open_port(port: str, baud: int, limit_s: float) -> BrokerPort:
     match = _PORT.fullmatch(port)
     if match is None or int(match[2]) >= 1 << 16:
         raise PortError(errors.NO_PORT, port)
-    return connect(match[1], int(match[2])).robot(match[3].lower(), match[4].lower())
+    return connect(match[1], int(match[2])).port_of(match[3].lower(), match[4].lower())
 
 
 def connect(host: str, port: int) -> Broker:
     """Return the connection of this process to a broker. Raises PortError."""
     with _lock:
         broker = _brokers.get((host, port))
-        if broker is None or broker.gone:
+        if broker is None or broker.end_reason:
             broker = Broker(host, port, _access_by_broker.get((host, port), Access()))
             _brokers[host, port] = broker
         return broker
 
 
-def _tls_context(file: str | None) -> ssl.SSLContext:
+def _tls_context(path: str | None) -> ssl.SSLContext:
     """Return whom TLS trusts: what a file has, in PEM or DER, or whom this computer does.
 
     A broker's own certificate is enough, whoever has signed it. Raises OSError.
     """
-    data = None if file is None else Path(file).read_bytes()
+    data = None if path is None else Path(path).read_bytes()
     if data is None or b"-----BEGIN" in data:
-        context = ssl.create_default_context(cafile=file)
+        context = ssl.create_default_context(cafile=path)
     else:
         context = ssl.create_default_context(cadata=data)
     context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
@@ -122,13 +122,13 @@ class _Client(mqtt.Client):
     """Leaves out a message that is too large, and ends the connection where it is far too large:
     none of it is in memory.
 
-    `skipped` maps the topics of what was left out to the bytes of it.
+    `skipped_bytes` maps the topics of what was left out to the bytes of it.
     """
 
-    def __init__(self, *given: Any, **more: Any) -> None:
-        super().__init__(*given, **more)
-        self.too_large = ""
-        self.skipped: dict[str, int] = {}
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.size_error = ""
+        self.skipped_bytes: dict[str, int] = {}
 
     def _sock_recv(self, bufsize: int) -> bytes:
         """Return at most so many bytes: those that a packet still lacks, or one of its head."""
@@ -136,8 +136,8 @@ class _Client(mqtt.Client):
         if bufsize > MESSAGE_BYTES and packet["command"] & 0xF0 not in (_PUBLISH, _PINGRESP):
             bufsize = SKIPPED_BYTES + bufsize
         if bufsize > SKIPPED_BYTES:
-            self.too_large = f"the broker sends a message of {packet['remaining_length']} bytes"
-            raise ConnectionError(self.too_large)
+            self.size_error = f"the broker sends a message of {packet['remaining_length']} bytes"
+            raise ConnectionError(self.size_error)
         while bufsize > MESSAGE_BYTES:
             data = super()._sock_recv(MESSAGE_BYTES)
             if not data:
@@ -152,25 +152,25 @@ class _Client(mqtt.Client):
 
     def _skip(self, head: bytes, size: int) -> None:
         topic = head[2 : 2 + int.from_bytes(head[:2], "big")].decode("utf-8", "replace")
-        if len(self.skipped) < MOST_SKIPPED:
-            self.skipped[topic[:TOPIC_CHARACTERS]] = size
+        if len(self.skipped_bytes) < MOST_SKIPPED:
+            self.skipped_bytes[topic[:TOPIC_CHARACTERS]] = size
 
 
 class Broker:
-    """A connection to a broker. `gone` says why it has ended."""
+    """A connection to a broker. `end_reason` says why it has ended."""
 
     def __init__(self, host: str, port: int, access: Access) -> None:
         """Connect. Raises PortError, at the latest after CONNECT_S for each of its addresses."""
-        self.gone = ""
+        self.end_reason = ""
         self.peer = os.urandom(4).hex()
-        self.driver_s: float | None = None  # when the driver was heard last; None: nobody attends
-        self._turn = RLock()
-        self._news = Bell()
-        self._here: dict[str, dict[str, Present]] = {}
-        self._told_s = 0.0  # when a robot was told, or a request was answered
-        self._acknowledged: set[int] = set()
+        self.driver_heard_s: float | None = None  # last time; None: nobody attends
+        self._lock = RLock()
+        self._bell = Bell()
+        self._presences: dict[str, dict[str, RobotPresence]] = {}
+        self._answered_s = 0.0  # when a robot was told, or a request was answered
+        self._acknowledged_numbers: set[int] = set()
         self._ports: dict[tuple[str, str], BrokerPort] = {}
-        self._reason: str | None = None  # of a refusal; empty: let in
+        self._refusal: str | None = None  # of a refusal; empty: let in
         self._client = _Client(
             CallbackAPIVersion.VERSION2, protocol=mqtt.MQTTv311, reconnect_on_failure=False
         )
@@ -181,76 +181,79 @@ class Broker:
         self._client.on_message = self._on_message
         self._connect(host, port, access)
 
-    def robot(self, group: str, robot: str) -> BrokerPort:
+    def port_of(self, group: str, robot_id: str) -> BrokerPort:
         """Return the port of a robot, which may be there or not. Raises PortError."""
-        port = BrokerPort(self, group, robot)
-        with self._turn:
-            if self.gone:
-                raise PortError(errors.UNREACHABLE, self.gone)
-            self._ports[group, robot] = port
-        self._client.subscribe(f"{ROOT}/{group}/{robot}/out/{self.peer}")
+        port = BrokerPort(self, group, robot_id)
+        with self._lock:
+            if self.end_reason:
+                raise PortError(errors.UNREACHABLE, self.end_reason)
+            self._ports[group, robot_id] = port
+        self._client.subscribe(f"{ROOT}/{group}/{robot_id}/out/{self.peer}")
         return port
 
-    def present(self, group: str) -> list[Present]:
+    def list_robots(self, group: str) -> list[RobotPresence]:
         """Return the robots of a class that the broker knows, in the order of their names.
 
         A broker does one request after the other. So the answer to a second one, which asks for
         nothing, comes after what it retains; silence counts from then on. Raises PortError.
         """
-        assert is_class(group)
+        assert is_class_name(group)
         end_s = monotonic() + LIST_S
-        with self._turn:
-            self._here[group] = {}
+        with self._lock:
+            self._presences[group] = {}
             topics = [f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"]
-            asked = {self._client.subscribe(topic)[1] or 0 for topic in topics}
-        while monotonic() < end_s and not self.gone:
-            if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
+            subscription_numbers = {self._client.subscribe(topic)[1] or 0 for topic in topics}
+        while monotonic() < end_s and not self.end_reason:
+            if (
+                subscription_numbers <= self._acknowledged_numbers
+                and monotonic() > self._answered_s + QUIET_S
+            ):
                 break
-            self._news.wait(READ_S)
-        with self._turn:
-            result = list(self._here.pop(group).values())
-            is_whole = asked <= self._acknowledged
-            self._acknowledged -= asked
-        if not is_whole:
-            raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
+            self._bell.wait(READ_S)
+        with self._lock:
+            presences = list(self._presences.pop(group).values())
+            is_answered = subscription_numbers <= self._acknowledged_numbers
+            self._acknowledged_numbers -= subscription_numbers
+        if not is_answered:
+            raise PortError(errors.UNREACHABLE, self.end_reason or "no answer of a broker")
         self._client.unsubscribe(topics)
-        return sorted(result, key=lambda each: (each.name.casefold(), each.id))
+        return sorted(presences, key=lambda each: (each.name.casefold(), each.id))
 
     @property
     def skipped_topics(self) -> dict[str, int]:
         """Return the topics of messages that were too large, and their bytes."""
-        return dict(self._client.skipped)
+        return dict(self._client.skipped_bytes)
 
     def stop(self, group: str) -> bool:
         """Stop every robot of a class: one message for all. Nothing confirms it.
 
         Return whether it has gone to the broker. Raises OSError.
         """
-        mqttmessage_info = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
+        delivery = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
         with suppress(RuntimeError, ValueError):
-            mqttmessage_info.wait_for_publish(LEAVE_S)
-            return mqttmessage_info.is_published()
+            delivery.wait_for_publish(LEAVE_S)
+            return delivery.is_published()
         return False
 
     def publish(self, topic: str, data: bytes) -> mqtt.MQTTMessageInfo:
         """Raises OSError."""
-        if self.gone:
-            raise OSError(self.gone)
+        if self.end_reason:
+            raise OSError(self.end_reason)
         return self._client.publish(topic, data, qos=0, retain=False)
 
     def attend(self) -> None:
         """Say that the driver is there: from now on it has to say so every DRIVER_S."""
-        self.driver_s = monotonic()
+        self.driver_heard_s = monotonic()
 
     @property
     def has_driver(self) -> bool:
-        return self.driver_s is None or monotonic() - self.driver_s < DRIVER_S
+        return self.driver_heard_s is None or monotonic() - self.driver_heard_s < DRIVER_S
 
     def forget(self, port: BrokerPort) -> None:
         """Let another client have the robot."""
-        with self._turn:
-            if self._ports.get((port.group, port.robot)) is port:
-                del self._ports[port.group, port.robot]
+        with self._lock:
+            if self._ports.get((port.group, port.robot_id)) is port:
+                del self._ports[port.group, port.robot_id]
         with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
             self.publish(port.topic, b"").wait_for_publish(LEAVE_S)  # before the process ends
 
@@ -265,84 +268,86 @@ class Broker:
             self._client.username_pw_set(access.user, access.password)
         try:
             if access.is_tls:
-                self._client.tls_set_context(_tls_context(access.trusted))
+                self._client.tls_set_context(_tls_context(access.trusted_file))
             self._client.connect(host, port, KEEP_ALIVE_S)
-        except ssl.SSLError as why:
-            raise PortError(errors.UNTRUSTED, str(why.reason or why)) from None
-        except (OSError, ValueError) as why:
-            raise PortError(errors.UNREACHABLE, _error_text(why)) from None
+        except ssl.SSLError as error:
+            raise PortError(errors.UNTRUSTED, str(error.reason or error)) from None
+        except (OSError, ValueError) as error:
+            raise PortError(errors.UNREACHABLE, _error_text(error)) from None
         self._client.loop_start()
         end_s = monotonic() + CONNECT_S
-        while self._reason is None and not self.gone and monotonic() < end_s:
-            self._news.wait(READ_S)
-        reason = self._reason
-        if reason == "":
+        while self._refusal is None and not self.end_reason and monotonic() < end_s:
+            self._bell.wait(READ_S)
+        refusal = self._refusal
+        if refusal == "":
             return
         self.close()
-        if reason is None:
-            raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
-        raise PortError(errors.REFUSED, reason)
+        if refusal is None:
+            raise PortError(errors.UNREACHABLE, self.end_reason or "no answer of a broker")
+        raise PortError(errors.REFUSED, refusal)
 
     def _on_connect(self, *rest: Any) -> None:
         code = rest[3]
-        with self._turn:
-            self._reason = str(code) if code.is_failure else ""
-            self._news.ring()
+        with self._lock:
+            self._refusal = str(code) if code.is_failure else ""
+            self._bell.ring()
 
     def _on_subscribe(self, _: Any, __: Any, number: int, *rest: Any) -> None:
-        with self._turn:
-            self._acknowledged.add(number)
-            self._told_s = monotonic()
-            self._news.ring()
+        with self._lock:
+            self._acknowledged_numbers.add(number)
+            self._answered_s = monotonic()
+            self._bell.ring()
 
     def _on_disconnect(self, *_: Any) -> None:
-        with self._turn:
-            self.gone = self.gone or self._client.too_large or "the broker has gone"
-            self._news.ring()
+        with self._lock:
+            self.end_reason = self.end_reason or self._client.size_error or "the broker has gone"
+            self._bell.ring()
             for port in self._ports.values():
-                port.end(self.gone)
+                port.end(self.end_reason)
 
     def _on_message(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
         try:
-            words = message.topic.split("/")
+            levels = message.topic.split("/")
         except UnicodeDecodeError:
             return
-        with self._turn:
-            if len(words) == 3:
-                self._take_presence(words[1], words[2], bytes(message.payload))
-            elif len(words) == 5 and not message.retain:
-                port = self._ports.get((words[1], words[2]))
+        with self._lock:
+            if len(levels) == 3:
+                self._take_presence(levels[1], levels[2], bytes(message.payload))
+            elif len(levels) == 5 and not message.retain:
+                port = self._ports.get((levels[1], levels[2]))
                 if port is not None:
                     port.take(bytes(message.payload))
 
-    def _take_presence(self, group: str, robot: str, payload: bytes) -> None:
-        here = self._here.get(group)
-        is_robot = re.fullmatch(r"[0-9a-f]{8}", robot) is not None
-        if here is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
+    def _take_presence(self, group: str, robot_id: str, payload: bytes) -> None:
+        presences = self._presences.get(group)
+        is_robot = re.fullmatch(r"[0-9a-f]{8}", robot_id) is not None
+        if presences is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
             return
-        if payload[:1] not in (b"+", b"-") or (len(here) == MOST_ROBOTS and robot not in here):
+        if payload[:1] not in (b"+", b"-") or (
+            len(presences) == MOST_ROBOTS and robot_id not in presences
+        ):
             return
         name = payload[1:].decode("utf-8", "replace")
-        here[robot] = Present(robot, name, payload[:1] == b"+")
-        self._told_s = monotonic()
-        self._news.ring()
+        presences[robot_id] = RobotPresence(robot_id, name, payload[:1] == b"+")
+        self._answered_s = monotonic()
+        self._bell.ring()
 
 
 class BrokerPort(PushedTransport):
     """A robot at a broker. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
     pyserial; where the connection has ended they raise OSError."""
 
-    def __init__(self, broker: Broker, group: str, robot: str) -> None:
+    def __init__(self, broker: Broker, group: str, robot_id: str) -> None:
         super().__init__()
-        self.group, self.robot = group, robot
-        self.topic = f"{ROOT}/{group}/{robot}/in/{broker.peer}"
+        self.group, self.robot_id = group, robot_id
+        self.topic = f"{ROOT}/{group}/{robot_id}/in/{broker.peer}"
         self._broker = broker
         self._patient_until_s = monotonic() + PATIENCE_S
 
     def write(self, data: bytes) -> None:
         """Send bytes in pieces. Where nobody attends to the run, the robot hears a stop instead."""
-        if self._gone:
-            raise OSError(self._gone)
+        if self._end_reason:
+            raise OSError(self._end_reason)
         if not self._broker.has_driver:
             data = bytes(STOP_BYTES)
         for k in range(0, len(data), PIECE_BYTES):
@@ -362,5 +367,5 @@ class BrokerPort(PushedTransport):
         self.bring(data)
 
 
-def _error_text(why: Exception) -> str:
-    return (why.strerror if isinstance(why, OSError) else None) or str(why)
+def _error_text(error: Exception) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)

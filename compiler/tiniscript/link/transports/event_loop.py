@@ -61,25 +61,25 @@ class EventLoop:
         if not self._thread.is_alive():
             return
         with suppress(TimeoutError):
-            self.run(_cancelled_tasks(), END_S)
+            self.run(_cancel_tasks(), END_S)
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join(CANCEL_S)
 
 
-async def _cancelled_tasks() -> None:
+async def _cancel_tasks() -> None:
     tasks = asyncio.all_tasks() - {asyncio.current_task()}
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
 
 
-_shared: list[EventLoop] = []
+_shared_loops: list[EventLoop] = []
 _lock = Lock()
 
 
 def shared_loop() -> EventLoop:
     """Return the loop of this process."""
     with _lock:
-        if not _shared:
-            _shared.append(EventLoop())
-        return _shared[0]
+        if not _shared_loops:
+            _shared_loops.append(EventLoop())
+        return _shared_loops[0]

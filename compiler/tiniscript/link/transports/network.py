@@ -19,7 +19,7 @@ from tiniscript.link.transports import Port, serial
 
 SERVICE = "_tiniscript._tcp.local."
 SEARCH_S = 5.0  # for one robot
-LISTED_S = 2.0  # for all robots,
+LIST_S = 2.0  # for all robots,
 ROBOT_MS = 1000  # for the address of each that has not come with its name,
 ADDRESSES_S = 3.0  # and for all of these
 MOST_NAME_BYTES = 63  # bytes of a name
@@ -47,8 +47,8 @@ def resolve(port: str) -> str:
 
 def open_port(port: str, baud: int, limit_s: float) -> Port:
     """Open the address of a name, which is searched first. Raises PortError."""
-    result: Port = serial.open_port(resolve(port), baud, limit_s)
-    return result
+    opened_port: Port = serial.open_port(resolve(port), baud, limit_s)
+    return opened_port
 
 
 def list_robots() -> list[AnnouncedRobot]:
@@ -66,10 +66,10 @@ def list_robots() -> list[AnnouncedRobot]:
         def remove_service(self, _: Zeroconf, __: str, name: str) -> None:
             names.discard(name)
 
-    result = []
+    robots = []
     with _network() as network:
         browser = ServiceBrowser(network, SERVICE, listener=Listener())  # type: ignore[arg-type]
-        sleep(LISTED_S)
+        sleep(LIST_S)
         browser.cancel()
         until_s = monotonic() + ADDRESSES_S
         for name in sorted(names):
@@ -78,10 +78,10 @@ def list_robots() -> list[AnnouncedRobot]:
             if info is None:
                 continue
             try:
-                result.append(AnnouncedRobot(name.removesuffix(f".{SERVICE}"), _address(info)))
+                robots.append(AnnouncedRobot(name.removesuffix(f".{SERVICE}"), _address(info)))
             except PortError:  # no robot has such an address
                 continue
-    return result
+    return robots
 
 
 def query_service(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
@@ -98,9 +98,9 @@ def query_service(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | 
 def _network() -> Zeroconf:
     try:
         return Zeroconf(ip_version=IPVersion.V4Only)
-    except (OSError, RuntimeError) as why:  # RuntimeError: without any interface
-        reason = why.strerror if isinstance(why, OSError) else None
-        raise PortError(errors.NO_MULTICAST, reason or str(why)) from None
+    except (OSError, RuntimeError) as error:  # RuntimeError: without any interface
+        reason = error.strerror if isinstance(error, OSError) else None
+        raise PortError(errors.NO_MULTICAST, reason or str(error)) from None
 
 
 def _address(info: ServiceInfo) -> str:

@@ -62,7 +62,7 @@ class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
         return not poll.poll(0)  # else it is hung up
 
 
-class Listed(Protocol):
+class ListedDevice(Protocol):
     """A port that the system knows: its name, what it says of itself, and its hardware."""
 
     device: str
@@ -70,8 +70,8 @@ class Listed(Protocol):
     hwid: str | None
 
 
-def list_serial_ports() -> list[Listed]:
-    ports: list[Listed] = list_ports.comports()
+def list_serial_ports() -> list[ListedDevice]:
+    ports: list[ListedDevice] = list_ports.comports()
     return ports
 
 
@@ -84,22 +84,22 @@ def open_port(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -
 
     Some drivers block in `open` for ever, so a daemon thread opens the port.
     """
-    done: list[serial.SerialBase | BaseException] = []
+    outcomes: list[serial.SerialBase | BaseException] = []
 
-    def work() -> None:
+    def open_in_thread() -> None:
         try:
-            done.append(_open(port, baud) if is_exclusive else _open_shared(port, baud))
+            outcomes.append(_open(port, baud) if is_exclusive else _open_shared(port, baud))
         except BaseException as failure:
-            done.append(failure)
+            outcomes.append(failure)
 
-    thread = Thread(target=work, name="open", daemon=True)
+    thread = Thread(target=open_in_thread, name="open", daemon=True)
     thread.start()
     thread.join(limit_s)
-    if not done:
+    if not outcomes:
         raise PortError(SLOW)
-    if isinstance(done[0], BaseException):
-        raise _failure(done[0]) from None
-    return done[0]
+    if isinstance(outcomes[0], BaseException):
+        raise _port_error(outcomes[0]) from None
+    return outcomes[0]
 
 
 def _open(port: str, baud: int) -> serial.SerialBase:
@@ -119,16 +119,16 @@ def _make_serial(port: str, baud: int, settings: dict[str, Any]) -> serial.Seria
     return _Device(port, baudrate=baud, **settings)
 
 
-def _failure(failure: BaseException) -> PortError:
+def _port_error(error: BaseException) -> PortError:
     """Return the PortError for an exception of pyserial, which differs between systems."""
-    why = str(failure)
-    if isinstance(failure, (ValueError, NotImplementedError)):
-        return PortError(NO_PORT, why)
-    if not isinstance(failure, OSError):
-        raise failure
-    if failure.errno is not None:
-        return PortError(_REASONS.get(failure.errno, BROKEN), failure.strerror or why)
-    for said, reason in (
+    message = str(error)
+    if isinstance(error, (ValueError, NotImplementedError)):
+        return PortError(NO_PORT, message)
+    if not isinstance(error, OSError):
+        raise error
+    if error.errno is not None:
+        return PortError(_REASONS.get(error.errno, BROKEN), error.strerror or message)
+    for part, reason in (
         ("FileNotFoundError", MISSING),  # Windows gives the error only in the text
         ("PermissionError", BUSY),  # and reports a port in use like this
         ("could not configure port", NO_PORT),
@@ -141,6 +141,6 @@ def _failure(failure: BaseException) -> PortError:
         ("timeout while waiting for option", UNREACHABLE),
         ("could not open port", UNREACHABLE),
     ):
-        if said in why:
-            return PortError(reason, why)
-    return PortError(BROKEN, why)
+        if part in message:
+            return PortError(reason, message)
+    return PortError(BROKEN, message)
