@@ -15,11 +15,11 @@ from tiniscript.studio import page_together
 from tiniscript.studio.block_form import data_of, from_data, in_order
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read as read_blocks
-from tiniscript.together.form import At, Delete, Insert, Replace, change_of
 from tiniscript.together.form import Change as Made
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.form import Delete, Insert, Place, Replace, change_of
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
-from tiniscript.together.tree import ROOT, START, Part
+from tiniscript.together.tree import ROOT, START, Subtree
 
 Json = dict[str, Any]
 KIT = robots.load("tinibot").kit
@@ -96,7 +96,7 @@ class Ana:
 
 def program_of(text: str = TEXT) -> SharedProgram:
     numbers = count(1)
-    return SharedProgram(read(text, lambda: f"i.{next(numbers)}"), "e")
+    return SharedProgram(parse_tree(text, lambda: f"i.{next(numbers)}"), "e")
 
 
 def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
@@ -144,7 +144,7 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     assert text_of(program.tree) == ana.text
     ids = {nodes[id] for id in touched if id in nodes}
     below = {each for id in ids for each in
-             ([id, *before[id].inside] if id in before else [id])}  # fmt: skip
+             ([id, *before[id].children] if id in before else [id])}  # fmt: skip
     for id, node in before.items():
         if id not in below and id not in (ROOT, START):
             now = program.tree[id]
@@ -160,9 +160,9 @@ def test_what_others_do_meanwhile_stays(seed: int) -> None:
     rng = Random(seed)
     program = program_of()
     ana = Ana(program)
-    loop = next(id for id in program.tree.below() if program.tree[id].text == "LOOP(3)")
-    last = program.tree[ROOT].inside[-1]
-    first = Made("z:1", (Insert(At(loop, ""), (Part("z.1", "BEEP(0.25, 990)"),)),))
+    loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
+    last = program.tree[ROOT].children[-1]
+    first = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
     program.submit([first])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
@@ -197,22 +197,22 @@ def test_an_empty_place_is_nobody_elses() -> None:
 def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
     program = program_of()
     ana = Ana(program)
-    loop = next(id for id in program.tree.below() if program.tree[id].text == "LOOP(3)")
+    loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
     ana.form["body"] = [data for data in ana.form["body"] if data["kind"] != "loop"]
-    program.submit([Made("z:1", (Insert(At(loop, ""), (Part("z.1", "BEEP(0.25, 990)"),)),))])
+    program.submit([Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))])
     ana.writes()
     ana.sends()
     assert "BEEP(0.25, 990)" in text_of(program.tree)
     assert ana.text == text_of(program.tree)
     assert ana.answer["why"] == "has_new"
-    program.submit([Made("z:2", (Delete(tuple(program.tree.below(loop))),))])
+    program.submit([Made("z:2", (Delete(tuple(program.tree.subtree_ids(loop))),))])
     ana.step()
     assert "LOOP" not in ana.text
 
 
 def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
     program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
-    [_, one, other, _] = (id for id in program.tree[ROOT].inside if id != START)
+    [_, one, other, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)
     del ana.form["body"][1]
     ana.writes()
@@ -222,4 +222,4 @@ def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
     ana.form["body"].reverse()
     ana.writes()
     ana.sends()
-    assert program.tree[ROOT].inside.index(other) == 2
+    assert program.tree[ROOT].children.index(other) == 2

@@ -72,7 +72,9 @@ class Member:
 
     def sends(self, **more: Any) -> Json:
         """Send what is pending, and hear what is new."""
-        changes = [data_of_change(each) for each in self.page.pending[: groups.MOST_CHANGES]]
+        changes = [
+            data_of_change(each) for each in self.page.pending_changes[: groups.MOST_CHANGES]
+        ]
         answer: Json = json.loads(
             json.dumps(self.asks("group", **self.request(changes=changes, **more)))
         )
@@ -82,14 +84,14 @@ class Member:
         return answer
 
     def types(self, old: str, new: str) -> None:
-        rows = [row.replace(old, new) for row in self.page.text]
-        assert rows != self.page.text
+        rows = [row.replace(old, new) for row in self.page.lines]
+        assert rows != self.page.lines
         self.page.type(rows, 0)
         self.page.flush()
 
     @property
     def text(self) -> str:
-        return " ".join(" ".join(self.page.text).split())
+        return " ".join(" ".join(self.page.lines).split())
 
 
 class Teacher(Member):
@@ -300,19 +302,19 @@ def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
         ana.types("F(", "B(") if k % 2 == 0 else ana.types("B(1, 8", "F(1, 8")
     answers = [ana.sends() for _ in range(4)]
     assert answers[-1].get("slow") is True
-    assert len(ana.page.pending) >= 20
+    assert len(ana.page.pending_changes) >= 20
     luz.types("S;", "BEEP(1, 440);")
     assert "slow" not in luz.sends()  # another pupil's are counted apart
     school.now_s += 60 / per_s
     ana.sends()
     ana.sends()
-    assert not ana.page.pending
+    assert not ana.page.pending_changes
     text = "".join(f"// {k} {'x' * 900}\n" for k in range(80))
     ana.page.type((text + TEXT).split("\n"), 0)
     ana.page.flush()
-    assert not ana.page.pending  # the page itself makes no program that is too long
+    assert not ana.page.pending_changes  # the page itself makes no program that is too long
     large = {
-        "uid": f"{ana.page.name}:{ana.page.count + 1}",
+        "uid": f"{ana.page.name}:{ana.page.change_count + 1}",
         "ops": [
             {"do": "insert", "at": ["root", ""], "nodes": [{"id": "m1.9", "text": "S", "x": text}]}
         ],
@@ -324,7 +326,7 @@ def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
 def test_nobody_sends_as_another_page(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     luz.types("80", "95")
-    forged = [data_of_change(each) for each in luz.page.pending]
+    forged = [data_of_change(each) for each in luz.page.pending_changes]
     wrong: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
     for changes in wrong:
         with pytest.raises(BadRequest):
@@ -436,7 +438,7 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
     [seen] = school.teaches("class")["groups"]
     teacher = Teacher(school, seen["key"])
-    assert teacher.page.text == members[0].page.text
+    assert teacher.page.lines == members[0].page.lines
     [said] = [each for each in members[0].sends()["others"] if each["name"] == "Teacher"]
     marks = {each["mark"] for each in teacher.sends()["others"]}
     assert marks == set(range(groups.MARKS)) and said["mark"] not in marks
@@ -683,7 +685,7 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     threads = [in_thread(partial(listens, member)) for member in members]
     for k in range(300):
         member = chance.choice(members)
-        rows = member.page.text[:]
+        rows = member.page.lines[:]
         rows.insert(chance.randint(0, len(rows)), f"W({1000 + k})")
         if len(rows) > 12:
             del rows[chance.randrange(len(rows))]
@@ -711,7 +713,7 @@ def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: Sch
     ana.types("80", "95")
     ana.sends()
     luz.sends()
-    luz.page.type([*luz.page.text[:1], "BEEP(1, 440);", *luz.page.text[1:]], 0)
+    luz.page.type([*luz.page.lines[:1], "BEEP(1, 440);", *luz.page.lines[1:]], 0)
     luz.page.flush()
     luz.sends()
     luz.page.type([], 0)

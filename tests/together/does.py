@@ -10,7 +10,7 @@ from tiniscript.together.page import Page
 
 def does(page: Page, operations: Iterable[Operation]) -> bool:
     page.leave()
-    was_done = page.do(operations)
+    was_done = page.apply(operations)
     page.leave()
     page._show(page.caret)
     return was_done

@@ -13,9 +13,9 @@ from random import Random
 from tests.together.does import does
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import scan
-from tiniscript.together.form import At, Delete, Insert, Move, Operation, Replace, Unwrap, Wrap
+from tiniscript.together.form import Delete, Insert, Move, Operation, Place, Replace, Unwrap, Wrap
 from tiniscript.together.page import Page
-from tiniscript.together.tree import ARM, BLOCK, DO, NOTE, ROOT, START, Part, Tree
+from tiniscript.together.tree import ARM, BLOCK, INSTRUCTION, NOTE, ROOT, START, Subtree, Tree
 
 Text = list[str]
 Stage = Callable[[Text, int], tuple[Text, int, bool]]  # what the editor has after some keys
@@ -88,7 +88,7 @@ class Pupil:
         page = self.page
         page.leave()
         view = page.view
-        ids = [id for id in view.below()[1:] if id != START]
+        ids = [id for id in view.subtree_ids()[1:] if id != START]
         deeds = DEEDS + ("delete",) * 8 if len(ids) > LARGE else DEEDS
         deed = self._chance.choice(deeds) if ids else "insert"
         if deed == "undo":
@@ -103,22 +103,22 @@ class Pupil:
         k = round(self._chance.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
         return ids[max(0, min(len(ids) - 1, k))]
 
-    def _at(self, view: Tree, one: str) -> At:
+    def _at(self, view: Tree, one: str) -> Place:
         if not one or self._chance.random() < 0.1:
-            return At(ROOT, START if view[START].text else "")
+            return Place(ROOT, START if view[START].text else "")
         if view[one].kind == BLOCK and self._chance.random() < 0.4:
-            return At(one, "")
-        return At(view[one].parent, one)
+            return Place(one, "")
+        return Place(view[one].parent, one)
 
     def _insert(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        new = tuple(Part(self.page.new_id(), self._simple())
+        new = tuple(Subtree(self.page.new_id(), self._simple())
                     for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
         if self._chance.random() < 0.25:
-            new = (Part(self.page.new_id(), self._head(), inside=new),)
+            new = (Subtree(self.page.new_id(), self._head(), children=new),)
         return [Insert(self._at(view, one), new)]
 
     def _run(self, view: Tree, one: str, most: int, has_arms: bool = True) -> list[str]:
-        siblings = view[view[one].parent].inside
+        siblings = view[view[one].parent].children
         k = siblings.index(one)
         run = []
         for id in siblings[k : k + self._chance.randint(1, most)]:
@@ -129,9 +129,9 @@ class Pupil:
 
     def _delete(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         run = self._run(view, one, 3)
-        arms = tuple(id for id in run if view[id].kind == ARM and view.of_arm(id)
-                     and set(view.of_arm(id)) <= set(run))  # fmt: skip
-        return [Delete(tuple(each for id in run for each in view.below(id)), arms)]
+        arms = tuple(id for id in run if view[id].kind == ARM and view.ids_of_arm(id)
+                     and set(view.ids_of_arm(id)) <= set(run))  # fmt: skip
+        return [Delete(tuple(each for id in run for each in view.subtree_ids(id)), arms)]
 
     def _move(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         run = self._run(view, one, 3, has_arms=False)
@@ -142,7 +142,7 @@ class Pupil:
 
     def _wrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         run = self._run(view, one, 4, has_arms=False)
-        return [Wrap(tuple(run), Part(self.page.new_id(), self._head()))] if run else []
+        return [Wrap(tuple(run), Subtree(self.page.new_id(), self._head()))] if run else []
 
     def _unwrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         blocks = [id for id in ids if view[id].kind == BLOCK]
@@ -150,7 +150,7 @@ class Pupil:
 
     def _replace(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         node, k = view[one], next(self._numbers)
-        if node.kind == DO:
+        if node.kind == INSTRUCTION:
             text = self._simple()
         elif node.kind == BLOCK:
             text = self._own(f"IF(X > {k})" if node.text.startswith("IF") else f"LOOP({k})")
@@ -171,12 +171,12 @@ class Pupil:
             return []
         block = self._chance.choice(ifs)
         arm = "ELSE" if self._chance.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
-        at = At(block, self._chance.choice(["", *view[block].inside]))
-        return [Insert(at, (Part(self.page.new_id(), self._own(arm)),))]
+        at = Place(block, self._chance.choice(["", *view[block].children]))
+        return [Insert(at, (Subtree(self.page.new_id(), self._own(arm)),))]
 
     def _comment(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
-        new = Part(self.page.new_id(), text, apart=is_apart)
+        new = Subtree(self.page.new_id(), text, apart=is_apart)
         return [Insert(self._at(view, one), (new,))]
 
     def _start(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
@@ -191,7 +191,7 @@ class Pupil:
             plan = "kept" if waits and self._chance.random() < 0.5 else self._chance.choice(PLANS)
             self.deeds[f"types {plan}"] += 1
             self.stages = getattr(self, f"_plan_{plan}")()
-        page.type(*self.stages.pop(0)(page.text[:], page.caret))
+        page.type(*self.stages.pop(0)(page.lines[:], page.caret))
         page.flush()
 
     def _line(self, text: Text) -> int:

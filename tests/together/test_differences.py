@@ -9,10 +9,10 @@ from random import Random
 import pytest
 
 from tests.support.rows import each_row
-from tiniscript.together.differences import operations
+from tiniscript.together.differences import find_operations
 from tiniscript.together.form import Change, Delete, Insert, Move, Operation, data_of, operation_of
-from tiniscript.together.layout import Unparsed, read, text_of
-from tiniscript.together.operations import applied
+from tiniscript.together.layout import Unparsed, parse_tree, text_of
+from tiniscript.together.operations import apply_change
 
 BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
 SEVEN = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
@@ -75,12 +75,12 @@ def said(made: list[Operation]) -> str:
 @each_row("what, before, after, wanted, stay", CASES)
 def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str, stay: int) -> None:
     numbers, new_numbers = count(1), count(1)
-    old = read(before, lambda: f"o.{next(numbers)}")
-    made = operations(old, after, lambda: f"n.{next(new_numbers)}")
-    new = applied(old, Change("n:1", tuple(made))).tree
-    assert new.shape() == read(after).shape()
+    old = parse_tree(before, lambda: f"o.{next(numbers)}")
+    made = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
+    new = apply_change(old, Change("n:1", tuple(made))).tree
+    assert new.shape() == parse_tree(after).shape()
     assert wanted in ("*", said(made))
-    assert sum(id.startswith("o.") for id in new.below()) == stay
+    assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
 
 
 def program(chance: Random, size: int, depth: int = 0) -> list[str]:
@@ -139,17 +139,17 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
         after = edited(chance, before) if chance.random() < 0.8 else program(chance, 12)
         numbers, new_numbers = count(1), count(1)
         try:
-            old = read("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023
-            new = read("\n".join(after))
+            old = parse_tree("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023
+            new = parse_tree("\n".join(after))
         except Unparsed:
             continue
-        made = operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        made = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
         assert [operation_of(data_of(each)) for each in made] == made
-        found = applied(old, Change("n:1", tuple(made)))
+        found = apply_change(old, Change("n:1", tuple(made)))
         assert found.tree.shape() == new.shape()
         assert text_of(found.tree) == text_of(new)
-        again = applied(found.tree, Change("n:2", found.back)).tree
+        again = apply_change(found.tree, Change("n:2", found.inverse)).tree
         assert text_of(again) == text_of(old)
-        assert again.below() == old.below()
+        assert again.subtree_ids() == old.subtree_ids()
         tried.update(type(each).__name__ for each in made or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

@@ -17,7 +17,7 @@ import pytest
 from tests.together.world import FIRST
 from tiniscript.studio import page_together, worker
 from tiniscript.together.form import change_of
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 
 Json = dict[str, Any]
@@ -109,7 +109,7 @@ class Editor:
 @pytest.mark.parametrize("seed", range(6))
 def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     chance, ids = Random(seed), count(1)
-    program = SharedProgram(read(FIRST, lambda: f"i.{next(ids)}"), "e")
+    program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
     assert {editor.text for editor in editors} == {FIRST}
     for _ in range(TURNS):

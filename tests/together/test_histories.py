@@ -79,7 +79,7 @@ def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
         pupil = world.pupils[name]
         is_typing = bool(pupil.stages)
         if not is_typing:
-            lines = max(1, len(pupil.page.text))
+            lines = max(1, len(pupil.page.lines))
             pupil.focus = max(0.0, min(lines - 1.0, chance.gauss(0.4 * lines, 3.0))) / lines
         if is_typing:
             while pupil.stages:
@@ -118,7 +118,7 @@ def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
 
 
 def _counts(worlds: list[World]) -> tuple[int, int]:
-    made = sum(pupil.page.count for world in worlds for pupil in world.pupils.values())
+    made = sum(pupil.page.change_count for world in worlds for pupil in world.pupils.values())
     return made, sum(sum(world.why.values()) for world in worlds)
 
 

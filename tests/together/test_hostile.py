@@ -10,11 +10,19 @@ from typing import Any
 
 import pytest
 
-from tiniscript.together.form import BAD, TOO_LONG, UNPARSED, Refused, change_of, taken_of, tree_of
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.form import (
+    BAD,
+    TOO_LONG,
+    UNPARSED,
+    Refused,
+    change_of,
+    taken_change_of,
+    tree_of,
+)
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.page import Page
-from tiniscript.together.tree import MOST_GONE
+from tiniscript.together.tree import MOST_FORMER_PLACES
 
 SENT = 1500
 TEXT = "SI|F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nIF(X < 1)\nS\nELSE\nW(1)\nENDIF\n"
@@ -59,24 +67,24 @@ def an_operation(chance: Random) -> Any:
 def test_no_change_spoils_the_program(seed: int) -> None:
     chance, ids = Random(seed), count(1)
     rows: list[Any] = []
-    program = SharedProgram(read(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
+    program = SharedProgram(parse_tree(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
     page = Page.of("z", program.news("z", -1, ""))
     came: Counter[str] = Counter()
     for k in range(1, SENT + 1):
         operation = an_operation(chance)
-        uid = f"m:{program.counts.get('m', 0) + 1}"
+        uid = f"m:{program.last_counts.get('m', 0) + 1}"
         sent = json.loads(json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))}))
         try:
             change = change_of(sent)
         except Refused as refused:
-            came[refused.why] += 1
+            came[refused.reason] += 1
             continue
         program.submit([change])
         came[str(rows[-1].get("refused", "taken"))] += 1
         if k % 10 == 0:
             tree = program.tree
-            assert read(text_of(tree)).shape() == tree.shape()
-            assert sorted(tree.below()) == sorted(tree.nodes)
+            assert parse_tree(text_of(tree)).shape() == tree.shape()
+            assert sorted(tree.subtree_ids()) == sorted(tree.nodes)
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
             assert not page.is_astray
@@ -98,7 +106,7 @@ def test_what_is_no_change_is_refused(value: Any) -> None:
 
 
 def test_deep_and_long_programs_are_refused() -> None:
-    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+    program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
     for k in range(1, 100):
         wrap = {"do": "wrap", "ids": ["i.1"], "node": {"id": f"m.{k}", "text": "LOOP(2)"}}
         program.submit([change_of({"uid": f"m:{k}", "ops": [wrap]})])
@@ -108,13 +116,13 @@ def test_deep_and_long_programs_are_refused() -> None:
         insert = {"do": "insert", "at": ["root", "start"], "nodes": nodes}
         program.submit([change_of({"uid": f"m:{k}", "ops": [insert]})])
     assert len(text_of(program.tree)) <= 20_000
-    assert {why for _, why in program.refused["m"]} == {UNPARSED, TOO_LONG}
+    assert {why for _, why in program.refusals["m"]} == {UNPARSED, TOO_LONG}
 
 
 def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
-    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+    program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
     page = Page.of("z", program.news("z", -1, ""))
-    for k in range(1, 2 * MOST_GONE // 100 + 2):
+    for k in range(1, 2 * MOST_FORMER_PLACES // 100 + 2):
         nodes = [{"id": f"m.{k}{j:03}", "text": "W(1)"} for j in range(100)]
         ids = [each["id"] for each in nodes]
         changes = [
@@ -123,12 +131,12 @@ def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
         ]
         program.submit([change_of({"uid": f"m:{k}", "ops": changes})])
         page.receive(program.news("z", page.number, "e"))
-    assert len(program.tree.gone) == MOST_GONE
-    assert list(page.base.gone.items()) == list(program.tree.gone.items())
+    assert len(program.tree.former_places) == MOST_FORMER_PLACES
+    assert list(page.base.former_places.items()) == list(program.tree.former_places.items())
 
 
 def test_a_change_counts_once_and_in_its_order() -> None:
-    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+    program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
 
     def beep(k: int) -> Any:
         nodes = [{"id": f"m.{k}", "text": f"BEEP({k}, 440)"}]
@@ -140,4 +148,4 @@ def test_a_change_counts_once_and_in_its_order() -> None:
     assert not program.submit([beep(1), beep(2)])  # it comes twice
     assert text_of(program.tree) == "S;\nBEEP(2, 440);\nBEEP(1, 440);\n"
     with pytest.raises(Refused):
-        taken_of({"n": 1, "uid": "m:1", "ops": "no"})
+        taken_change_of({"n": 1, "uid": "m:1", "ops": "no"})

@@ -14,8 +14,8 @@ import pytest
 from tests.together.world import FIRST
 from tiniscript.together import journal as journals
 from tiniscript.together.form import Change, Replace, Unwrap
-from tiniscript.together.journal import BEFORE_ENDING, Journal
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.journal import OLD_ENDING, Journal
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.tree import START
 
@@ -23,19 +23,19 @@ from tiniscript.together.tree import START
 def begun(path: Path) -> tuple[Journal, SharedProgram]:
     ids = count(1)
     journal = Journal(path)
-    return journal, journal.begin(read(FIRST, lambda: f"i.{next(ids)}"), "e1")
+    return journal, journal.begin(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e1")
 
 
 def changed(program: SharedProgram, value: int, page: str = "a") -> bool:
     """Change the program, or be refused where the value is 0."""
-    uid = f"{page}:{program.counts.get(page, 0) + 1}"
+    uid = f"{page}:{program.last_counts.get(page, 0) + 1}"
     operation = Replace("i.8", (("text", f"W({value})"),)) if value else Unwrap("i.99")
     return program.submit([Change(uid, (operation,))])
 
 
 def same(one: SharedProgram, other: SharedProgram) -> bool:
-    return (one.number, one.counts, one.refused, one.tree.checksum()) == (
-        other.number, other.counts, other.refused, other.tree.checksum()
+    return (one.number, one.last_counts, one.refusals, one.tree.checksum()) == (
+        other.number, other.last_counts, other.refusals, other.tree.checksum()
     )  # fmt: skip
 
 
@@ -45,21 +45,21 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     path, chance = tmp_path / "journal", Random(seed)
     journal, program = begun(path)
     sizes = [path.stat().st_size]
-    seen = [(program.number, dict(program.counts))]
+    seen = [(program.number, dict(program.last_counts))]
     for k in range(12):
         changed(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
         sizes.append(path.stat().st_size)
-        seen.append((program.number, dict(program.counts)))
+        seen.append((program.number, dict(program.last_counts)))
     journal.close()
     cut = chance.randint(sizes[0], sizes[-1])
     os.truncate(path, cut)
-    again = Journal(path).go_on("e2")
+    again = Journal(path).resume("e2")
     assert again is not None
     last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (again.number, again.counts) == seen[last]
+    assert (again.number, again.last_counts) == seen[last]
     assert again.epoch == "e2"
     changed(again, 2000)
-    whole = Journal(path).go_on("e3")
+    whole = Journal(path).resume("e3")
     assert whole is not None
     assert same(whole, again)
 
@@ -69,7 +69,7 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
     _, program = begun(path)
     for value in (5, 0, 6):
         changed(program, value)
-        there = Journal(path).go_on("e2")
+        there = Journal(path).resume("e2")
         assert there is not None
         assert same(there, program)
 
@@ -86,11 +86,11 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
 
     monkeypatch.setattr(os, "write", full)
     assert changed(program, 7)
-    assert journal.is_behind
+    assert journal.is_incomplete
     monkeypatch.setattr(os, "write", write)
     assert changed(program, 8)
-    assert not journal.is_behind
-    there = Journal(path).go_on("e2")
+    assert not journal.is_incomplete
+    there = Journal(path).resume("e2")
     assert there is not None
     assert (there.number, text_of(there.tree)) == (2, text_of(program.tree))
 
@@ -104,8 +104,8 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
     for value in range(1, 60):
         changed(program, value)
         assert path.stat().st_size < 6000
-    assert path.with_name(path.name + BEFORE_ENDING).exists()
-    there = Journal(path).go_on("e2")
+    assert path.with_name(path.name + OLD_ENDING).exists()
+    there = Journal(path).resume("e2")
     assert there is not None
     assert there.tree.checksum() == program.tree.checksum()
 
@@ -117,7 +117,7 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
 def test_what_is_no_journal_is_none(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "journal"
     path.write_bytes(data)
-    assert Journal(path).go_on("e2") is None
+    assert Journal(path).resume("e2") is None
 
 
 def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
     changed(program, 3)
     journal.forget()
     assert not list(path.parent.iterdir())
-    assert Journal(path).go_on("e2") is None
+    assert Journal(path).resume("e2") is None
     assert START in program.tree  # whoever has it goes on with it
 
 
@@ -136,8 +136,8 @@ def test_the_newest_of_the_history_is_in_memory_and_the_rest_in_the_journal(tmp_
     program._most_kept = 20
     for value in range(1, 100):
         assert changed(program, value)
-        assert len(program.log) <= 20
-    assert program.log[-1].number == 99
+        assert len(program.taken_changes) <= 20
+    assert program.taken_changes[-1].number == 99
     rows = [json.loads(row) for row in path.read_text().splitlines()]
     assert [row["n"] for row in rows if "uid" in row] == list(range(1, 100))
     late = program.news("z", 3, "e1")  # who has been away for longer gets the whole

@@ -13,19 +13,19 @@ from tiniscript.together.form import (
     CHANGED,
     CIRCLE,
     HAS_NEW,
-    At,
     Delete,
     Insert,
     Move,
+    Place,
     Replace,
     Unwrap,
     Wrap,
     data_of_change,
 )
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.page import Page
-from tiniscript.together.tree import ROOT, Part
+from tiniscript.together.tree import ROOT, Subtree
 
 TEXT = """SI|F(1, 80)
 LOOP(3)
@@ -46,15 +46,15 @@ class Two:
 
     def __init__(self, text: str = TEXT) -> None:
         ids = count(1)
-        self.program = SharedProgram(read(text, lambda: f"i.{next(ids)}"), "e")
+        self.program = SharedProgram(parse_tree(text, lambda: f"i.{next(ids)}"), "e")
         self.ana, self.luz = (Page.of(name, self.program.news(name, -1, "")) for name in "al")
 
     def find(self, text: str) -> str:
         tree = self.program.tree
-        return next(id for id in tree.below() if tree[id].text == text)
+        return next(id for id in tree.subtree_ids() if tree[id].text == text)
 
     def sends(self, page: Page) -> None:
-        self.program.submit(page.pending)
+        self.program.submit(page.pending_changes)
         self.hears(page)
 
     def hears(self, page: Page) -> None:
@@ -70,13 +70,13 @@ class Two:
         return " ".join(text_of(self.program.tree).split())
 
     def inserts(self, page: Page, container: str, behind: str, text: str = "BEEP(1, 440)") -> None:
-        node = Part(page.new_id(), text)
-        assert does(page, [Insert(At(container, behind), (node,))])
+        node = Subtree(page.new_id(), text)
+        assert does(page, [Insert(Place(container, behind), (node,))])
 
     def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
-        [k] = [k for k, row in enumerate(page.text) if old in row]
-        rows = page.text[:]
+        [k] = [k for k, row in enumerate(page.lines) if old in row]
+        rows = page.lines[:]
         rows[k] = rows[k].replace(old, new)
         page.type(rows, k, is_hot)
         page.flush()
@@ -90,25 +90,25 @@ def two() -> Two:
 def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
     loop = two.find("LOOP(3)")
     two.inserts(two.ana, loop, two.find("B(1, 40)"))
-    does(two.luz, [Delete(tuple(two.luz.view.below(loop)))])
+    does(two.luz, [Delete(tuple(two.luz.view.subtree_ids(loop)))])
     assert "LOOP(3); B(1, 40); BEEP(1, 440);" in two.meet()
-    assert two.luz.told[-1][1] == HAS_NEW
-    assert "  BEEP(1, 440);" in two.luz.text
+    assert two.luz.refusals[-1][1] == HAS_NEW
+    assert "  BEEP(1, 440);" in two.luz.lines
 
 
 def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
     two.inserts(two.ana, two.find("IF(X < 1)"), two.find("ELSE"))
-    rows = [row for row in two.luz.text if "ELSE" not in row and "W(1)" not in row]
+    rows = [row for row in two.luz.lines if "ELSE" not in row and "W(1)" not in row]
     two.luz.type(rows, 0)
     two.luz.flush()
     assert "ELSE; BEEP(1, 440); W(1)" in two.meet()
-    assert two.luz.told[-1][1] == HAS_NEW
+    assert two.luz.refusals[-1][1] == HAS_NEW
 
 
 def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
     first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
     two.inserts(two.ana, two.find("LOOP(3)"), first)
-    does(two.luz, [Wrap((first, last), Part(two.luz.new_id(), "WHILE(X < 2)"))])
+    does(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
 
 
@@ -126,17 +126,17 @@ def test_the_first_place_of_a_block_that_was_taken_away_stays(two: Two) -> None:
 
 def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
     loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
-    does(two.ana, [Move((loop,), At(branch, ""))])
-    does(two.luz, [Move((branch,), At(loop, ""))])
+    does(two.ana, [Move((loop,), Place(branch, ""))])
+    does(two.luz, [Move((branch,), Place(loop, ""))])
     assert "IF(X < 1); LOOP(3)" in two.meet()
-    assert two.luz.told[-1][1] == CIRCLE
+    assert two.luz.refusals[-1][1] == CIRCLE
 
 
 def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in two.meet()
-    assert any("F(2, 80)" in str(taken) for taken in two.program.log)
+    assert any("F(2, 80)" in str(taken) for taken in two.program.taken_changes)
     assert not two.ana.undo()  # what she wrote is not there any more
     assert two.luz.undo()
     assert "F(2, 80)" in two.meet()
@@ -150,13 +150,13 @@ def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
     two.types(two.ana, "F(1, 99)", "F(5, 99)")
     assert two.luz.undo()
     assert "F(5, 99)" in two.meet()
-    assert two.luz.told[-1][1] == CHANGED
+    assert two.luz.refusals[-1][1] == CHANGED
 
 
 def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
     loop = two.find("LOOP(3)")
     before = text_of(two.program.tree)
-    does(two.ana, [Delete(tuple(two.ana.view.below(loop)))])
+    does(two.ana, [Delete(tuple(two.ana.view.subtree_ids(loop)))])
     two.meet()
     assert two.ana.undo()
     two.meet()
@@ -166,10 +166,10 @@ def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
 
 def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
     for page in (two.ana, two.luz):
-        page.type([row for row in page.text if "L(1, 60)" not in row], 0)
+        page.type([row for row in page.lines if "L(1, 60)" not in row], 0)
         page.flush()
     for page, k in ((two.ana, 1), (two.luz, 3)):
-        page.type([*page.text[:k], "L(1, 60)", *page.text[k:]], 0)
+        page.type([*page.lines[:k], "L(1, 60)", *page.lines[k:]], 0)
         page.flush()
     assert two.meet().count("L(1, 60)") == 1
 
@@ -177,25 +177,25 @@ def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
 def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     two = Two("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
     page, turn = two.ana, two.find("TURN")
-    assert not does(page, [Move((two.find("DEF TURN"),), At(two.find("LOOP(2)"), ""))])
+    assert not does(page, [Move((two.find("DEF TURN"),), Place(two.find("LOOP(2)"), ""))])
     for text in ("S; S", "END_LOOP", "s", "S // note", "LOOP(2)", ""):
         assert not does(page, [Replace(turn, (("text", text),))])
-    assert not page.pending
+    assert not page.pending_changes
 
 
 def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(two: Two) -> None:
     two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
-    assert not two.ana.pending
-    does(two.luz, [Move((two.find("B(1, 40)"),), At(ROOT, two.find("L(1, 60)")))])
+    assert not two.ana.pending_changes
+    does(two.luz, [Move((two.find("B(1, 40)"),), Place(ROOT, two.find("L(1, 60)")))])
     two.sends(two.luz)
     two.hears(two.ana)
-    assert two.ana.text[-1] == "  B(1, 4"
-    assert two.ana.caret == len(two.ana.text) - 1
+    assert two.ana.lines[-1] == "  B(1, 4"
+    assert two.ana.caret == len(two.ana.lines) - 1
     does(two.luz, [Delete((two.find("B(1, 40)"),))])
     two.sends(two.luz)
     two.hears(two.ana)
-    assert two.ana.text[-1] == "  B(1, 4"
-    two.ana.type([*two.ana.text[:-1], "B(1, 45)"], len(two.ana.text) - 1)
+    assert two.ana.lines[-1] == "  B(1, 4"
+    two.ana.type([*two.ana.lines[:-1], "B(1, 45)"], len(two.ana.lines) - 1)
     two.ana.flush()
     assert two.meet().endswith("L(1, 60); B(1, 45);")
     assert "i.3" in two.program.tree  # the same instruction
@@ -203,33 +203,33 @@ def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
 
 def test_a_half_typed_value_is_no_change_though_it_parses(two: Two) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
-        old = next(row for row in two.ana.text if "L(1" in row)
+        old = next(row for row in two.ana.lines if "L(1" in row)
         two.types(two.ana, old, shown, is_hot=True)
     assert "L(1, 60)" in two.meet()
     two.ana.leave()
     assert "L(1, 95)" in two.meet()
-    assert sum("L(1, 9" in str(taken) for taken in two.program.log) == 1
+    assert sum("L(1, 9" in str(taken) for taken in two.program.taken_changes) == 1
 
 
 def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) -> None:
-    k = two.ana.text.index("L(1, 60);")
+    k = two.ana.lines.index("L(1, 60);")
     for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
-        rows = two.ana.text[:]
+        rows = two.ana.lines[:]
         rows[k:k] = [row] if rows[k] else []
         rows[k] = row
         two.ana.type([*rows[: k + 1], "", *rows[k + 1 :]], k + 1, True)
         two.ana.flush()
         k = two.ana.caret
-        assert two.ana.text[k] == ""
+        assert two.ana.lines[k] == ""
         assert len(two.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
     two.sends(two.ana)
     two.hears(two.luz)
     assert "W(2); F(3, 70); LOOP(2); BEEP(1, 440); END_LOOP; L(1, 60);" in " ".join(
-        " ".join(two.luz.text).split()
+        " ".join(two.luz.lines).split()
     )
     two.ana.leave()
     two.meet()
-    assert two.luz.text[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
+    assert two.luz.lines[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
 
 
 def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
@@ -237,9 +237,9 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
     two.types(two.ana, "R(1, 40)", "R(2, 40)")
     for page in (two.luz, two.ana) * 2:
         two.sends(page)
-    assert "R(2, 40)" in two.ana.text
+    assert "R(2, 40)" in two.ana.lines
     assert "R(2, 40)" not in two.meet()
-    rows = [row + " " if row == "R(2, 40)" else row for row in two.ana.text]
+    rows = [row + " " if row == "R(2, 40)" else row for row in two.ana.lines]
     two.ana.type(rows, 3)  # wanted all the same
     two.ana.leave()
     assert "B(1, 40); R(2, 40); END_LOOP" in two.meet()
@@ -249,42 +249,42 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
 def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.ana, "W(1);", "W(9)", is_hot=True)
-    kept = json.loads(json.dumps(two.ana.kept()))
+    kept = json.loads(json.dumps(two.ana.store_data()))
     two.types(two.luz, "L(1, 60)", "L(3, 60)")
     two.sends(two.luz)
     two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
-    assert two.ana.text[two.ana.caret] == "  W(9)"
+    assert two.ana.lines[two.ana.caret] == "  W(9)"
     two.ana.leave()  # nobody has gone on with that line
     assert "F(2, 80)" in two.meet()
     assert "W(1)" in two.meet()
-    assert "L(3, 60)" in " ".join(two.ana.text)
+    assert "L(3, 60)" in " ".join(two.ana.lines)
     two.types(two.ana, "W(9)", "W(95)")
     assert "W(95)" in two.meet()
 
 
 def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Two) -> None:
     two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
-    two.program.submit(two.ana.pending)  # and the answer is lost
+    two.program.submit(two.ana.pending_changes)  # and the answer is lost
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    kept = json.loads(json.dumps(two.ana.kept()))
+    kept = json.loads(json.dumps(two.ana.store_data()))
     two.ana = Page.of("z", two.program.news("z", -1, ""), kept)
     assert two.meet().count("BEEP(1, 440)") == 1
     assert "F(2, 80)" in two.meet()
 
 
 def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:
-    before: list[Any] = [two.ana.text[:], data(two.ana)]
+    before: list[Any] = [two.ana.lines[:], data(two.ana)]
     copy = two.ana.copy()
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.ana, "W(1);", "W(", is_hot=True)
-    assert [copy.text, data(copy)] == before
+    assert [copy.lines, data(copy)] == before
     two.ana = copy
     two.types(two.ana, "F(1, 80)", "F(3, 80)")
     assert "F(3, 80)" in two.meet()
 
 
 def data(page: Page) -> Any:
-    return [page.kept(), list(map(data_of_change, page.pending))]
+    return [page.store_data(), list(map(data_of_change, page.pending_changes))]
 
 
 def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
@@ -293,7 +293,7 @@ def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
     assert two.ana.is_astray
     two.ana.receive(two.program.news("a", -1, two.ana.epoch))
     assert not two.ana.is_astray
-    assert "SI|F(1, 80);" in two.ana.text
+    assert "SI|F(1, 80);" in two.ana.lines
 
 
 def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> None:

@@ -27,17 +27,17 @@ from tiniscript.together.form import (
     Insert,
     Operation,
     Replace,
-    Taken,
+    TakenChange,
     Unwrap,
     Wrap,
     change_of,
     data_of_change,
     page_and_count,
 )
-from tiniscript.together.layout import read, text_of
+from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.page import Page
-from tiniscript.together.tree import BLOCK, DO, ROOT, START, Tree
+from tiniscript.together.tree import BLOCK, INSTRUCTION, ROOT, START, Tree
 
 Json = dict[str, Any]
 KIT = robots.load("tinibot").kit
@@ -77,8 +77,8 @@ class World:
         self._delay, self._lost, self._asks_s = delay, lost, asks_s
         ids, numbers = count(1), count(200_000)
         self._rows: list[Json] = []  # the journal
-        self.all_taken: list[Taken] = []
-        self.program = SharedProgram(read(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
+        self.all_taken: list[TakenChange] = []
+        self.program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
         self._snapshot = self._travelled(self.program.snapshot())
         self.first = set(self.program.tree.nodes)
         tree = self.program.tree
@@ -119,7 +119,9 @@ class World:
             return
         self.at(SILENT_S, self._ask_again, name, turn)
         if self.chance.random() >= self._lost:
-            sent = self._travelled({"sent": [data_of_change(each) for each in page.pending]})
+            sent = self._travelled(
+                {"sent": [data_of_change(each) for each in page.pending_changes]}
+            )
             since = -1 if page.is_astray else page.number
             self.at(self._delay(self.chance), self._reach, name, turn, sent, since, page.epoch)
 
@@ -138,12 +140,12 @@ class World:
         for row in sent:
             change, program = change_of(row), self.program
             page, _ = page_and_count(change.uid)
-            decided, before = program.counts.get(page, 0), program.tree
+            decided, before = program.last_counts.get(page, 0), program.tree
             if program.submit([change]):
-                self.all_taken.append(program.log[-1])
-                self._count_unseen(before, page, change.since)
-            elif program.counts.get(page, 0) > decided:
-                self.why[program.refused[page][-1][1]] += 1
+                self.all_taken.append(program.taken_changes[-1])
+                self._count_unseen(before, page, change.seen_number)
+            elif program.last_counts.get(page, 0) > decided:
+                self.why[program.refusals[page][-1][1]] += 1
 
     def _count_unseen(self, before: Tree, page: str, since: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
@@ -168,7 +170,7 @@ class World:
         """The page is loaded again; it has what its browser has kept."""
         pupil = self.pupils[name]
         pupil.page.flush()
-        kept = self._travelled(pupil.page.kept())
+        kept = self._travelled(pupil.page.store_data())
         news = self._travelled(self.program.news(name, -1, ""))
         pupil.page = Page.of(name, news, kept)
         self.turn[name] += 1
@@ -180,7 +182,10 @@ class World:
         self.program = program_of(self._snapshot, self._keep)
         self.program.replay(self._rows)
         assert self.program.tree.checksum() == before.tree.checksum()
-        assert (self.program.number, self.program.counts) == (before.number, before.counts)
+        assert (self.program.number, self.program.last_counts) == (
+            before.number,
+            before.last_counts,
+        )
         self.happened["crashes"] += 1
         self.program.epoch = f"e{self.happened['crashes']}"
 
@@ -193,7 +198,9 @@ class World:
         for _ in range(4):
             for name, pupil in self.pupils.items():
                 page = pupil.page
-                self.submit(self._travelled({"": list(map(data_of_change, page.pending))})[""])
+                self.submit(
+                    self._travelled({"": list(map(data_of_change, page.pending_changes))})[""]
+                )
                 since = -1 if page.is_astray else page.number
                 page.receive(self._travelled(self.program.news(name, since, page.epoch)))
                 page.give_up()  # what was refused only now
@@ -205,7 +212,7 @@ class World:
         assert not [each for each in parsed.diagnostics if each.is_mistake], text
         assert format_source(Source(text)) == text
         self._check_instructions(tree, text, parsed.program.body)
-        assert read(text).shape() == tree.shape()
+        assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks say the same program.
         again = print_blocks(read_blocks(text, KIT)).text
         one, other = compile_text(_whole(text), KIT), compile_text(_whole(again), KIT)
@@ -214,7 +221,7 @@ class World:
         for node in tree.nodes.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text
             assert not node.note or node.note in self.typed, node.note
-        ids = tree.below()
+        ids = tree.subtree_ids()
         assert len(ids) == len(set(ids)) == len(tree.nodes)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
         twice = [said for said, times in numbered.items() if times > 1]
@@ -222,13 +229,13 @@ class World:
 
     def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
         """Each node is one instruction of the AST, in order, with the text that it has."""
-        own = [tree[id] for id in tree.below()[1:] if id != START]
-        own = [node for node in own if node.kind in (DO, BLOCK)]
+        own = [tree[id] for id in tree.subtree_ids()[1:] if id != START]
+        own = [node for node in own if node.kind in (INSTRUCTION, BLOCK)]
         walked = list(_walk(body))
         assert len(own) == len(walked), text
         for node, (instruction, kind) in zip(own, walked, strict=True):
             assert node.kind == kind
-            if kind == DO and not isinstance(instruction, Break):
+            if kind == INSTRUCTION and not isinstance(instruction, Break):
                 span = instruction.span
                 assert text[span.start : span.end] == node.text
 
@@ -236,9 +243,9 @@ class World:
         tree = self.program.tree
         for pupil in self.pupils.values():
             page = pupil.page
-            assert not page.pending and not page.drafts and not page.is_astray
+            assert not page.pending_changes and not page.drafts and not page.is_astray
             assert page.base.checksum() == page.view.checksum() == tree.checksum()
-            assert "\n".join(page.text) == text_of(tree).rstrip("\n")
+            assert "\n".join(page.lines) == text_of(tree).rstrip("\n")
 
     def check_nothing_is_lost(self) -> None:
         """What was ever there is there, or a delete or an unwrap has taken it."""
@@ -276,4 +283,4 @@ def _walk(body: Sequence[Instruction]) -> Iterator[tuple[Instruction, str]]:
             yield each, BLOCK
             yield from _walk(each.body)
         else:
-            yield each, DO
+            yield each, INSTRUCTION

@@ -34,7 +34,7 @@ from tiniscript.together.form import (
     Operation,
     Refused,
     Replace,
-    Taken,
+    TakenChange,
     Wrap,
     change_of,
     is_uid,
@@ -42,7 +42,7 @@ from tiniscript.together.form import (
     tree_of,
 )
 from tiniscript.together.journal import Journal
-from tiniscript.together.layout import Unparsed, read, text_of
+from tiniscript.together.layout import Unparsed, parse_tree, text_of
 from tiniscript.together.operations import MOST_CHARACTERS
 from tiniscript.together.ordering import MOST_PAGES, SharedProgram
 from tiniscript.together.tree import Tree
@@ -175,7 +175,7 @@ class Groups:
         """Add a group with a program, or one that goes on from its journal."""
         journal = Journal(self._folder / f"{key}.journal" if self._folder is not None else None)
         epoch = new_token()
-        program = journal.begin(tree, epoch) if tree is not None else journal.go_on(epoch)
+        program = journal.begin(tree, epoch) if tree is not None else journal.resume(epoch)
         if program is None:
             return None
         group = self._groups[key] = Group(name, founder, program, journal, key)
@@ -359,13 +359,13 @@ class Groups:
         """Return what was done, and by whom as far as that is known."""
         with group.news:
             return [{**taken.data(), "who": group.names.get(_page(taken), "")}
-                    for taken in group.program.log]  # fmt: skip
+                    for taken in group.program.taken_changes]  # fmt: skip
 
     def told(self, group: Group) -> list[str]:
         """Return the newest of that, one a line, as the teacher's page shows it."""
         with group.news:
             newest = [(group.names.get(_page(taken), "?"), ", ".join(map(_deed, taken.operations)))
-                      for taken in reversed(group.program.log[-MOST_TOLD:])]  # fmt: skip
+                      for taken in reversed(group.program.taken_changes[-MOST_TOLD:])]  # fmt: skip
         return [f"{who}: {did}" for who, did in newest]
 
     def end(self) -> None:
@@ -406,7 +406,7 @@ class Groups:
                 if group is None:
                     continue
                 owners = row.get("owners")
-                known = dict.fromkeys(group.program.counts, "")
+                known = dict.fromkeys(group.program.last_counts, "")
                 known.update(owners if isinstance(owners, dict) else {})
                 group.owners = {page: str(owner) for page, owner in known.items()
                                 if _PAGE.fullmatch(page)}  # fmt: skip
@@ -438,7 +438,7 @@ def _tree_of(text: str) -> Tree:
     """Return the tree of a program with which a group begins. Raises Unparsed, Refused."""
     numbers = count(1)
     rows, _ = split_loose(LINE_END.split(text))
-    tree = read("\n".join(rows), lambda: f"i.{next(numbers)}")
+    tree = parse_tree("\n".join(rows), lambda: f"i.{next(numbers)}")
     if len(text_of(tree)) > MOST_CHARACTERS:
         raise Refused(TOO_LONG)
     return tree_of(tree.snapshot())
@@ -464,5 +464,5 @@ def _deed(operation: Operation) -> str:
     return "+ " + operation.node.text if isinstance(operation, Wrap) else "↕"
 
 
-def _page(taken: Taken) -> str:
+def _page(taken: TakenChange) -> str:
     return page_and_count(taken.uid)[0]

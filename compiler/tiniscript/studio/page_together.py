@@ -110,10 +110,10 @@ def _written(page: Page, shown: Shown, form: Form, ids: list[str]) -> Shown:
     """Do in a page what was done to the blocks since they were shown; return what they show."""
     printed = print_blocks(form._replace(loose=()))
     own = shown.page.copy()
-    own.ids = page.ids
+    own.id_count = page.id_count
     rows = _rows(printed.text, None)
     own.write(rows, _owners(rows, printed, form, ids, shown))
-    page.follow(own, shown.page)
+    page.catch_up(own, shown.page)
     found = own.ids_of_lines()
     nodes = {
         block: found[lines[0]]
@@ -134,7 +134,7 @@ def _owners(
         if node not in tree or (block.is_behind and tree[node].kind != NOTE):
             continue
         owners[first] = node
-        arms = [each for each in tree[node].inside if tree[each].kind == ARM]
+        arms = [each for each in tree[node].children if tree[each].kind == ARM]
         for line, arm in _paired([_said(rows[line]) for line in more[:-1]], tree, arms):
             owners[more[line]] = arm
     return owners
@@ -162,7 +162,7 @@ def _rows(text: str, hot: int | None) -> list[str]:
 
 def _text(state: State) -> str:
     """Return the whole text of an answer; it ends its last line."""
-    rows = [*state.page.text, *([""] if state.loose and state.page.text else []), *state.loose]
+    rows = [*state.page.lines, *([""] if state.loose and state.page.lines else []), *state.loose]
     return "".join(f"{row}\n" for row in rows)
 
 
@@ -176,13 +176,13 @@ def _shown(state: State, text: str, caret: int | None) -> Answer:
         "version": state.version,
         "changes": changes(text, wanted, None if caret is None else (caret, page.caret)),
         "ids": page.ids_of_lines(),
-        "pending": [data_of_change(each) for each in page.pending[:MOST_CHANGES]],
+        "pending": [data_of_change(each) for each in page.pending_changes[:MOST_CHANGES]],
         "since": -1 if page.is_astray else page.number,
         "epoch": page.epoch,
-        "told": len(page.told),
-        "why": page.told[-1][1] if page.told else "",
-        "count": page.count,
-        "kept": {**page.kept(), "loose": state.loose},
+        "told": len(page.refusals),
+        "why": page.refusals[-1][1] if page.refusals else "",
+        "count": page.change_count,
+        "kept": {**page.store_data(), "loose": state.loose},
     }
 
 

@@ -1,8 +1,8 @@
 """Operations and changes, and their form in JSON: what comes from elsewhere is checked here.
 
-    {"do": "insert", "at": [container, behind], "nodes": [...]}  `behind` "" is the first place
+    {"do": "insert", "at": [container, previous], "nodes": [...]}  `previous` "": the first
     {"do": "delete", "ids": [...], "arms": [...]}     all ids of what goes; arms go with all of them
-    {"do": "move", "ids": [...], "at": [container, behind]}
+    {"do": "move", "ids": [...], "at": [container, previous]}
     {"do": "wrap", "ids": [...], "node": {...}}                  a new block around siblings
     {"do": "unwrap", "id": id}                                   what is in the block stays
     {"do": "replace", "id": id, "text": ..., "note": ...}        fields as a whole
@@ -27,9 +27,9 @@ from tiniscript.together.tree import (
     ROOT,
     START,
     TEXT,
-    Gone,
+    FormerPlace,
     Json,
-    Part,
+    Subtree,
     Tree,
 )
 
@@ -40,28 +40,28 @@ IS_GONE, HAS_NEW, CIRCLE, CHANGED, UNPARSED, TOO_LONG, BAD = (
 MOST_OPERATIONS = 200  # of a change
 MOST_IDS = 2000  # of an operation: what a delete of a whole program lists
 MOST_CHARACTERS = 2000  # of an instruction or a comment
-DEEPEST = 40
-_NAME = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # of a node, and of a change
+MOST_DEPTH = 40
+_ID = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # of a node, and of a change
 
 
 class Refused(Exception):
     """A change does not apply, or leaves no program."""
 
-    def __init__(self, why: str) -> None:
-        super().__init__(why)
-        self.why = why
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
-class At(NamedTuple):
-    """`behind` which sibling; where that has gone, what counts is where it was."""
+class Place(NamedTuple):
+    """Behind which sibling, `previous`; where that has gone, what counts is where it was."""
 
     container: str
-    behind: str
+    previous: str
 
 
 class Insert(NamedTuple):
-    at: At
-    nodes: tuple[Part, ...]
+    place: Place
+    nodes: tuple[Subtree, ...]
 
 
 class Delete(NamedTuple):
@@ -73,13 +73,13 @@ class Move(NamedTuple):
     """`marks`: what an undo gives back, of which change the place was."""
 
     ids: tuple[str, ...]
-    at: At
+    place: Place
     marks: tuple[tuple[str, str], ...] = ()
 
 
 class Wrap(NamedTuple):
     ids: tuple[str, ...]
-    node: Part
+    node: Subtree
 
 
 class Unwrap(NamedTuple):
@@ -106,15 +106,15 @@ class Condition(NamedTuple):
 
 
 class Change(NamedTuple):
-    """`uid` is the page that makes it and a count, `m3:17`; `since` the number that it had seen."""
+    """`uid` is the page that makes it and a count, `m3:17`; `seen_number` what it had seen."""
 
     uid: str
     operations: tuple[Operation, ...]
     conditions: tuple[Condition, ...] = ()
-    since: int = 0
+    seen_number: int = 0
 
 
-class Taken(NamedTuple):
+class TakenChange(NamedTuple):
     """What a change has done exactly, and its number."""
 
     number: int
@@ -122,7 +122,7 @@ class Taken(NamedTuple):
     operations: tuple[Operation, ...]
 
     def data(self) -> Json:
-        operations = [data_of(each) for each in self.operations]
+        operations = [data_of(operation) for operation in self.operations]
         return {"n": self.number, "uid": self.uid, "ops": operations}
 
 
@@ -136,7 +136,7 @@ def page_and_count(uid: str) -> tuple[str, int]:
 
 def data_of(operation: Operation) -> Json:
     if isinstance(operation, Insert):
-        return {"do": "insert", "at": list(operation.at),
+        return {"do": "insert", "at": list(operation.place),
                 "nodes": [each.data() for each in operation.nodes]}  # fmt: skip
     if isinstance(operation, Delete):
         arms: Json = {"arms": list(operation.arms)} if operation.arms else {}
@@ -147,172 +147,187 @@ def data_of(operation: Operation) -> Json:
         return {"do": "unwrap", "id": operation.id}
     marks: Json = {"marks": dict(operation.marks)} if operation.marks else {}
     if isinstance(operation, Move):
-        return {"do": "move", "ids": list(operation.ids), "at": list(operation.at), **marks}
+        return {"do": "move", "ids": list(operation.ids), "at": list(operation.place), **marks}
     return {"do": "replace", "id": operation.id, **dict(operation.fields), **marks}
 
 
 def data_of_change(change: Change) -> Json:
-    found: Json = {"uid": change.uid, "ops": [data_of(each) for each in change.operations]}
+    data: Json = {"uid": change.uid, "ops": [data_of(each) for each in change.operations]}
     if change.conditions:
-        found["if"] = [list(each) for each in change.conditions]
-    if change.since:
-        found["since"] = change.since
-    return found
+        data["if"] = [list(each) for each in change.conditions]
+    if change.seen_number:
+        data["since"] = change.seen_number
+    return data
 
 
 # -- from JSON ------------------------------------------------------------------------------------
 
 
-def change_of(found: object) -> Change:
+def change_of(data: object) -> Change:
     """Return the change in data. Raises Refused."""
-    uid, operations = _field(found, "uid"), _field(found, "ops")
-    since = _field(found, "since", 0)
-    if not is_uid(uid) or type(since) is not int or not _is_list(operations, MOST_OPERATIONS):
+    uid, operations = _field(data, "uid"), _field(data, "ops")
+    seen_number = _field(data, "since", 0)
+    if not is_uid(uid) or type(seen_number) is not int or not _is_list(operations, MOST_OPERATIONS):
         raise Refused(BAD)
     conditions = []
-    for row in _list(_field(found, "if", []), MOST_IDS):
-        id, name, by = _list(row, 3) if len(_list(row, 3)) == 3 else (None, None, None)
+    for row in _checked_list(_field(data, "if", []), MOST_IDS):
+        cells = _checked_list(row, 3)
+        id, name, mark = cells if len(cells) == 3 else (None, None, None)
         if name not in (*FIELDS, PLACE):
             raise Refused(BAD)
-        conditions.append(Condition(_name(id), str(name), _mark(by)))
-    return Change(uid, tuple(map(operation_of, operations)), tuple(conditions), since)
+        conditions.append(Condition(_checked_id(id), str(name), _checked_mark(mark)))
+    return Change(uid, tuple(map(operation_of, operations)), tuple(conditions), seen_number)
 
 
-def is_uid(found: object) -> bool:
-    return isinstance(found, str) and ":" in found and _NAME.fullmatch(found) is not None
+def is_uid(data: object) -> bool:
+    return isinstance(data, str) and ":" in data and _ID.fullmatch(data) is not None
 
 
-def operation_of(found: object) -> Operation:
+def operation_of(data: object) -> Operation:
     """Return the operation in data. Raises Refused."""
-    make = _MAKERS.get(str(_field(found, "do")))
+    make = _MAKERS.get(str(_field(data, "do")))
     if make is None:
         raise Refused(BAD)
-    return make(found)
+    return make(data)
 
 
-def part_of(found: object, depth: int = 0) -> Part:
+def subtree_of(data: object, depth: int = 0) -> Subtree:
     """Return the node in data, with all that is in it. Raises Refused."""
-    if depth > DEEPEST:
+    if depth > MOST_DEPTH:
         raise Refused(BAD)
-    inside = _list(_field(found, "in", []), MOST_IDS)
-    return Part(
-        _name(_field(found, "id")), _value(found, TEXT), _value(found, COMMENT),
-        _value(found, APART), _value(found, END),
-        tuple(part_of(each, depth + 1) for each in inside),
-        _mark(_field(found, "born", "")), _marks(_field(found, "marks", {})),
+    children = _checked_list(_field(data, "in", []), MOST_IDS)
+    return Subtree(
+        _checked_id(_field(data, "id")), _checked_value(data, TEXT), _checked_value(data, COMMENT),
+        _checked_value(data, APART), _checked_value(data, END),
+        tuple(subtree_of(child, depth + 1) for child in children),
+        _checked_mark(_field(data, "born", "")), _checked_marks(_field(data, "marks", {})),
     )  # fmt: skip
 
 
 def tree_of(snapshot: object) -> Tree:
     """Return the tree of a snapshot. Raises Refused."""
-    root, gone = part_of(_field(snapshot, "tree")), _field(snapshot, "gone", {})
-    if not isinstance(gone, dict) or root.id != ROOT:
+    root, former_places = subtree_of(_field(snapshot, "tree")), _field(snapshot, "gone", {})
+    if not isinstance(former_places, dict) or root.id != ROOT:
         raise Refused(BAD)
     ids = list(root.ids())
-    if len(set(ids)) < len(ids) or START not in (each.id for each in root.inside):
+    if len(set(ids)) < len(ids) or START not in (child.id for child in root.children):
         raise Refused(BAD)
-    were = {}
-    for id, row in gone.items():
+    checked_places = {}
+    for id, row in former_places.items():
         if not _is_list(row, 3) or len(row) != 3 or type(row[2]) is not bool:
             raise Refused(BAD)
-        were[_name(id)] = Gone(_name(row[0]), _name(row[1]) if row[1] else "", row[2])
-    return Tree.of(root, were)
+        checked_places[_checked_id(id)] = FormerPlace(
+            _checked_id(row[0]), _checked_id(row[1]) if row[1] else "", row[2]
+        )
+    return Tree.of(root, checked_places)
 
 
-def taken_of(found: Json) -> Taken:
+def taken_change_of(data: Json) -> TakenChange:
     """Return the taken change in data. Raises Refused."""
-    number, uid, operations = found.get("n"), found.get("uid"), found.get("ops")
+    number, uid, operations = data.get("n"), data.get("uid"), data.get("ops")
     if type(number) is not int or not is_uid(uid) or not isinstance(operations, list):
         raise Refused(BAD)
-    return Taken(number, str(uid), tuple(map(operation_of, operations)))
+    return TakenChange(number, str(uid), tuple(map(operation_of, operations)))
 
 
-def _insert(found: object) -> Insert:
-    nodes = tuple(part_of(each) for each in _list(_field(found, "nodes"), MOST_IDS))
-    ids = [id for each in nodes for id in each.ids()]
+def _insert_of(data: object) -> Insert:
+    nodes = tuple(subtree_of(node) for node in _checked_list(_field(data, "nodes"), MOST_IDS))
+    ids = [id for node in nodes for id in node.ids()]
     if not nodes or len(set(ids)) < len(ids) or not {ROOT, START}.isdisjoint(ids):
         raise Refused(BAD)
-    return Insert(_at(found), nodes)
+    return Insert(_checked_place(data), nodes)
 
 
-def _delete(found: object) -> Delete:
-    return Delete(_names(_field(found, "ids")), _names(_field(found, "arms", [])))
+def _delete_of(data: object) -> Delete:
+    return Delete(_checked_ids(_field(data, "ids")), _checked_ids(_field(data, "arms", [])))
 
 
-def _move(found: object) -> Move:
-    return Move(_names(_field(found, "ids")), _at(found), _marks(_field(found, "marks", {})))
+def _move_of(data: object) -> Move:
+    return Move(
+        _checked_ids(_field(data, "ids")),
+        _checked_place(data),
+        _checked_marks(_field(data, "marks", {})),
+    )
 
 
-def _wrap(found: object) -> Wrap:
-    return Wrap(_names(_field(found, "ids")), part_of(_field(found, "node")))
+def _wrap_of(data: object) -> Wrap:
+    return Wrap(_checked_ids(_field(data, "ids")), subtree_of(_field(data, "node")))
 
 
-def _unwrap(found: object) -> Unwrap:
-    return Unwrap(_name(_field(found, "id")))
+def _unwrap_of(data: object) -> Unwrap:
+    return Unwrap(_checked_id(_field(data, "id")))
 
 
-def _replace(found: object) -> Replace:
-    assert isinstance(found, dict)
-    fields = tuple((name, _value(found, name)) for name in FIELDS if name in found)
-    return Replace(_name(_field(found, "id")), fields, _marks(_field(found, "marks", {})))
+def _replace_of(data: object) -> Replace:
+    assert isinstance(data, dict)
+    fields = tuple((name, _checked_value(data, name)) for name in FIELDS if name in data)
+    return Replace(
+        _checked_id(_field(data, "id")), fields, _checked_marks(_field(data, "marks", {}))
+    )
 
 
 _MAKERS: dict[str, Callable[[object], Operation]] = {
-    "insert": _insert, "delete": _delete, "move": _move, "wrap": _wrap, "unwrap": _unwrap,
-    "replace": _replace,
-}  # fmt: skip
+    "insert": _insert_of,
+    "delete": _delete_of,
+    "move": _move_of,
+    "wrap": _wrap_of,
+    "unwrap": _unwrap_of,
+    "replace": _replace_of,
+}
 
 
-def _field(found: object, name: str, usual: Any = None) -> Any:
-    if not isinstance(found, dict):
+def _field(data: object, name: str, default: Any = None) -> Any:
+    if not isinstance(data, dict):
         raise Refused(BAD)
-    return found.get(name, usual)
+    return data.get(name, default)
 
 
-def _is_list(found: object, most: int) -> bool:
-    return isinstance(found, list) and len(found) <= most
+def _is_list(data: object, most_items: int) -> bool:
+    return isinstance(data, list) and len(data) <= most_items
 
 
-def _list(found: object, most: int) -> list[Any]:
-    if not isinstance(found, list) or len(found) > most:
+def _checked_list(data: object, most_items: int) -> list[Any]:
+    if not isinstance(data, list) or len(data) > most_items:
         raise Refused(BAD)
-    return found
+    return data
 
 
-def _name(found: object) -> str:
-    if not isinstance(found, str) or _NAME.fullmatch(found) is None or ":" in found:
+def _checked_id(data: object) -> str:
+    if not isinstance(data, str) or _ID.fullmatch(data) is None or ":" in data:
         raise Refused(BAD)
-    return found
+    return data
 
 
-def _names(found: object) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(map(_name, _list(found, MOST_IDS))))
+def _checked_ids(data: object) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(map(_checked_id, _checked_list(data, MOST_IDS))))
 
 
-def _at(found: object) -> At:
-    row = _list(_field(found, "at"), 2)
+def _checked_place(data: object) -> Place:
+    row = _checked_list(_field(data, "at"), 2)
     if len(row) != 2:
         raise Refused(BAD)
-    return At(_name(row[0]), _name(row[1]) if row[1] != "" else "")
+    return Place(_checked_id(row[0]), _checked_id(row[1]) if row[1] != "" else "")
 
 
-def _mark(found: object) -> str:
+def _checked_mark(data: object) -> str:
     """Return of which change something is: nothing is what was there at the beginning."""
-    if found != "" and not is_uid(found):
+    if data != "" and not is_uid(data):
         raise Refused(BAD)
-    return str(found)
+    return str(data)
 
 
-def _marks(found: object) -> tuple[tuple[str, str], ...]:
-    if not isinstance(found, dict) or len(found) > MOST_IDS:
+def _checked_marks(data: object) -> tuple[tuple[str, str], ...]:
+    if not isinstance(data, dict) or len(data) > MOST_IDS:
         raise Refused(BAD)
     names = {*FIELDS, PLACE}
-    return tuple((key if key in names else _name(key), _mark(uid)) for key, uid in found.items())
+    return tuple(
+        (key if key in names else _checked_id(key), _checked_mark(uid)) for key, uid in data.items()
+    )
 
 
-def _value(found: object, name: str) -> Any:
+def _checked_value(data: object, name: str) -> Any:
     """Return a field; `APART` is a bool. That a text is one line is seen when it is read again."""
-    value = _field(found, name, name != APART and "")
+    value = _field(data, name, name != APART and "")
     if name == APART:
         if type(value) is not bool:
             raise Refused(BAD)

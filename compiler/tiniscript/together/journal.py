@@ -18,16 +18,16 @@ from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.tree import Json, Tree
 
 MOST_BYTES = 4_000_000  # then it begins anew, and the one before is kept beside it
-BEFORE_ENDING = ".before"
+OLD_ENDING = ".before"
 _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
 
 class Journal:
-    """`path` of None: nothing is kept. `is_behind`: the file lacks something."""
+    """`path` of None: nothing is kept. `is_incomplete`: the file lacks something."""
 
     def __init__(self, path: Path | None) -> None:
         self.path = path
-        self.is_behind = False
+        self.is_incomplete = False
         self._file: int | None = None
         self._size = 0
 
@@ -38,14 +38,14 @@ class Journal:
         self._begin(program)
         return program
 
-    def go_on(self, epoch: str) -> SharedProgram | None:
+    def resume(self, epoch: str) -> SharedProgram | None:
         """Return the program that the file has, and go on with it; None where it has none."""
         if self.path is None:
             return None
         try:
             data = read_limited(self.path, 2 * MOST_BYTES)
-            whole = data[: data.rfind(b"\n") + 1]
-            rows = [json.loads(row) for row in whole.splitlines()]
+            complete_rows = data[: data.rfind(b"\n") + 1]
+            rows = [json.loads(row) for row in complete_rows.splitlines()]
             program = program_of(rows[0])
         except (OSError, ValueError, IndexError, RecursionError, Refused, AttributeError):
             return None
@@ -53,10 +53,10 @@ class Journal:
         program.epoch = epoch
         program.keep = lambda row: self._add(program, row)
         self._open()
-        if self._file is not None and len(whole) < len(data):
+        if self._file is not None and len(complete_rows) < len(data):
             with suppress(OSError):
-                os.truncate(self.path, len(whole))
-                self._size = len(whole)
+                os.truncate(self.path, len(complete_rows))
+                self._size = len(complete_rows)
         return program
 
     def close(self) -> None:
@@ -67,14 +67,14 @@ class Journal:
     def forget(self) -> None:
         """Delete the file, and the one before it."""
         self.close()
-        for path in (self.path, self._before) if self.path is not None else ():
+        for path in (self.path, self._old_path) if self.path is not None else ():
             with suppress(OSError):
                 path.unlink()
 
     @property
-    def _before(self) -> Path:
+    def _old_path(self) -> Path:
         assert self.path is not None
-        return self.path.with_name(self.path.name + BEFORE_ENDING)
+        return self.path.with_name(self.path.name + OLD_ENDING)
 
     def _begin(self, program: SharedProgram) -> None:
         """Give the file the program as it is now; what there was is kept beside it."""
@@ -82,13 +82,13 @@ class Journal:
             return
         self.close()
         with suppress(OSError):
-            self.path.replace(self._before)
+            self.path.replace(self._old_path)
         data = _line(program.snapshot())
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             replace(self.path, data, mode=0o600, is_lasting=True)
         except (OSError, ValueError):
-            self.is_behind = True
+            self.is_incomplete = True
             return
         self._open()
 
@@ -97,14 +97,14 @@ class Journal:
         try:
             self._file = os.open(self.path, _FLAGS)
             self._size = os.fstat(self._file).st_size
-            self.is_behind = False
+            self.is_incomplete = False
         except OSError:
-            self.is_behind = True
+            self.is_incomplete = True
 
     def _add(self, program: SharedProgram, row: Json) -> None:
         if self.path is None:
             return
-        if self.is_behind or self._size > MOST_BYTES:
+        if self.is_incomplete or self._size > MOST_BYTES:
             self._begin(program)
         if self._file is None:
             return
@@ -115,7 +115,7 @@ class Journal:
             os.fsync(self._file)
             self._size += len(data)
         except OSError:
-            self.is_behind = True
+            self.is_incomplete = True
 
 
 def _line(row: Json) -> bytes:

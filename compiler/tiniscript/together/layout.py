@@ -58,30 +58,30 @@ def mistaken_lines(text: str) -> frozenset[int]:
     """Return the lines, from 0, of what the parser finds wrong."""
     source = Source(text)
     return frozenset(
-        source.position(each.span.start)[0] - 1
-        for each in parse(source).diagnostics
-        if each.is_mistake
+        source.position(diagnostic.span.start)[0] - 1
+        for diagnostic in parse(source).diagnostics
+        if diagnostic.is_mistake
     )
 
 
-def read(
-    text: str, new_id: Callable[[], str] | None = None, is_laid_out: bool = False,
-    places: dict[str, int] | None = None,
+def parse_tree(
+    text: str, make_id: Callable[[], str] | None = None, is_laid_out: bool = False,
+    line_by_id: dict[str, int] | None = None,
 ) -> Tree:  # fmt: skip
     """Return the tree of a text. Raises Unparsed. `is_laid_out`: as the formatter does it.
 
-    `places` gets the line of each node, from 0.
+    `line_by_id` gets the line of each node, from 0.
     """
-    wrong = mistaken_lines(text)
-    if wrong:
-        raise Unparsed(wrong)
+    bad_lines = mistaken_lines(text)
+    if bad_lines:
+        raise Unparsed(bad_lines)
     first_lines: list[int] = []  # before the formatter lays it out
-    if places is not None:
+    if line_by_id is not None:
         first_lines = [piece.first_line for piece in pieces_of(scan(text))]
     if not is_laid_out:
         text = format_source(Source(text))
     numbers = count(1)
-    name = new_id or (lambda: f"?{next(numbers)}")
+    next_id = make_id or (lambda: f"?{next(numbers)}")
     tree = Tree()
     open_blocks = [ROOT]
     root, start = tree[ROOT], tree[START]
@@ -90,23 +90,23 @@ def read(
         if piece.is_setup:
             start.text, start.note, start.apart = (
                 f"{piece.tokens[0].text}|", note, piece.follows_blank)  # fmt: skip
-            root.inside.remove(START)
-            root.inside.append(START)
+            root.children.remove(START)
+            root.children.append(START)
             continue
-        said, kind = note, NOTE
+        node_text, kind = note, NOTE
         if piece.tokens:
-            said = instruction_text(piece.tokens)
-            if first_word(said) in _ENDS:
+            node_text = instruction_text(piece.tokens)
+            if first_word(node_text) in _ENDS:
                 tree[open_blocks.pop()].end = note
                 continue
-            kind = kind_of(said)
+            kind = kind_of(node_text)
         else:
             note = ""
-        node = Node(name(), kind, said, note, piece.follows_blank, parent=open_blocks[-1])
+        node = Node(next_id(), kind, node_text, note, piece.follows_blank, parent=open_blocks[-1])
         tree.nodes[node.id] = node
-        tree[open_blocks[-1]].inside.append(node.id)
-        if places is not None:
-            places[node.id] = first_lines[k]
+        tree[open_blocks[-1]].children.append(node.id)
+        if line_by_id is not None:
+            line_by_id[node.id] = first_lines[k]
         if node.kind == BLOCK:
             open_blocks.append(node.id)
     return tree
@@ -121,7 +121,7 @@ class _Entry(NamedTuple):
 
 
 def _entries(tree: Tree, container: str = ROOT) -> Iterable[_Entry]:
-    for id in tree[container].inside:
+    for id in tree[container].children:
         node = tree[id]
         if id == START and not node.text:
             continue
@@ -132,56 +132,58 @@ def _entries(tree: Tree, container: str = ROOT) -> Iterable[_Entry]:
             yield _Entry((id, OF_END), BLOCK_ENDS[word], BLOCK_ENDS[word], node.end, False)
 
 
-def lines(tree: Tree) -> list[Line]:
+def tree_lines(tree: Tree) -> list[Line]:
     """Return the lines of a program. A start and what is behind it share one."""
     entries = list(_entries(tree))
-    is_alone = _is_alone(entries)
+    is_alone = _has_one_instruction(entries)
     rows: list[Row] = []
     keys: list[tuple[Key, ...]] = []
     k = 0
     while k < len(entries):
         key, word, text, note, is_apart = entries[k]
-        own = [key]
-        following = entries[k + 1] if k + 1 < len(entries) else None
+        line_keys = [key]
+        next_entry = entries[k + 1] if k + 1 < len(entries) else None
         if (
-            key[0] == START and not note and following is not None and following.word
-            and (is_alone or not following.is_apart)
+            key[0] == START and not note and next_entry is not None and next_entry.word
+            and (is_alone or not next_entry.is_apart)
         ):  # fmt: skip
             k += 1
-            word, note = following.word, following.note
-            text += following.text
-            own.append(following.key)
+            word, note = next_entry.word, next_entry.note
+            text += next_entry.text
+            line_keys.append(next_entry.key)
         text += ";" if word and not is_alone else ""
         text += BEFORE_COMMENT + note if note else ""
         rows.append(Row("" if is_alone else word, text, is_apart))
-        keys.append(tuple(own))
+        keys.append(tuple(line_keys))
         k += 1
-    found = []
-    for text, owners in zip(lines_of(rows), keys, strict=True):
+    lines = []
+    for text, own_keys in zip(lines_of(rows), keys, strict=True):
         if text.startswith("\n"):
-            found.append(Line(""))
-        found.append(Line(text.removeprefix("\n"), owners))
-    return found
+            lines.append(Line(""))
+        lines.append(Line(text.removeprefix("\n"), own_keys))
+    return lines
 
 
-def _is_alone(entries: list[_Entry]) -> bool:
+def _has_one_instruction(entries: list[_Entry]) -> bool:
     """Whether there is one instruction and nothing between it and the start: it has no end sign."""
-    said = [k for k, each in enumerate(entries) if each.word]
-    if len(said) != 1:
+    instruction_indexes = [k for k, entry in enumerate(entries) if entry.word]
+    if len(instruction_indexes) != 1:
         return False
-    starts = [k for k, each in enumerate(entries) if each.key[0] == START and k < said[0]]
-    return all(k == said[0] - 1 and not entries[k].note for k in starts)
+    start_indexes = [
+        k for k, entry in enumerate(entries) if entry.key[0] == START and k < instruction_indexes[0]
+    ]
+    return all(k == instruction_indexes[0] - 1 and not entries[k].note for k in start_indexes)
 
 
 def text_of(tree: Tree) -> str:
-    return "".join(line.text + "\n" for line in lines(tree))
+    return "".join(line.text + "\n" for line in tree_lines(tree))
 
 
 def ids_after_empty_lines(tree: Tree) -> set[str]:
     """Return the ids before which an empty line is seen."""
-    found, was_empty = set(), False
-    for line in lines(tree):
+    ids, was_empty = set(), False
+    for line in tree_lines(tree):
         if was_empty and line.keys:
-            found.add(line.keys[0][0])
+            ids.add(line.keys[0][0])
         was_empty = not line.keys
-    return found
+    return ids

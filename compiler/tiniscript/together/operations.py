@@ -13,24 +13,24 @@ from tiniscript.together.form import (
     BAD,
     CHANGED,
     CIRCLE,
-    DEEPEST,
     HAS_NEW,
     IS_GONE,
+    MOST_DEPTH,
     TOO_LONG,
     UNPARSED,
-    At,
     Change,
     Condition,
     Delete,
     Insert,
     Move,
     Operation,
+    Place,
     Refused,
     Replace,
     Unwrap,
     Wrap,
 )
-from tiniscript.together.layout import Unparsed, read, text_of
+from tiniscript.together.layout import Unparsed, parse_tree, text_of
 from tiniscript.together.tree import (
     ARM,
     BLOCK,
@@ -39,46 +39,46 @@ from tiniscript.together.tree import (
     ROOT,
     START,
     TEXT,
-    Gone,
-    Part,
+    FormerPlace,
+    Subtree,
     Tree,
     kind_of,
 )
 
 MOST_CHARACTERS = 20_000  # of a program
 
-_Both = tuple[list[Operation], list[Operation]]  # what was done exactly, and what takes it back
+_Effect = tuple[list[Operation], list[Operation]]  # what was done exactly, and what takes it back
 
 
-class Applied(NamedTuple):
+class ChangeResult(NamedTuple):
     """The tree after a change, what was done exactly, and what takes it back."""
 
     tree: Tree
-    done: tuple[Operation, ...]
-    back: tuple[Operation, ...]
+    operations: tuple[Operation, ...]
+    inverse: tuple[Operation, ...]
 
 
-def applied(tree: Tree, change: Change, is_sure: bool = False) -> Applied:
+def apply_change(tree: Tree, change: Change, is_sure: bool = False) -> ChangeResult:
     """Return what comes of a change. Raises Refused.
 
     `is_sure`: it was taken elsewhere, after the same changes, and is not parsed again.
     """
-    if not do_hold(tree, change.conditions):
+    if not conditions_hold(tree, change.conditions):
         raise Refused(CHANGED)
-    new = tree.copy()
-    done: list[Operation] = []
-    back: list[Operation] = []
+    new_tree = tree.copy()
+    operations: list[Operation] = []
+    inverse: list[Operation] = []
     for operation in change.operations:
-        was_done, takes_back = do(new, operation, change.uid)
-        done += was_done
-        back[:0] = takes_back
-    new.limit_gone()
+        step_operations, step_inverse = apply_operation(new_tree, operation, change.uid)
+        operations += step_operations
+        inverse[:0] = step_inverse
+    new_tree.limit_former_places()
     if not is_sure:
-        _check(new)
-    return Applied(new, tuple(done), tuple(back))
+        _check_text(new_tree)
+    return ChangeResult(new_tree, tuple(operations), tuple(inverse))
 
 
-def do(tree: Tree, operation: Operation, uid: str) -> _Both:
+def apply_operation(tree: Tree, operation: Operation, uid: str) -> _Effect:
     """Apply an operation to a tree of one's own. Raises Refused: then the tree is of no use."""
     if isinstance(operation, Insert):
         return _insert(tree, operation, uid)
@@ -93,234 +93,260 @@ def do(tree: Tree, operation: Operation, uid: str) -> _Both:
     return _replace(tree, operation, uid)
 
 
-def do_hold(tree: Tree, conditions: tuple[Condition, ...]) -> bool:
+def conditions_hold(tree: Tree, conditions: tuple[Condition, ...]) -> bool:
     return all(id in tree and tree[id].mark(name) == uid for id, name, uid in conditions)
 
 
-def conditions(tree: Tree, back: tuple[Operation, ...]) -> tuple[Condition, ...]:
-    """Return what must still be so that `back` takes back the change that has made this tree."""
-    found: list[Condition] = []
-    for each in back:
-        if isinstance(each, Replace):
-            found += [Condition(each.id, name, tree[each.id].mark(name)) for name, _ in each.fields]
-        elif isinstance(each, Move):
-            found += [Condition(id, PLACE, tree[id].mark(PLACE)) for id in each.ids]
-        elif isinstance(each, Delete | Unwrap):
-            ids = each.ids if isinstance(each, Delete) else (each.id,)
-            found += [Condition(id, name, tree[id].mark(name))
+def inverse_conditions(tree: Tree, inverse: tuple[Operation, ...]) -> tuple[Condition, ...]:
+    """Return what must still be so that `inverse` takes back the change that has made this tree."""
+    found_conditions: list[Condition] = []
+    for operation in inverse:
+        if isinstance(operation, Replace):
+            found_conditions += [
+                Condition(operation.id, name, tree[operation.id].mark(name))
+                for name, _ in operation.fields
+            ]
+        elif isinstance(operation, Move):
+            found_conditions += [Condition(id, PLACE, tree[id].mark(PLACE)) for id in operation.ids]
+        elif isinstance(operation, Delete | Unwrap):
+            ids = operation.ids if isinstance(operation, Delete) else (operation.id,)
+            found_conditions += [Condition(id, name, tree[id].mark(name))
                       for id in ids if id in tree for name in (TEXT, COMMENT)]  # fmt: skip
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(found_conditions))
 
 
-def _check(tree: Tree) -> None:
+def _check_text(tree: Tree) -> None:
     """The text must parse, and say the same tree again."""
-    if _depth(tree) > DEEPEST:
+    if _depth(tree) > MOST_DEPTH:
         raise Refused(BAD)
     text = text_of(tree)
     if len(text) > MOST_CHARACTERS:
         raise Refused(TOO_LONG)
     try:
-        again = read(text, is_laid_out=True)
+        parsed_tree = parse_tree(text, is_laid_out=True)
     except Unparsed:
         raise Refused(UNPARSED) from None
-    if again.shape() != tree.shape():
+    if parsed_tree.shape() != tree.shape():
         raise Refused(BAD)
 
 
 def _depth(tree: Tree) -> int:
     """Return how many nodes are around the one that most are around."""
-    deepest, here = 0, [ROOT]
-    while here := [each for id in here for each in tree[id].inside]:
-        deepest += 1
-    return deepest
+    depth, level = 0, [ROOT]
+    while level := [child for id in level for child in tree[id].children]:
+        depth += 1
+    return depth
 
 
-def _place(tree: Tree, at: At, moving: frozenset[str] = frozenset()) -> At:
+def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozenset()) -> Place:
     """Return a place as it is now. Raises Refused."""
-    container, behind = at
-    for _ in range(len(tree.gone) + len(tree.nodes) + 2):
-        if behind in moving and behind in tree:
-            container, behind = tree[behind].parent, tree.behind(behind)
-        elif behind and behind in tree:
-            return At(tree[behind].parent, behind)
-        elif behind:  # has gone: where it was
-            if behind not in tree.gone:
+    container, previous = place
+    for _ in range(len(tree.former_places) + len(tree.nodes) + 2):
+        if previous in moving_ids and previous in tree:
+            container, previous = tree[previous].parent, tree.previous_sibling(previous)
+        elif previous and previous in tree:
+            return Place(tree[previous].parent, previous)
+        elif previous:  # has gone: where it was
+            if previous not in tree.former_places:
                 raise Refused(IS_GONE)
-            container, behind, _ = tree.gone[behind]
+            container, previous, _ = tree.former_places[previous]
         elif container in tree:
-            return At(container, "")
-        elif container in tree.gone and not tree.gone[container].is_deleted:  # where it began
-            container, behind, _ = tree.gone[container]
+            return Place(container, "")
+        elif (
+            container in tree.former_places and not tree.former_places[container].is_deleted
+        ):  # where it began
+            container, previous, _ = tree.former_places[container]
         else:
             break
     raise Refused(IS_GONE)
 
 
-def _block_at(tree: Tree, at: At, moving: frozenset[str] = frozenset()) -> At:
+def _block_at(tree: Tree, place: Place, moving_ids: frozenset[str] = frozenset()) -> Place:
     """Return a place in a block as it is now. Raises Refused."""
-    found = _place(tree, at, moving)
-    if tree[found.container].kind != BLOCK:
+    current = _current_place(tree, place, moving_ids)
+    if tree[current.container].kind != BLOCK:
         raise Refused(BAD)
-    return found
+    return current
 
 
-def _insert(tree: Tree, operation: Insert, uid: str) -> _Both:
-    ids = [id for each in operation.nodes for id in each.ids()]
+def _insert(tree: Tree, operation: Insert, uid: str) -> _Effect:
+    ids = [id for node in operation.nodes for id in node.ids()]
     if any(id in tree for id in ids):
         return _insert_again(tree, operation, uid)
-    at = _block_at(tree, operation.at)
-    for each in operation.nodes:
-        if not _is_sound(each):
+    place = _block_at(tree, operation.place)
+    for node in operation.nodes:
+        if not _is_sound(node):
             raise Refused(BAD)
-        tree.add(each, at.container, uid)
-    tree.put([each.id for each in operation.nodes], *at)
+        tree.add(node, place.container, uid)
+    tree.put([node.id for node in operation.nodes], *place)
     for id in ids:
-        tree.gone.pop(id, None)
-    arms = tuple(id for id in ids if tree[id].kind == ARM and tree.of_arm(id)
-                 and set(tree.of_arm(id)) <= set(ids))  # fmt: skip
-    return [Insert(at, operation.nodes)], [Delete(tuple(ids), arms)]
+        tree.former_places.pop(id, None)
+    arms = tuple(id for id in ids if tree[id].kind == ARM and tree.ids_of_arm(id)
+                 and set(tree.ids_of_arm(id)) <= set(ids))  # fmt: skip
+    return [Insert(place, operation.nodes)], [Delete(tuple(ids), arms)]
 
 
-def _is_sound(part: Part) -> bool:
+def _is_sound(subtree: Subtree) -> bool:
     """Whether a node says something, and only a block has others in it."""
-    is_block = kind_of(part.text) == BLOCK
+    is_block = kind_of(subtree.text) == BLOCK
     return (
-        bool(part.text)
-        and (is_block or not (part.inside or part.end))
-        and all(map(_is_sound, part.inside))
+        bool(subtree.text)
+        and (is_block or not (subtree.children or subtree.end))
+        and all(map(_is_sound, subtree.children))
     )
 
 
-def _insert_again(tree: Tree, operation: Insert, uid: str) -> _Both:
+def _insert_again(tree: Tree, operation: Insert, uid: str) -> _Effect:
     """Some of it is there: its delete was refused or taken back, or somebody has pasted it, too.
     That is moved here, with all that is in it."""
-    done: list[Operation] = []
-    back: list[Operation] = []
-    at = operation.at
-    for each in operation.nodes:
-        if each.id in tree:
-            both = _move(tree, Move((each.id,), at), uid)
+    operations: list[Operation] = []
+    inverse: list[Operation] = []
+    place = operation.place
+    for node in operation.nodes:
+        if node.id in tree:
+            effect = _move(tree, Move((node.id,), place), uid)
         else:
-            both = _insert(tree, Insert(at, (each._replace(inside=()),)), uid)
-        steps = [both]
-        if each.inside:
-            steps.append(_insert_again(tree, Insert(At(each.id, ""), each.inside), uid))
-        for was_done, takes_back in steps:
-            done += was_done
-            back[:0] = takes_back
-        at = At(tree[each.id].parent, each.id)
-    return done, back
+            effect = _insert(tree, Insert(place, (node._replace(children=()),)), uid)
+        effects = [effect]
+        if node.children:
+            effects.append(_insert_again(tree, Insert(Place(node.id, ""), node.children), uid))
+        for step_operations, step_inverse in effects:
+            operations += step_operations
+            inverse[:0] = step_inverse
+        place = Place(tree[node.id].parent, node.id)
+    return operations, inverse
 
 
-def _delete(tree: Tree, operation: Delete) -> _Both:
-    listed = set(operation.ids) - {ROOT, START}
-    alive = [id for id in operation.ids if id in tree and id in listed]
-    if not alive:  # somebody was faster, with the same wish
+def _delete(tree: Tree, operation: Delete) -> _Effect:
+    listed_ids = set(operation.ids) - {ROOT, START}
+    present_ids = [id for id in operation.ids if id in tree and id in listed_ids]
+    if not present_ids:  # somebody was faster, with the same wish
         return [], []
-    if any(each not in listed for id in alive for each in tree[id].inside):
+    if any(child not in listed_ids for id in present_ids for child in tree[id].children):
         raise Refused(HAS_NEW)
     for arm in operation.arms:
-        if arm in tree and tree[arm].kind == ARM and not listed.issuperset(tree.of_arm(arm)):
+        if (
+            arm in tree
+            and tree[arm].kind == ARM
+            and not listed_ids.issuperset(tree.ids_of_arm(arm))
+        ):
             raise Refused(HAS_NEW)
-    tops = {id for id in alive if tree[id].parent not in listed}
+    top_ids = {id for id in present_ids if tree[id].parent not in listed_ids}
     runs: list[list[str]] = []  # of neighbours: they come back together
-    for id in tree.below():
-        if id not in tops:
+    for id in tree.subtree_ids():
+        if id not in top_ids:
             continue
-        if runs and runs[-1][-1] == tree.behind(id) and tree[id].parent == tree[runs[-1][0]].parent:
+        if (
+            runs
+            and runs[-1][-1] == tree.previous_sibling(id)
+            and tree[id].parent == tree[runs[-1][0]].parent
+        ):
             runs[-1].append(id)
         else:
             runs.append([id])
-    back: list[Operation] = [
-        Insert(At(tree[run[0]].parent, tree.behind(run[0])), tuple(map(tree.part, run)))
+    inverse: list[Operation] = [
+        Insert(
+            Place(tree[run[0]].parent, tree.previous_sibling(run[0])), tuple(map(tree.subtree, run))
+        )
         for run in runs
     ]
     for run in runs:
         for id in run:
-            below = tree.below(id)
-            were = [Gone(tree[each].parent, tree.behind(each), True) for each in below]
-            tree[tree[id].parent].inside.remove(id)
-            for each, was in zip(below[1:] + below[:1], were[1:] + were[:1], strict=True):
-                tree.forget(each, was)
-    return [Delete(tuple(alive))], back
+            below = tree.subtree_ids(id)
+            former_places = [
+                FormerPlace(tree[child].parent, tree.previous_sibling(child), True)
+                for child in below
+            ]
+            tree[tree[id].parent].children.remove(id)
+            for child, former_place in zip(
+                below[1:] + below[:1], former_places[1:] + former_places[:1], strict=True
+            ):
+                tree.forget(child, former_place)
+    return [Delete(tuple(present_ids))], inverse
 
 
-def _move(tree: Tree, operation: Move, uid: str) -> _Both:
-    alive = [id for id in operation.ids if id in tree and id != ROOT]
-    if not alive:
+def _move(tree: Tree, operation: Move, uid: str) -> _Effect:
+    present_ids = [id for id in operation.ids if id in tree and id != ROOT]
+    if not present_ids:
         raise Refused(IS_GONE)
-    ids = [id for id in alive if not any(id != each and tree.is_in(id, each) for each in alive)]
-    at = _block_at(tree, operation.at, frozenset(ids))
-    if any(tree.is_in(at.container, id) for id in ids):
+    ids = [
+        id
+        for id in present_ids
+        if not any(id != other and tree.is_in(id, other) for other in present_ids)
+    ]
+    place = _block_at(tree, operation.place, frozenset(ids))
+    if any(tree.is_in(place.container, id) for id in ids):
         raise Refused(CIRCLE)
-    if START in ids and at.container != ROOT:
+    if START in ids and place.container != ROOT:
         raise Refused(UNPARSED)
     marks = dict(operation.marks)
-    back: list[Operation] = []
-    behind = at.behind
+    inverse: list[Operation] = []
+    previous = place.previous
     for id in ids:
-        was = At(tree[id].parent, tree.behind(id))
-        back.insert(0, Move((id,), was, ((id, tree[id].mark(PLACE)),)))
-        tree[was.container].inside.remove(id)
-        tree.put([id], at.container, behind)
+        old_place = Place(tree[id].parent, tree.previous_sibling(id))
+        inverse.insert(0, Move((id,), old_place, ((id, tree[id].mark(PLACE)),)))
+        tree[old_place.container].children.remove(id)
+        tree.put([id], place.container, previous)
         tree[id].marks[PLACE] = marks.get(id, uid)
-        behind = id
-    return [Move(tuple(ids), At(at.container, tree.behind(ids[0])), operation.marks)], back
+        previous = id
+    return [
+        Move(tuple(ids), Place(place.container, tree.previous_sibling(ids[0])), operation.marks)
+    ], inverse
 
 
-def _wrap(tree: Tree, operation: Wrap, uid: str) -> _Both:
+def _wrap(tree: Tree, operation: Wrap, uid: str) -> _Effect:
     node = operation.node
-    alive = [id for id in operation.ids if id in tree and id != ROOT]
-    if node.id in tree or node.inside or kind_of(node.text) != BLOCK:
+    present_ids = [id for id in operation.ids if id in tree and id != ROOT]
+    if node.id in tree or node.children or kind_of(node.text) != BLOCK:
         raise Refused(BAD)
-    if not alive:
+    if not present_ids:
         raise Refused(IS_GONE)
-    places = [tree[id].parent for id in alive]
-    container = max(places, key=places.count)
-    siblings = tree[container].inside
-    inside = [siblings.index(id) for id in alive if tree[id].parent == container]
-    first, last = min(inside), max(inside)
+    parents = [tree[id].parent for id in present_ids]
+    container = max(parents, key=parents.count)
+    siblings = tree[container].children
+    indexes = [siblings.index(id) for id in present_ids if tree[id].parent == container]
+    first, last = min(indexes), max(indexes)
     ids = siblings[first : last + 1]  # what somebody has put between comes in, too
     if START in ids:
         raise Refused(UNPARSED)
-    made = tree.add(node, container, uid)
-    siblings[first : last + 1] = [made.id]
-    made.inside = ids
+    block = tree.add(node, container, uid)
+    siblings[first : last + 1] = [block.id]
+    block.children = ids
     for id in ids:
-        tree[id].parent = made.id
-    tree.gone.pop(made.id, None)
-    return [Wrap(tuple(ids), node)], [Unwrap(made.id)]
+        tree[id].parent = block.id
+    tree.former_places.pop(block.id, None)
+    return [Wrap(tuple(ids), node)], [Unwrap(block.id)]
 
 
-def _unwrap(tree: Tree, operation: Unwrap) -> _Both:
+def _unwrap(tree: Tree, operation: Unwrap) -> _Effect:
     id = operation.id
     if id not in tree:
         raise Refused(IS_GONE)
     node = tree[id]
     if node.kind != BLOCK or id == ROOT:
         raise Refused(BAD)
-    at, part = At(node.parent, tree.behind(id)), tree.part(id, is_whole=False)
-    siblings = tree[node.parent].inside
+    place, subtree = Place(node.parent, tree.previous_sibling(id)), tree.subtree(id, is_whole=False)
+    siblings = tree[node.parent].children
     k = siblings.index(id)
-    siblings[k : k + 1] = node.inside
-    for each in node.inside:
-        tree[each].parent = node.parent
-    tree.forget(id, Gone(*at, False))
-    back = Wrap(tuple(node.inside), part) if node.inside else Insert(at, (part,))
-    return [operation], [back]
+    siblings[k : k + 1] = node.children
+    for child in node.children:
+        tree[child].parent = node.parent
+    tree.forget(id, FormerPlace(*place, False))
+    inverse = Wrap(tuple(node.children), subtree) if node.children else Insert(place, (subtree,))
+    return [operation], [inverse]
 
 
-def _replace(tree: Tree, operation: Replace, uid: str) -> _Both:
+def _replace(tree: Tree, operation: Replace, uid: str) -> _Effect:
     id = operation.id
     if id not in tree or id == ROOT:
         raise Refused(IS_GONE)
     node, marks = tree[id], dict(operation.marks)
-    were, had = [], []
+    old_fields, old_marks = [], []
     for name, value in operation.fields:
         if name == TEXT and id != START and (not value or kind_of(value) != node.kind):
             raise Refused(BAD)
-        were.append((name, getattr(node, name)))
-        had.append((name, node.mark(name)))
+        old_fields.append((name, getattr(node, name)))
+        old_marks.append((name, node.mark(name)))
         setattr(node, name, value)
         node.marks[name] = marks.get(name, uid)
-    return [operation], [Replace(id, tuple(were), tuple(had))]
+    return [operation], [Replace(id, tuple(old_fields), tuple(old_marks))]

@@ -12,16 +12,16 @@ from contextlib import suppress
 from tiniscript.together.form import (
     Change,
     Refused,
-    Taken,
+    TakenChange,
     is_uid,
     page_and_count,
-    taken_of,
+    taken_change_of,
     tree_of,
 )
-from tiniscript.together.operations import applied
+from tiniscript.together.operations import apply_change
 from tiniscript.together.tree import Json, Tree
 
-KEPT = 2000  # changes in memory, for pages that come back
+MOST_KEPT_CHANGES = 2000  # changes in memory, for pages that come back
 MOST_REFUSED = 100  # of a page: what it is told
 MOST_PAGES = 200  # of which it is known what was decided
 
@@ -31,92 +31,98 @@ class SharedProgram:
 
     def __init__(
         self, tree: Tree, epoch: str, keep: Callable[[Json], None] = lambda _: None,
-        most_kept: int = KEPT,
+        most_kept: int = MOST_KEPT_CHANGES,
     ) -> None:  # fmt: skip
         self.tree, self.epoch = tree, epoch
         self.number = 0
-        self.log: list[Taken] = []
-        self.counts: dict[str, int] = {}  # by page, the last of its changes that is decided
-        self.refused: dict[str, list[tuple[str, str]]] = {}  # by page: which, and why
+        self.taken_changes: list[TakenChange] = []
+        self.last_counts: dict[str, int] = {}  # by page, the last of its changes that is decided
+        self.refusals: dict[str, list[tuple[str, str]]] = {}  # by page: which, and why
         self.keep = keep
         self._most_kept = most_kept
-        self._sum: tuple[int, int] | None = None  # of which number, and which
+        self._checksum: tuple[int, int] | None = None  # of which number, and which
 
     def submit(self, changes: list[Change]) -> bool:
         """Decide on the changes of a page, in their order; return whether one was taken."""
-        number = self.number
+        old_number = self.number
         for change in changes:
             page, count = page_and_count(change.uid)
-            last = self.counts.get(page, 0)
-            if count > last + 1:
+            last_count = self.last_counts.get(page, 0)
+            if count > last_count + 1:
                 break  # one is missing: the page sends it again
-            if count == last + 1:
+            if count == last_count + 1:
                 self._decide(change)
-        return self.number > number
+        return self.number > old_number
 
-    def refuse(self, uid: str, why: str) -> None:
+    def refuse(self, uid: str, reason: str) -> None:
         """Refuse what is no change, if its turn has come."""
         page, count = page_and_count(uid)
-        if count == self.counts.get(page, 0) + 1:
-            self._refuse(uid, why)
+        if count == self.last_counts.get(page, 0) + 1:
+            self._refuse(uid, reason)
 
     def _decide(self, change: Change) -> None:
         try:
-            tree, done, _ = applied(self.tree, change)
-        except Refused as refused:
-            self._refuse(change.uid, refused.why)
+            tree, operations, _ = apply_change(self.tree, change)
+        except Refused as refusal:
+            self._refuse(change.uid, refusal.reason)
             return
-        taken = Taken(self.number + 1, change.uid, done)
-        self.keep(taken.data())
-        self._take(tree, taken)
+        taken_change = TakenChange(self.number + 1, change.uid, operations)
+        self.keep(taken_change.data())
+        self._take(tree, taken_change)
 
-    def _take(self, tree: Tree, taken: Taken) -> None:
-        page, count = page_and_count(taken.uid)
-        self.tree, self.number = tree, taken.number
-        self._count(page, count)
-        self.log.append(taken)
-        if len(self.log) > self._most_kept:
-            del self.log[: self._most_kept // 10]
+    def _take(self, tree: Tree, taken_change: TakenChange) -> None:
+        page, count = page_and_count(taken_change.uid)
+        self.tree, self.number = tree, taken_change.number
+        self._note_count(page, count)
+        self.taken_changes.append(taken_change)
+        if len(self.taken_changes) > self._most_kept:
+            del self.taken_changes[: self._most_kept // 10]
 
-    def _refuse(self, uid: str, why: str) -> None:
-        self.keep({"uid": uid, "refused": why})
-        self._note_refused(uid, why)
+    def _refuse(self, uid: str, reason: str) -> None:
+        self.keep({"uid": uid, "refused": reason})
+        self._note_refused(uid, reason)
 
-    def _note_refused(self, uid: str, why: str) -> None:
+    def _note_refused(self, uid: str, reason: str) -> None:
         page, count = page_and_count(uid)
-        self._count(page, count)
-        self.refused.setdefault(page, []).append((uid, why))
-        del self.refused[page][:-MOST_REFUSED]
+        self._note_count(page, count)
+        self.refusals.setdefault(page, []).append((uid, reason))
+        del self.refusals[page][:-MOST_REFUSED]
 
-    def _count(self, page: str, count: int) -> None:
-        self.counts.pop(page, None)  # the newest is the last
-        self.counts[page] = count
-        while len(self.counts) > MOST_PAGES:
-            oldest = next(iter(self.counts))
-            del self.counts[oldest]
-            self.refused.pop(oldest, None)
+    def _note_count(self, page: str, count: int) -> None:
+        self.last_counts.pop(page, None)  # the newest is the last
+        self.last_counts[page] = count
+        while len(self.last_counts) > MOST_PAGES:
+            oldest = next(iter(self.last_counts))
+            del self.last_counts[oldest]
+            self.refusals.pop(oldest, None)
 
     def news(self, page: str, since: int, epoch: str) -> Json:
         """Return what a page has not got yet: changes, or the whole."""
-        refused = [list(each) for each in self.refused.get(page, ())]
-        found: Json = {"last": self.counts.get(page, 0), "refused": refused, "n": self.number,
+        refusals = [list(taken_change) for taken_change in self.refusals.get(page, ())]
+        news: Json = {"last": self.last_counts.get(page, 0), "refused": refusals, "n": self.number,
                        "sum": self.checksum()}  # fmt: skip
-        first = self.log[0].number if self.log else self.number + 1
-        if epoch != self.epoch or not first - 1 <= since <= self.number:
-            return {**found, "epoch": self.epoch, "whole": self.tree.snapshot()}
-        return {**found, "changes": [each.data() for each in self.log[since - first + 1 :]]}
+        first_number = self.taken_changes[0].number if self.taken_changes else self.number + 1
+        if epoch != self.epoch or not first_number - 1 <= since <= self.number:
+            return {**news, "epoch": self.epoch, "whole": self.tree.snapshot()}
+        return {
+            **news,
+            "changes": [
+                taken_change.data()
+                for taken_change in self.taken_changes[since - first_number + 1 :]
+            ],
+        }
 
     def checksum(self) -> int:
-        if self._sum is None or self._sum[0] != self.number:
-            self._sum = self.number, self.tree.checksum()
-        return self._sum[1]
+        if self._checksum is None or self._checksum[0] != self.number:
+            self._checksum = self.number, self.tree.checksum()
+        return self._checksum[1]
 
     # -- what is kept -----------------------------------------------------------------------------
 
     def snapshot(self) -> Json:
         """Return all that one goes on with; the history is not in it."""
         return {"epoch": self.epoch, "n": self.number, "whole": self.tree.snapshot(),
-                "counts": self.counts}  # fmt: skip
+                "counts": self.last_counts}  # fmt: skip
 
     def replay(self, rows: list[Json]) -> None:
         """Decide again as it was decided before. What does not fit is left out, with all after."""
@@ -125,10 +131,10 @@ class SharedProgram:
                 self._note_refused(row["uid"], str(row["refused"]))
                 continue
             with suppress(Refused):
-                taken = taken_of(row)
-                if taken.number == self.number + 1:
-                    change = Change(taken.uid, taken.operations)
-                    self._take(applied(self.tree, change, is_sure=True).tree, taken)
+                taken_change = taken_change_of(row)
+                if taken_change.number == self.number + 1:
+                    change = Change(taken_change.uid, taken_change.operations)
+                    self._take(apply_change(self.tree, change, is_sure=True).tree, taken_change)
                     continue
             return
 
@@ -140,5 +146,5 @@ def program_of(snapshot: Json, keep: Callable[[Json], None] = lambda _: None) ->
         raise Refused("bad")
     program = SharedProgram(tree_of(snapshot.get("whole")), epoch, keep)
     program.number = number
-    program.counts = {page: count for page, count in counts.items() if type(count) is int}
+    program.last_counts = {page: count for page, count in counts.items() if type(count) is int}
     return program

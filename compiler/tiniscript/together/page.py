@@ -17,7 +17,7 @@ from typing import Any
 from tiniscript.syntax.formatter import pieces_of
 from tiniscript.syntax.lexer import scan
 from tiniscript.together import differences
-from tiniscript.together.differences import CutOut
+from tiniscript.together.differences import Clipboard
 from tiniscript.together.form import (
     IS_GONE,
     MOST_OPERATIONS,
@@ -30,7 +30,7 @@ from tiniscript.together.form import (
     change_of,
     data_of_change,
     page_and_count,
-    taken_of,
+    taken_change_of,
     tree_of,
 )
 from tiniscript.together.layout import (
@@ -39,12 +39,12 @@ from tiniscript.together.layout import (
     Key,
     Line,
     Unparsed,
-    lines,
     mistaken_lines,
-    read,
+    parse_tree,
+    tree_lines,
 )
-from tiniscript.together.operations import applied, conditions, do_hold
-from tiniscript.together.tree import DO, ROOT, START, TEXT, Json, Tree, kind_of
+from tiniscript.together.operations import apply_change, conditions_hold, inverse_conditions
+from tiniscript.together.tree import INSTRUCTION, ROOT, START, TEXT, Json, Tree, kind_of
 
 MOST_UNDONE = 200  # own changes that can be taken back
 MOST_STEPS = 1000  # from what has gone to what is there
@@ -52,20 +52,20 @@ MOST_STEPS = 1000  # from what has gone to what is there
 
 @dataclass(eq=False)
 class Draft:
-    """`rows` in the place of the lines of `covers`, or behind the line of `above`.
+    """`rows` in the place of the lines of `covered_keys`, or behind that of `key_above`.
 
     `stays`: it waits until its pupil goes on with it: somebody has deleted the instruction, or the
     page was loaded again.
     """
 
     rows: list[str]
-    covers: tuple[Key, ...]
-    above: Key | None
+    covered_keys: tuple[Key, ...]
+    key_above: Key | None
     stays: bool = False
 
 
 @dataclass(eq=False)
-class Item:
+class ShownLine:
     """A line as it is shown: of the program (`keys`), or of a draft, which may have none."""
 
     text: str | None
@@ -75,13 +75,13 @@ class Item:
 
 @dataclass(eq=False)
 class Hunk:
-    """Items that the lines from `first` to `last`, not included, take the place of, and whose lines
+    """Lines that those from `first_line` to `end_line`, not included, take the place of, and which
     these hide: no line is hidden by two."""
 
-    items: list[Item]
-    covers: tuple[Key, ...]
-    first: int
-    last: int
+    shown_lines: list[ShownLine]
+    covered_keys: tuple[Key, ...]
+    first_line: int
+    end_line: int
 
 
 @dataclass(eq=False)
@@ -92,346 +92,409 @@ class Undo:
 
 @dataclass(eq=False)
 class Page:
-    """`base` is what the class's computer has told, `view` that with the own `pending` changes."""
+    """`base` is what the class's computer has told, `view` that with the own `pending_changes`."""
 
     name: str
     base: Tree = field(default_factory=Tree)
     number: int = 0
     epoch: str = ""
-    text: list[str] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
     caret: int = 0
-    is_hot: bool = False  # a key was pressed in the line of the caret since the caret came there
-    pending: list[Change] = field(default_factory=list)
+    is_line_edited: bool = False  # that of the caret, since the caret came there
+    pending_changes: list[Change] = field(default_factory=list)
     drafts: list[Draft] = field(default_factory=list)
-    told: list[tuple[str, str]] = field(default_factory=list)  # what was refused, and why
-    count: int = 0  # of own changes
-    ids: int = 0
+    refusals: list[tuple[str, str]] = field(default_factory=list)  # what was refused, and why
+    change_count: int = 0  # of own changes
+    id_count: int = 0
     is_astray: bool = False  # its tree is another than the computer's: it needs the whole
 
     def __post_init__(self) -> None:
         self.view = self.base
         self._undos: list[Undo] = []
-        self._undoing: set[str] = set()  # uids of what takes something back
-        self._lately: dict[str, list[str]] = {}
-        self._uncut: set[str] = set()  # what is there again, since its delete was refused
-        self._items: list[Item] = []
+        self._undo_uids: set[str] = set()  # uids of what takes something back
+        self._cut_ids_by_text: dict[str, list[str]] = {}
+        self._restored_ids: set[str] = set()  # what is there again, since its delete was refused
+        self._shown_lines: list[ShownLine] = []
         self._redos: list[Undo] = []
-        self._redoing: set[str] = set()
+        self._redo_uids: set[str] = set()
         self._owners: list[str] | None = None  # of the lines of the text, where blocks say so
         self._show()
 
     def copy(self) -> Page:
         """Return one that goes on from here: what happens to either is not seen by the other."""
-        new = Page(self.name, self.base, self.number, self.epoch, self.text[:], self.caret,
-                   self.is_hot, self.pending[:], self.drafts[:], self.told[:], self.count, self.ids,
-                   self.is_astray)  # fmt: skip
-        new.view, new.text, new.caret, new._items = self.view, self.text, self.caret, self._items
-        new._undos, new._undoing, new._uncut = self._undos[:], {*self._undoing}, {*self._uncut}
-        new._redos, new._redoing = self._redos[:], {*self._redoing}
-        new._lately = {text: ids[:] for text, ids in self._lately.items()}
-        return new
+        copied = Page(
+            self.name,
+            self.base,
+            self.number,
+            self.epoch,
+            self.lines[:],
+            self.caret,
+            self.is_line_edited,
+            self.pending_changes[:],
+            self.drafts[:],
+            self.refusals[:],
+            self.change_count,
+            self.id_count,
+            self.is_astray,
+        )
+        copied.view, copied.lines, copied.caret, copied._shown_lines = (
+            self.view,
+            self.lines,
+            self.caret,
+            self._shown_lines,
+        )
+        copied._undos, copied._undo_uids, copied._restored_ids = (
+            self._undos[:],
+            {*self._undo_uids},
+            {*self._restored_ids},
+        )
+        copied._redos, copied._redo_uids = self._redos[:], {*self._redo_uids}
+        copied._cut_ids_by_text = {text: ids[:] for text, ids in self._cut_ids_by_text.items()}
+        return copied
 
     # -- the storage of the browser: a reload goes on from it -------------------------------------
 
-    def kept(self) -> Json:
+    def store_data(self) -> Json:
         return {
             "name": self.name,
-            "count": self.count,
-            "ids": self.ids,
-            "pending": [data_of_change(each) for each in self.pending],
-            "undoing": sorted(self._undoing),
-            "drafts": [[each.rows, each.covers, each.above] for each in self.drafts],
-            "row": self.text[self.caret] if self.text else "",
+            "count": self.change_count,
+            "ids": self.id_count,
+            "pending": [data_of_change(change) for change in self.pending_changes],
+            "undoing": sorted(self._undo_uids),
+            "drafts": [
+                [change.rows, change.covered_keys, change.key_above] for change in self.drafts
+            ],
+            "row": self.lines[self.caret] if self.lines else "",
         }
 
     @classmethod
-    def of(cls, name: str, news: Json, kept: Json | None = None) -> Page:
+    def of(cls, name: str, news: Json, store: Json | None = None) -> Page:
         """Return the page that begins with the whole; one that was loaded again, with what it has
         kept, whatever its name was: a draft stays until its pupil goes on with it.
 
         Raises Refused, and what a damaged store raises: KeyError, TypeError, ValueError.
         """
         page = cls(name, tree_of(news["whole"]), news["n"], news["epoch"])
-        refused: list[Change] = []
-        if kept is not None:
-            page.pending = list(map(change_of, kept["pending"]))
-            if kept["name"] == name:
-                page.count, page.ids = int(kept["count"]), int(kept["ids"])
-                page._undoing = set(kept["undoing"])
+        refused_changes: list[Change] = []
+        if store is not None:
+            page.pending_changes = list(map(change_of, store["pending"]))
+            if store["name"] == name:
+                page.change_count, page.id_count = int(store["count"]), int(store["ids"])
+                page._undo_uids = set(store["undoing"])
             else:  # what is there already is not put in again
-                page.pending = [change._replace(uid=f"{name}:{k}")
-                                for k, change in enumerate(page.pending, 1)]  # fmt: skip
-                page.count = len(page.pending)
+                page.pending_changes = [change._replace(uid=f"{name}:{k}")
+                                for k, change in enumerate(page.pending_changes, 1)]  # fmt: skip
+                page.change_count = len(page.pending_changes)
             page.drafts = [
-                Draft(list(rows), tuple(map(_key, covers)), _key(above) if above else None, True)
-                for rows, covers, above in kept["drafts"]
+                Draft(
+                    list(rows),
+                    tuple(map(_key, covered_keys)),
+                    _key(key_above) if key_above else None,
+                    True,
+                )
+                for rows, covered_keys, key_above in store["drafts"]
                 if rows  # what was only taken out is there again
             ]
-            refused = page._decide(news)
+            refused_changes = page._decide(news)
         page._rebase()
-        page._keep_typed(refused)
+        page._keep_refused_text(refused_changes)
         page._show()
-        if kept is not None and kept["row"] in page.text:
-            page.caret = page.text.index(kept["row"])
+        if store is not None and store["row"] in page.lines:
+            page.caret = page.lines.index(store["row"])
         return page
 
     # -- own changes ------------------------------------------------------------------------------
 
     def new_id(self) -> str:
-        self.ids += 1
-        return f"{self.name}.{self.ids}"
+        self.id_count += 1
+        return f"{self.name}.{self.id_count}"
 
-    def do(self, operations: Iterable[Operation], undo: Undo | None = None) -> bool:
+    def apply(self, operations: Iterable[Operation], undo: Undo | None = None) -> bool:
         """Apply own operations at once; what is not possible here is not sent."""
-        made = tuple(operations)
-        change = Change(f"{self.name}:{self.count + 1}", made, undo.conditions if undo else (),
-                        self.number)  # fmt: skip
-        if not made or len(made) > MOST_OPERATIONS:
+        made_operations = tuple(operations)
+        change = Change(
+            f"{self.name}:{self.change_count + 1}",
+            made_operations,
+            undo.conditions if undo else (),
+            self.number,
+        )
+        if not made_operations or len(made_operations) > MOST_OPERATIONS:
             return False
         try:
-            found = applied(self.view, change)
+            result = apply_change(self.view, change)
         except Refused:
             return False
-        before, self.view = self.view, found.tree
-        for each in made:
-            for id in each.ids if isinstance(each, Delete) else ():
-                if id in before:
-                    self._lately.setdefault(before[id].text, []).append(id)
-        self.count += 1
-        self.pending.append(change)
+        old_view, self.view = self.view, result.tree
+        for operation in made_operations:
+            for id in operation.ids if isinstance(operation, Delete) else ():
+                if id in old_view:
+                    self._cut_ids_by_text.setdefault(old_view[id].text, []).append(id)
+        self.change_count += 1
+        self.pending_changes.append(change)
         return True
 
-    def write(self, text: list[str], owners: list[str]) -> None:
+    def write(self, lines: list[str], owners: list[str]) -> None:
         """Blocks have become this text, of which `owners` says whose each line is."""
-        self.type(text, self.caret)
+        self.type(lines, self.caret)
         self._owners = owners
         self.leave()
         self._owners = None
 
-    def follow(self, other: Page, before: Page) -> None:
-        """Do what another page has done since it was a copy of `before`."""
-        self.ids = other.ids
-        lost = [change for change in other.pending[len(before.pending) :]
-                if not self.do(change.operations)]  # fmt: skip
-        were = [(draft.rows, draft.covers) for draft in before.drafts]
-        own = [draft for draft in self.drafts if (draft.rows, draft.covers) not in were]
-        self.drafts = [*other.drafts, *own]
-        self._keep_typed(lost)
-        self.told += [(change.uid, IS_GONE) for change in lost]
+    def catch_up(self, other: Page, ancestor: Page) -> None:
+        """Do what another page has done since it was a copy of `ancestor`."""
+        self.id_count = other.id_count
+        lost_changes = [change for change in other.pending_changes[len(ancestor.pending_changes) :]
+                if not self.apply(change.operations)]  # fmt: skip
+        old_drafts = [(draft.rows, draft.covered_keys) for draft in ancestor.drafts]
+        own_drafts = [
+            draft for draft in self.drafts if (draft.rows, draft.covered_keys) not in old_drafts
+        ]
+        self.drafts = [*other.drafts, *own_drafts]
+        self._keep_refused_text(lost_changes)
+        self.refusals += [(change.uid, IS_GONE) for change in lost_changes]
         self._show(self.caret)
 
     def undo(self) -> bool:
         """Take back the newest own change that nobody has changed since."""
-        return self._take_back(self._undos, self._undoing)
+        return self._take_back(self._undos, self._undo_uids)
 
     def redo(self) -> bool:
         """Take back the newest undo, where no own change came after it."""
-        return self._take_back(self._redos, self._redoing)
+        return self._take_back(self._redos, self._redo_uids)
 
-    def _take_back(self, all: list[Undo], uids: set[str]) -> bool:
+    def _take_back(self, undos: list[Undo], uids: set[str]) -> bool:
         self.leave()
-        for undo in reversed(all):
-            if do_hold(self.view, undo.conditions) and self.do(undo.operations, undo):
-                all.remove(undo)
-                uids.add(self.pending[-1].uid)
+        for undo in reversed(undos):
+            if conditions_hold(self.view, undo.conditions) and self.apply(undo.operations, undo):
+                undos.remove(undo)
+                uids.add(self.pending_changes[-1].uid)
                 self._show(self.caret)
                 return True
         return False
 
     # -- typing -----------------------------------------------------------------------------------
 
-    def type(self, text: list[str], caret: int, is_hot: bool = False) -> None:
+    def type(self, lines: list[str], caret: int, is_line_edited: bool = False) -> None:
         """The editor has this text now. Nothing is made of it before `flush`."""
-        self.text, self.is_hot = text, is_hot
-        self.caret = min(caret, max(0, len(text) - 1))
+        self.lines, self.is_line_edited = lines, is_line_edited
+        self.caret = min(caret, max(0, len(lines) - 1))
 
     def leave(self) -> None:
         """The caret has left its line: by Enter, an arrow, a press elsewhere, or the run button."""
-        self.is_hot = False
+        self.is_line_edited = False
         self.flush()
 
     def flush(self) -> None:
         """Make operations of what is finished, and drafts of the rest, and of a hot line."""
-        if self.text == [item.text for item in self._shown()] and not self.drafts:
+        if self.lines == [item.text for item in self._visible_lines()] and not self.drafts:
             return
         hunks = self._hunks()
         if not hunks:
             return
-        wrong = mistaken_lines("\n".join(self.text))
-        if self.is_hot:
-            wrong |= {self.caret}
-        bad = [hunk for hunk in hunks if any(hunk.first <= k < hunk.last for k in wrong)]
-        held = [hunk for hunk in hunks if hunk in bad or self._waits(hunk)]
-        if (wrong and not bad) or self._splits(hunks, held):
-            held = hunks
-        for choice in (held, hunks):
-            if self._make_changes(hunks, choice):
-                self.drafts = self._drafts(choice)
-                at = [(draft, self.caret - hunk.first)
-                      for draft, hunk in zip(self.drafts, choice, strict=True)
-                      if hunk.first <= self.caret < hunk.last]  # fmt: skip
-                self._show(self.caret, at[0] if at else None)
+        bad_lines = mistaken_lines("\n".join(self.lines))
+        if self.is_line_edited:
+            bad_lines |= {self.caret}
+        bad_hunks = [
+            hunk for hunk in hunks if any(hunk.first_line <= k < hunk.end_line for k in bad_lines)
+        ]
+        held_hunks = [hunk for hunk in hunks if hunk in bad_hunks or self._waits(hunk)]
+        if (bad_lines and not bad_hunks) or self._splits(hunks, held_hunks):
+            held_hunks = hunks
+        for draft_hunks in (held_hunks, hunks):
+            if self._make_changes(hunks, draft_hunks):
+                self.drafts = self._drafts_of(draft_hunks)
+                caret_drafts = [(draft, self.caret - hunk.first_line)
+                      for draft, hunk in zip(self.drafts, draft_hunks, strict=True)
+                      if hunk.first_line <= self.caret < hunk.end_line]  # fmt: skip
+                self._show(self.caret, caret_drafts[0] if caret_drafts else None)
                 return
         self._show(self.caret)
 
     def give_up(self) -> None:
         """Take out what does not parse."""
         self.flush()
-        self.is_hot = False
+        self.is_line_edited = False
         self.drafts = []
         self._show()
 
-    def _make_changes(self, hunks: list[Hunk], held: list[Hunk]) -> bool:
+    def _make_changes(self, hunks: list[Hunk], held_hunks: list[Hunk]) -> bool:
         """Make changes of all but what is held; return whether that was possible."""
         try:
-            self._revive(hunk for hunk in hunks if hunk not in held)
-            made = differences.operations(
-                self.view, self._text_without(held), self.new_id,
-                CutOut(self._lately, self._uncut), self._owners and self._owners_without(held),
-            )  # fmt: skip
+            self._revive(hunk for hunk in hunks if hunk not in held_hunks)
+            operations = differences.find_operations(
+                self.view,
+                self._text_without(held_hunks),
+                self.new_id,
+                Clipboard(self._cut_ids_by_text, self._restored_ids),
+                self._owners and self._owners_without(held_hunks),
+            )
         except (Unparsed, Refused):
             return False
         # New values are changes of their own: one that is refused takes no other with it.
-        shape = [each for each in made if not isinstance(each, Replace)]
-        if shape and not self.do(shape):
+        shape_operations = [
+            operation for operation in operations if not isinstance(operation, Replace)
+        ]
+        if shape_operations and not self.apply(shape_operations):
             return False
-        for each in made:
-            if isinstance(each, Replace):
-                self.do([each])
+        for operation in operations:
+            if isinstance(operation, Replace):
+                self.apply([operation])
         return True
 
-    def _shown(self) -> list[Item]:
-        return [item for item in self._items if item.text is not None]
+    def _visible_lines(self) -> list[ShownLine]:
+        return [item for item in self._shown_lines if item.text is not None]
 
     def _hunks(self) -> list[Hunk]:
         """Return what was changed, and every draft."""
-        visible = [k for k, item in enumerate(self._items) if item.text is not None]
-        old = [item.text for item in self._shown()]
-        found: list[list[int]] = []  # among what is visible: first, last; among lines: first, last
+        visible_indexes = [k for k, item in enumerate(self._shown_lines) if item.text is not None]
+        old_lines = [item.text for item in self._visible_lines()]
+        ranges: list[list[int]] = []  # among what is visible: first, last; among lines: first, last
         line_of: dict[int, int] = {}
-        matcher = SequenceMatcher(None, old, self.text, autojunk=False)
+        matcher = SequenceMatcher(None, old_lines, self.lines, autojunk=False)
         for tag, i1, i2, j1, j2 in matcher.get_opcodes():
             is_equal = tag == "equal"
             if not is_equal:
-                found.append([i1, i2, j1, j2])
+                ranges.append([i1, i2, j1, j2])
             for i in range(i1, i2 + 1):
                 line_of.setdefault(i, j1 + (i - i1) * is_equal)
             for i in range(i1, i2) if is_equal else ():
-                if self._items[visible[i]].draft is not None:
-                    found.append([i, i + 1, j1 + i - i1, j1 + i - i1 + 1])
-        for k, item in enumerate(self._items):  # drafts without a line
+                if self._shown_lines[visible_indexes[i]].draft is not None:
+                    ranges.append([i, i + 1, j1 + i - i1, j1 + i - i1 + 1])
+        for k, item in enumerate(self._shown_lines):  # drafts without a line
             if item.text is None:
-                i = sum(v < k for v in visible)
-                j = line_of.get(i, len(self.text))
-                found.append([i, i, j, j])
-        merged: list[list[int]] = []
-        for i1, i2, j1, j2 in sorted(found):
-            if merged and i1 <= merged[-1][1] and j1 <= merged[-1][3]:
-                merged[-1][1], merged[-1][3] = max(merged[-1][1], i2), max(merged[-1][3], j2)
+                i = sum(v < k for v in visible_indexes)
+                j = line_of.get(i, len(self.lines))
+                ranges.append([i, i, j, j])
+        merged_ranges: list[list[int]] = []
+        for i1, i2, j1, j2 in sorted(ranges):
+            if merged_ranges and i1 <= merged_ranges[-1][1] and j1 <= merged_ranges[-1][3]:
+                merged_ranges[-1][1] = max(merged_ranges[-1][1], i2)
+                merged_ranges[-1][3] = max(merged_ranges[-1][3], j2)
             else:
-                merged.append([i1, i2, j1, j2])
-        bounds = [*visible, len(self._items)]
+                merged_ranges.append([i1, i2, j1, j2])
+        bounds = [*visible_indexes, len(self._shown_lines)]
         hunks: list[Hunk] = []
-        hidden: set[Key] = set()
-        for hunk in merged:
-            for i1, i2, j1, j2 in self._around_caret(*hunk):
-                items = self._items_between(bounds[i1], bounds[i2])
-                covers = [key for key in dict.fromkeys(_covers(items)) if key not in hidden]
-                hidden.update(covers)
-                hunks.append(Hunk(items, tuple(covers), j1, j2))
+        hidden_keys: set[Key] = set()
+        for range_bounds in merged_ranges:
+            for i1, i2, j1, j2 in self._split_at_caret(*range_bounds):
+                shown_lines = self._shown_lines_between(bounds[i1], bounds[i2])
+                covered_keys = [
+                    key
+                    for key in dict.fromkeys(_covered_keys(shown_lines))
+                    if key not in hidden_keys
+                ]
+                hidden_keys.update(covered_keys)
+                hunks.append(Hunk(shown_lines, tuple(covered_keys), j1, j2))
         return hunks
 
-    def _around_caret(self, i1: int, i2: int, j1: int, j2: int) -> list[tuple[int, int, int, int]]:
+    def _split_at_caret(
+        self, i1: int, i2: int, j1: int, j2: int
+    ) -> list[tuple[int, int, int, int]]:
         """Return the parts of a hunk before a hot line, of that, and behind it: what is finished in
         the lines around goes on without it. A draft stays whole: nobody knows which of its lines
         hide which."""
         k = self.caret
-        if not self.is_hot or not j1 <= k < j2:
+        if not self.is_line_edited or not j1 <= k < j2:
             return [(i1, i2, j1, j2)]
         first = min(i2, i1 + k - j1)
         last = max(first, i2 - (j2 - k - 1))
-        shown = self._shown()
+        visible_lines = self._visible_lines()
         for i in (first, last):
-            if i1 < i < i2 and shown[i].draft and shown[i].draft is shown[i - 1].draft:
+            if (
+                i1 < i < i2
+                and visible_lines[i].draft
+                and visible_lines[i].draft is visible_lines[i - 1].draft
+            ):
                 return [(i1, i2, j1, j2)]
         parts = [(i1, first, j1, k), (first, last, k, k + 1), (last, i2, k + 1, j2)]
         return [part for part in parts if part[0] < part[1] or part[2] < part[3]]
 
-    def _items_between(self, first: int, last: int) -> list[Item]:
+    def _shown_lines_between(self, first: int, last: int) -> list[ShownLine]:
         """Return these items, and those without a line that are right before them."""
-        while first and self._items[first - 1].text is None:
+        while first and self._shown_lines[first - 1].text is None:
             first -= 1
-        return self._items[first:last]
+        return self._shown_lines[first:last]
 
     def _waits(self, hunk: Hunk) -> bool:
         """Whether it is a draft that stays, as it was."""
-        rows = self.text[hunk.first : hunk.last]
+        rows = self.lines[hunk.first_line : hunk.end_line]
         return (
-            bool(hunk.items)
-            and all(item.draft and item.draft.stays for item in hunk.items)
-            and [item.text for item in hunk.items] == rows
+            bool(hunk.shown_lines)
+            and all(item.draft and item.draft.stays for item in hunk.shown_lines)
+            and [item.text for item in hunk.shown_lines] == rows
         )
 
-    def _splits(self, hunks: list[Hunk], held: list[Hunk]) -> bool:
+    def _splits(self, hunks: list[Hunk], held_hunks: list[Hunk]) -> bool:
         """Whether a row that is hidden by what is held is put in elsewhere: it would be there twice
         if the draft was given up."""
-        hidden = {key for hunk in held for key in hunk.covers}
-        rows = {line.text.strip() for line in lines(self.view) if hidden.intersection(line.keys)}
+        hidden_keys = {key for hunk in held_hunks for key in hunk.covered_keys}
+        rows = {
+            line.text.strip()
+            for line in tree_lines(self.view)
+            if hidden_keys.intersection(line.keys)
+        }
         rows |= {row.rstrip(";") for row in rows}
-        return any(self.text[k].strip() in rows for hunk in hunks if hunk not in held
-                   for k in range(hunk.first, hunk.last) if self.text[k].strip())  # fmt: skip
+        return any(
+            self.lines[k].strip() in rows
+            for hunk in hunks
+            if hunk not in held_hunks
+            for k in range(hunk.first_line, hunk.end_line)
+            if self.lines[k].strip()
+        )
 
-    def _drafts(self, held: list[Hunk]) -> list[Draft]:
+    def _drafts_of(self, held_hunks: list[Hunk]) -> list[Draft]:
         """Return what is held as drafts, each behind the line above it, which may be a new one."""
-        keys = [key for line in lines(self.view) for key in line.keys]
-        found = []
-        for k, hunk in enumerate(held):
-            rows = self.text[hunk.first : hunk.last]
-            before = pieces_of(scan(self._text_without(held[:k], hunk.first)))
-            above = keys[min(len(before), len(keys)) - 1] if before and keys else None
-            found.append(Draft(rows, hunk.covers, above, self._waits(hunk)))
-        return found
+        keys = [key for line in tree_lines(self.view) for key in line.keys]
+        drafts = []
+        for k, hunk in enumerate(held_hunks):
+            rows = self.lines[hunk.first_line : hunk.end_line]
+            pieces_above = pieces_of(scan(self._text_without(held_hunks[:k], hunk.first_line)))
+            key_above = (
+                keys[min(len(pieces_above), len(keys)) - 1] if pieces_above and keys else None
+            )
+            drafts.append(Draft(rows, hunk.covered_keys, key_above, self._waits(hunk)))
+        return drafts
 
-    def _text_without(self, held: list[Hunk], end: int | None = None) -> str:
+    def _text_without(self, held_hunks: list[Hunk], end: int | None = None) -> str:
         """Return the text, up to a line, with the lines of the program in the place of what is
         held."""
-        found, at = [], 0
-        for hunk in held:
-            found += self.text[at : hunk.first]
-            found += [line.text for line in self._covered(hunk)]
-            at = hunk.last
-        return "\n".join([*found, *self.text[at:end]])
+        lines, line_index = [], 0
+        for hunk in held_hunks:
+            lines += self.lines[line_index : hunk.first_line]
+            lines += [line.text for line in self._covered_lines(hunk)]
+            line_index = hunk.end_line
+        return "\n".join([*lines, *self.lines[line_index:end]])
 
-    def _owners_without(self, held: list[Hunk]) -> list[str]:
+    def _owners_without(self, held_hunks: list[Hunk]) -> list[str]:
         """Return whose each line of that text is."""
         assert self._owners is not None
-        found, at = [], 0
-        for hunk in held:
-            found += self._owners[at : hunk.first]
-            found += [line.keys[-1][0] for line in self._covered(hunk)]
-            at = hunk.last
-        return [*found, *self._owners[at:]]
+        owners, line_index = [], 0
+        for hunk in held_hunks:
+            owners += self._owners[line_index : hunk.first_line]
+            owners += [line.keys[-1][0] for line in self._covered_lines(hunk)]
+            line_index = hunk.end_line
+        return [*owners, *self._owners[line_index:]]
 
-    def _covered(self, hunk: Hunk) -> list[Line]:
+    def _covered_lines(self, hunk: Hunk) -> list[Line]:
         """Return the lines of the program whose place a hunk takes."""
-        covers = set(hunk.covers)
-        return [line for line in lines(self.view)
-                if line.keys and covers.issuperset(line.keys)]  # fmt: skip
+        covered_keys = set(hunk.covered_keys)
+        return [line for line in tree_lines(self.view)
+                if line.keys and covered_keys.issuperset(line.keys)]  # fmt: skip
 
     def _revive(self, hunks: Iterable[Hunk]) -> None:
         """A line that was finished in the place of one that somebody has deleted is that one."""
         for hunk in hunks:
-            rows = [row for row in self.text[hunk.first : hunk.last] if row.strip()]
-            gone = [id for id, role in hunk.covers if role == OWN and id not in self.view]
-            if len(rows) != 1 or not gone:
+            rows = [row for row in self.lines[hunk.first_line : hunk.end_line] if row.strip()]
+            gone_ids = [id for id, role in hunk.covered_keys if role == OWN and id not in self.view]
+            if len(rows) != 1 or not gone_ids:
                 continue
             try:
-                made = read(rows[0])
+                tree = parse_tree(rows[0])
             except Unparsed:
                 continue
-            for id in made[ROOT].inside:
+            for id in tree[ROOT].children:
                 if id != START:
-                    self._lately.setdefault(made[id].text, []).append(gone[0])
+                    self._cut_ids_by_text.setdefault(tree[id].text, []).append(gone_ids[0])
 
     # -- what arrives -----------------------------------------------------------------------------
 
@@ -440,160 +503,174 @@ class Page:
 
         Raises Refused, KeyError or TypeError where it is no news.
         """
-        rows = [taken_of(row) for row in news.get("changes", ())]
+        taken_changes = [taken_change_of(taken_change) for taken_change in news.get("changes", ())]
         is_whole = "whole" in news and (
             self.is_astray or news["epoch"] != self.epoch or news["n"] > self.number
         )
-        is_new = is_whole or any(row.number > self.number for row in rows)
-        last = int(news["last"])
-        if not is_new and not any(page_and_count(each.uid)[1] <= last for each in self.pending):
+        is_new = is_whole or any(
+            taken_change.number > self.number for taken_change in taken_changes
+        )
+        last_count = int(news["last"])
+        if not is_new and not any(
+            page_and_count(change.uid)[1] <= last_count for change in self.pending_changes
+        ):
             self._compare(news)
             return
         self.flush()
         if is_whole:
             self.base = tree_of(news["whole"])
             self.number, self.epoch = int(news["n"]), str(news["epoch"])
-        for row in rows:
-            if row.number <= self.number:
+        for taken_change in taken_changes:
+            if taken_change.number <= self.number:
                 continue
-            if row.number != self.number + 1:
+            if taken_change.number != self.number + 1:
                 break
-            taken = applied(self.base, Change(row.uid, row.operations), is_sure=True)
-            self.base, self.number = taken.tree, row.number
-            if page_and_count(row.uid)[0] == self.name:
-                undo = Undo(taken.back, conditions(self.base, taken.back))
-                if row.uid in self._undoing:
+            result = apply_change(
+                self.base, Change(taken_change.uid, taken_change.operations), is_sure=True
+            )
+            self.base, self.number = result.tree, taken_change.number
+            if page_and_count(taken_change.uid)[0] == self.name:
+                undo = Undo(result.inverse, inverse_conditions(self.base, result.inverse))
+                if taken_change.uid in self._undo_uids:
                     self._redos = [*self._redos, undo][-MOST_UNDONE:]
                     continue
                 self._undos = [*self._undos, undo][-MOST_UNDONE:]
-                if row.uid not in self._redoing:
+                if taken_change.uid not in self._redo_uids:
                     self._redos.clear()
         self._compare(news)
-        refused = self._decide(news)
+        refused_changes = self._decide(news)
         self._rebase()
-        self._keep_typed(refused)
+        self._keep_refused_text(refused_changes)
         self._show(self.caret)
 
     def _compare(self, news: Json) -> None:
         """Look whether the tree is the computer's; of news that come late nothing is known."""
-        newest = int(news["n"])
-        if newest >= self.number:
-            self.is_astray = newest > self.number or self.base.checksum() != news["sum"]
+        newest_number = int(news["n"])
+        if newest_number >= self.number:
+            self.is_astray = newest_number > self.number or self.base.checksum() != news["sum"]
 
     def _decide(self, news: Json) -> list[Change]:
         """Forget what is decided; return what was refused."""
-        why = {str(uid): str(reason) for uid, reason in news["refused"]}
-        has = {str(row["uid"]) for row in news.get("changes", ())}
-        last = int(news["last"])
-        refused, pending = [], []
-        for change in self.pending:
-            is_decided = page_and_count(change.uid)[1] <= last
-            if is_decided and change.uid in why:
-                self.told.append((change.uid, why[change.uid]))
-                refused.append(change)
-                self._uncut |= {id for each in change.operations if isinstance(each, Delete)
-                                for id in each.ids}  # fmt: skip
-            elif not is_decided or not ("whole" in news or change.uid in has):
-                pending.append(change)
-        self.pending = pending
-        return refused
+        reason_of_uid = {str(uid): str(reason) for uid, reason in news["refused"]}
+        taken_uids = {str(row["uid"]) for row in news.get("changes", ())}
+        last_count = int(news["last"])
+        refused_changes, pending_changes = [], []
+        for change in self.pending_changes:
+            is_decided = page_and_count(change.uid)[1] <= last_count
+            if is_decided and change.uid in reason_of_uid:
+                self.refusals.append((change.uid, reason_of_uid[change.uid]))
+                refused_changes.append(change)
+                self._restored_ids |= {
+                    id
+                    for operation in change.operations
+                    if isinstance(operation, Delete)
+                    for id in operation.ids
+                }
+            elif not is_decided or not ("whole" in news or change.uid in taken_uids):
+                pending_changes.append(change)
+        self.pending_changes = pending_changes
+        return refused_changes
 
-    def _keep_typed(self, refused: list[Change]) -> None:
+    def _keep_refused_text(self, refused_changes: list[Change]) -> None:
         """What was typed into an instruction that somebody has deleted is not lost: a draft."""
-        for change in refused:
+        for change in refused_changes:
             [first, *more] = change.operations
-            if more or not isinstance(first, Replace) or change.uid in self._undoing:
+            if more or not isinstance(first, Replace) or change.uid in self._undo_uids:
                 continue
             text = dict(first.fields).get(TEXT, "")
-            if text and first.id in self.base.gone and kind_of(text) == DO:
-                own = (first.id, OWN)
-                self.drafts.append(Draft([text], (own,), own, True))
+            if text and first.id in self.base.former_places and kind_of(text) == INSTRUCTION:
+                own_key = (first.id, OWN)
+                self.drafts.append(Draft([text], (own_key,), own_key, True))
 
     def _rebase(self) -> None:
         self.view = self.base
-        for change in self.pending:
+        for change in self.pending_changes:
             with suppress(Refused):  # the computer says the same, soon
-                self.view = applied(self.view, change).tree
+                self.view = apply_change(self.view, change).tree
 
     # -- what is shown ----------------------------------------------------------------------------
 
-    def _show(self, caret: int | None = None, at: tuple[Draft, int] | None = None) -> None:
+    def _show(self, caret: int | None = None, caret_draft: tuple[Draft, int] | None = None) -> None:
         """Lay the lines of the program and of the drafts out anew; the caret stays in its line,
-        which may be `at` a line of a draft."""
-        stays_at: tuple[Any, int] | None = at
-        if at is None and caret is not None:
-            stays_at = self._caret_item(caret)
-        program = lines(self.view)
-        present = {key for line in program for key in line.keys}
-        hidden = {key for draft in self.drafts for key in draft.covers}
-        behind: dict[Key | None, list[Draft]] = {}
+        which may be that of a draft, `caret_draft`."""
+        caret_target: tuple[Any, int] | None = caret_draft
+        if caret_draft is None and caret is not None:
+            caret_target = self._caret_target(caret)
+        program_lines = tree_lines(self.view)
+        present_keys = {key for line in program_lines for key in line.keys}
+        hidden_keys = {key for draft in self.drafts for key in draft.covered_keys}
+        drafts_behind: dict[Key | None, list[Draft]] = {}
         for draft in self.drafts:
-            there = [key for key in draft.covers if key in present]
-            anchor = there[0] if there else self._anchor(draft.above, present)
-            behind.setdefault(anchor, []).append(draft)
-        items: list[Item] = []
+            present_covers = [key for key in draft.covered_keys if key in present_keys]
+            anchor = (
+                present_covers[0] if present_covers else self._anchor(draft.key_above, present_keys)
+            )
+            drafts_behind.setdefault(anchor, []).append(draft)
+        shown_lines: list[ShownLine] = []
 
-        def put(keys: Iterable[Key | None]) -> None:
+        def put_drafts(keys: Iterable[Key | None]) -> None:
             for key in keys:
-                for draft in behind.pop(key, ()):
+                for draft in drafts_behind.pop(key, ()):
                     rows: list[str | None] = [*draft.rows] or [None]
-                    items.extend(Item(row, (), draft) for row in rows)
+                    shown_lines.extend(ShownLine(row, (), draft) for row in rows)
 
-        put([None])
-        for line in program:
-            if not line.keys or not hidden.issuperset(line.keys):
-                items.append(Item(line.text, line.keys))
-            put(line.keys)
-        put(list(behind))
-        self._items = items
-        shown = self._shown()
-        self.text = [item.text or "" for item in shown]
-        self.caret = min(caret or 0, max(0, len(self.text) - 1))
-        if stays_at is not None:
-            what, k = stays_at
-            found = [i for i, item in enumerate(shown) if what in (item.draft, item.keys)]
-            self.caret = found[0] + k if found else self.caret
+        put_drafts([None])
+        for line in program_lines:
+            if not line.keys or not hidden_keys.issuperset(line.keys):
+                shown_lines.append(ShownLine(line.text, line.keys))
+            put_drafts(line.keys)
+        put_drafts(list(drafts_behind))
+        self._shown_lines = shown_lines
+        visible_lines = self._visible_lines()
+        self.lines = [item.text or "" for item in visible_lines]
+        self.caret = min(caret or 0, max(0, len(self.lines) - 1))
+        if caret_target is not None:
+            target, k = caret_target
+            indexes = [
+                i for i, item in enumerate(visible_lines) if target in (item.draft, item.keys)
+            ]
+            self.caret = indexes[0] + k if indexes else self.caret
 
-    def _caret_item(self, caret: int) -> tuple[Any, int] | None:
+    def _caret_target(self, caret: int) -> tuple[Any, int] | None:
         """Return the draft that has the line of the caret, and which of its lines; or its keys."""
-        shown = self._shown()
-        if not 0 <= caret < len(shown):
+        visible_lines = self._visible_lines()
+        if not 0 <= caret < len(visible_lines):
             return None
-        draft = shown[caret].draft
+        draft = visible_lines[caret].draft
         if draft is not None:
-            return draft, sum(item.draft is draft for item in shown[:caret])
-        return (shown[caret].keys, 0) if shown[caret].keys else None
+            return draft, sum(item.draft is draft for item in visible_lines[:caret])
+        return (visible_lines[caret].keys, 0) if visible_lines[caret].keys else None
 
     def ids_of_lines(self) -> list[str]:
         """Return whose each line is that is shown: the id of an instruction, or nothing."""
-        found = []
-        for item in self._shown():
-            covers = item.draft.covers if item.draft else item.keys
-            found.append(covers[-1][0] if covers else "")
-        return found
+        ids = []
+        for item in self._visible_lines():
+            keys = item.draft.covered_keys if item.draft else item.keys
+            ids.append(keys[-1][0] if keys else "")
+        return ids
 
-    def _anchor(self, above: Key | None, present: set[Key]) -> Key | None:
+    def _anchor(self, key_above: Key | None, present_keys: set[Key]) -> Key | None:
         """Return the line behind which a draft is whose line above has gone."""
-        if above is None or above in present:
-            return above
-        id = above[0]
+        if key_above is None or key_above in present_keys:
+            return key_above
+        id = key_above[0]
         for _ in range(MOST_STEPS):
-            if id not in self.view.gone:
+            if id not in self.view.former_places:
                 break
-            container, behind, _ = self.view.gone[id]
-            id = behind or container
-            for key in ((id, OF_END), (id, OWN)) if behind else ((id, OWN),):
-                if key in present:
+            container, previous, _ = self.view.former_places[id]
+            id = previous or container
+            for key in ((id, OF_END), (id, OWN)) if previous else ((id, OWN),):
+                if key in present_keys:
                     return key
         return None
 
 
-def _covers(items: list[Item]) -> Iterator[Key]:
+def _covered_keys(shown_lines: list[ShownLine]) -> Iterator[Key]:
     """Return whose lines these are, or take the place of."""
-    for item in items:
-        yield from item.draft.covers if item.draft else item.keys
+    for item in shown_lines:
+        yield from item.draft.covered_keys if item.draft else item.keys
 
 
-def _key(found: Any) -> Key:
-    id, role = found
+def _key(data: Any) -> Key:
+    id, role = data
     return str(id), str(role)

@@ -21,10 +21,10 @@ Shape = tuple[str, str, str, tuple[Any, ...]]  # text, note, note of the end, wh
 
 ROOT, START = "root", "start"
 ARMS = frozenset(("ELSE", "ELSEIF"))
-DO, BLOCK, ARM, NOTE = "do", "block", "arm", "note"
+INSTRUCTION, BLOCK, ARM, NOTE = "do", "block", "arm", "note"
 TEXT, COMMENT, APART, END = FIELDS = ("text", "note", "apart", "end")
 PLACE = "place"  # what has a mark besides fields
-MOST_GONE = 2000  # ids of which it is known where they were; the oldest are forgotten
+MOST_FORMER_PLACES = 2000  # ids of which it is known where they were; the oldest are forgotten
 
 
 def first_word(text: str) -> str:
@@ -38,55 +38,58 @@ def kind_of(text: str) -> str:
     if text.startswith("//"):
         return NOTE
     word = first_word(text)
-    return BLOCK if word in BLOCK_ENDS else ARM if word in ARMS else DO
+    return BLOCK if word in BLOCK_ENDS else ARM if word in ARMS else INSTRUCTION
 
 
-class Part(NamedTuple):
-    """A node that is not in a tree, with all that is in it; `born` and `marks` of one that was."""
+class Subtree(NamedTuple):
+    """A node that is not in a tree, with all that is in it.
+
+    `creator_uid` and `marks` are those of one that was in a tree.
+    """
 
     id: str
     text: str = ""
     note: str = ""
     apart: bool = False
     end: str = ""
-    inside: tuple[Part, ...] = ()
-    born: str = ""
+    children: tuple[Subtree, ...] = ()
+    creator_uid: str = ""
     marks: tuple[tuple[str, str], ...] = ()
 
     def ids(self) -> Iterator[str]:
         """Return its id and those of all that is in it, in the order of the text."""
         yield self.id
-        for each in self.inside:
-            yield from each.ids()
+        for child in self.children:
+            yield from child.ids()
 
     def data(self) -> Json:
         """Return it for JSON, without what is usual."""
-        found: Json = {"id": self.id}
+        data: Json = {"id": self.id}
         for name in FIELDS:
             if getattr(self, name):
-                found[name] = getattr(self, name)
-        if self.inside:
-            found["in"] = [each.data() for each in self.inside]
-        if self.born:
-            found["born"] = self.born
+                data[name] = getattr(self, name)
+        if self.children:
+            data["in"] = [each.data() for each in self.children]
+        if self.creator_uid:
+            data["born"] = self.creator_uid
         if self.marks:
-            found["marks"] = dict(self.marks)
-        return found
+            data["marks"] = dict(self.marks)
+        return data
 
 
-class Gone(NamedTuple):
+class FormerPlace(NamedTuple):
     """Where what is no more was; `is_deleted`: with all that was in it."""
 
     container: str
-    behind: str
+    previous: str
     is_deleted: bool
 
 
 @dataclass(slots=True)
 class Node:
     """`note` is behind the instruction, `end` behind the end of its block; `apart`: an empty line
-    is before it. `born` is the change that made it; `marks` says of each field and of the place
-    which change was the last, where another one was.
+    is before it. `creator_uid` is the change that made it; `marks` says of each field and of the
+    place which change was the last, where another one was.
     """
 
     id: str
@@ -96,17 +99,17 @@ class Node:
     apart: bool = False
     end: str = ""
     parent: str = ""
-    inside: list[str] = field(default_factory=list)
-    born: str = ""
+    children: list[str] = field(default_factory=list)
+    creator_uid: str = ""
     marks: dict[str, str] = field(default_factory=dict)
 
     def mark(self, name: str) -> str:
         """Return the last change of a field, or of the place."""
-        return self.marks.get(name, self.born)
+        return self.marks.get(name, self.creator_uid)
 
     def copy(self) -> Node:
         return Node(self.id, self.kind, self.text, self.note, self.apart, self.end, self.parent,
-                    self.inside[:], self.born, dict(self.marks))  # fmt: skip
+                    self.children[:], self.creator_uid, dict(self.marks))  # fmt: skip
 
 
 class Tree:
@@ -114,16 +117,16 @@ class Tree:
 
     def __init__(self) -> None:
         self.nodes: dict[str, Node] = {
-            ROOT: Node(ROOT, BLOCK, inside=[START]),
+            ROOT: Node(ROOT, BLOCK, children=[START]),
             START: Node(START, START, parent=ROOT),
         }
-        self.gone: dict[str, Gone] = {}
+        self.former_places: dict[str, FormerPlace] = {}
 
     def copy(self) -> Tree:
-        new = Tree.__new__(Tree)
-        new.nodes = {id: node.copy() for id, node in self.nodes.items()}
-        new.gone = dict(self.gone)
-        return new
+        copied = Tree.__new__(Tree)
+        copied.nodes = {id: node.copy() for id, node in self.nodes.items()}
+        copied.former_places = dict(self.former_places)
+        return copied
 
     def __getitem__(self, id: str) -> Node:
         return self.nodes[id]
@@ -131,18 +134,18 @@ class Tree:
     def __contains__(self, id: object) -> bool:
         return id in self.nodes
 
-    def behind(self, id: str) -> str:
+    def previous_sibling(self, id: str) -> str:
         """Return the id before a node among its siblings, or nothing."""
-        siblings = self.nodes[self.nodes[id].parent].inside
+        siblings = self.nodes[self.nodes[id].parent].children
         k = siblings.index(id)
         return siblings[k - 1] if k else ""
 
-    def below(self, id: str = ROOT) -> list[str]:
+    def subtree_ids(self, id: str = ROOT) -> list[str]:
         """Return a node's id and those of all that is in it, in the order of the text."""
-        found = [id]
-        for each in self.nodes[id].inside:
-            found += self.below(each)
-        return found
+        ids = [id]
+        for child_id in self.nodes[id].children:
+            ids += self.subtree_ids(child_id)
+        return ids
 
     def is_in(self, id: str, other: str) -> bool:
         """Whether a node is another one, or in it."""
@@ -150,78 +153,91 @@ class Tree:
             id = self.nodes[id].parent
         return id == other
 
-    def of_arm(self, arm: str) -> list[str]:
+    def ids_of_arm(self, arm: str) -> list[str]:
         """Return what belongs to an arm: up to the next one."""
-        siblings = self.nodes[self.nodes[arm].parent].inside
-        found = []
-        for each in siblings[siblings.index(arm) + 1 :]:
-            if self.nodes[each].kind == ARM:
+        siblings = self.nodes[self.nodes[arm].parent].children
+        ids = []
+        for sibling in siblings[siblings.index(arm) + 1 :]:
+            if self.nodes[sibling].kind == ARM:
                 break
-            found.append(each)
-        return found
+            ids.append(sibling)
+        return ids
 
-    def add(self, part: Part, parent: str, uid: str) -> Node:
+    def add(self, subtree: Subtree, parent: str, uid: str) -> Node:
         """Add a node and what is in it; it has no place among its siblings yet."""
-        node = Node(part.id, kind_of(part.text), part.text, part.note, part.apart, part.end, parent,
-                    [each.id for each in part.inside], part.born or uid,
-                    dict(part.marks))  # fmt: skip
+        node = Node(
+            subtree.id,
+            kind_of(subtree.text),
+            subtree.text,
+            subtree.note,
+            subtree.apart,
+            subtree.end,
+            parent,
+            [child.id for child in subtree.children],
+            subtree.creator_uid or uid,
+            dict(subtree.marks),
+        )
         self.nodes[node.id] = node
-        for each in part.inside:
-            self.add(each, node.id, uid)
+        for child in subtree.children:
+            self.add(child, node.id, uid)
         return node
 
-    def put(self, ids: list[str], container: str, behind: str) -> None:
+    def put(self, ids: list[str], container: str, previous: str) -> None:
         """Give nodes their place."""
-        siblings = self.nodes[container].inside
-        k = siblings.index(behind) + 1 if behind else 0
+        siblings = self.nodes[container].children
+        k = siblings.index(previous) + 1 if previous else 0
         siblings[k:k] = ids
         for id in ids:
             self.nodes[id].parent = container
 
-    def forget(self, id: str, was: Gone) -> None:
+    def forget(self, id: str, former_place: FormerPlace) -> None:
         """Take a node out, whose place is given away already."""
         del self.nodes[id]
-        self.gone.pop(id, None)  # the newest is the last
-        self.gone[id] = was
+        self.former_places.pop(id, None)  # the newest is the last
+        self.former_places[id] = former_place
 
-    def limit_gone(self) -> None:
-        for id in list(islice(self.gone, max(0, len(self.gone) - MOST_GONE))):
-            del self.gone[id]
+    def limit_former_places(self) -> None:
+        for id in list(
+            islice(self.former_places, max(0, len(self.former_places) - MOST_FORMER_PLACES))
+        ):
+            del self.former_places[id]
 
     # -- as data ----------------------------------------------------------------------------------
 
-    def part(self, id: str, is_whole: bool = True) -> Part:
+    def subtree(self, id: str, is_whole: bool = True) -> Subtree:
         """Return a node, with its marks and what is in it if it `is_whole`."""
         node = self.nodes[id]
-        inside = tuple(self.part(each) for each in node.inside) if is_whole else ()
+        children = tuple(self.subtree(each) for each in node.children) if is_whole else ()
         marks = tuple(node.marks.items())
-        return Part(id, node.text, node.note, node.apart, node.end, inside, node.born, marks)
+        return Subtree(
+            id, node.text, node.note, node.apart, node.end, children, node.creator_uid, marks
+        )
 
     def snapshot(self) -> Json:
-        return {"tree": self.part(ROOT).data(), "gone": {id: list(each) for id, each in
-                                                         self.gone.items()}}  # fmt: skip
+        return {"tree": self.subtree(ROOT).data(), "gone": {id: list(each) for id, each in
+                                                         self.former_places.items()}}  # fmt: skip
 
     @classmethod
-    def of(cls, root: Part, gone: dict[str, Gone]) -> Tree:
+    def of(cls, root: Subtree, former_places: dict[str, FormerPlace]) -> Tree:
         tree = cls()
         tree.nodes = {}
         tree.add(root, "", "")
         tree.nodes[ROOT].kind, tree.nodes[START].kind = BLOCK, START
-        tree.gone = gone
+        tree.former_places = former_places
         return tree
 
     def checksum(self) -> int:
         """Return a number that two trees share only where they are the same."""
-        whole = json.dumps(self.part(ROOT).data(), sort_keys=True, separators=(",", ":"))
-        return crc32(whole.encode())
+        encoded = json.dumps(self.subtree(ROOT).data(), sort_keys=True, separators=(",", ":"))
+        return crc32(encoded.encode())
 
     def shape(self) -> Shape:
         """Return what a page shows of it, without ids. A start that is not said is the first."""
-        inside = self.nodes[ROOT].inside
+        children = self.nodes[ROOT].children
         if not self.nodes[START].text:
-            inside = [START, *(id for id in inside if id != START)]
-        return ("", "", "", tuple(map(self._shape, inside)))
+            children = [START, *(id for id in children if id != START)]
+        return ("", "", "", tuple(map(self._shape, children)))
 
     def _shape(self, id: str) -> Shape:
         node = self.nodes[id]
-        return (node.text, node.note, node.end, tuple(map(self._shape, node.inside)))
+        return (node.text, node.note, node.end, tuple(map(self._shape, node.children)))
