@@ -104,7 +104,7 @@ class Clone:
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
         self.package = copied(self.root)
-        self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
+        self.page = self.package / "tiniscript" / "studio" / "page" / serving.INDEX_FILE
         self.put("tools/studio/package-lock.json", "{}")
         lock = install_advice.LOCKS[install_advice.STUDIO]
         self.put("tools/studio/requirements.txt", lock.read_text())
@@ -430,7 +430,7 @@ def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None)
 
 
 def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
-    if not building.are_fetched():
+    if not building.are_packages_fetched():
         need("the packages of npm are not there")
     found = fetching.size_of(building.MODULES) / 1e6
     assert abs(found - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10

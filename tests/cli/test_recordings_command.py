@@ -18,12 +18,12 @@ from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import REAL, Row, decode, encode, head
+from tiniscript.studio.playing import play, prepare
+from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
 
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
-HEAD = head(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
+HEAD = header_line(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
 AGAIN = "The virtual robot did exactly the same again. Rows: "
 
 
@@ -47,7 +47,7 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     assert (again.code, again.out) == (0, done.out)
     assert again.err == f"{AGAIN}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
-    changed = recordings.line(show), recordings.line(show._replace(event="SHOW 100"))
+    changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
     file.write_text(file.read_text().replace(*changed))
     other = tsc("run", file, "--lang", "es").gives(1)
     assert "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual" in other.err
@@ -85,7 +85,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program.write_text(TEXT)
     inside("upload", program, "--virtual", "--record", file).gives(1, "3")
     recording = decode(file.read_bytes())
-    assert (recording.program, recording.text, recording.of) == (CHECKSUM, TEXT, REAL)
+    assert (recording.program, recording.text, recording.robot_kind) == (CHECKSUM, TEXT, REAL)
     assert [row.event for row in recording.rows] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
     assert not is_foreign(file)
@@ -317,7 +317,7 @@ def test_a_recording_ends_when_the_run_does(
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
     events = recorded(file, ("SHOW", "5"), began_s=10.0, end=event)
     assert events == (Row(200, "SHOW 5"), Row(60_000, wanted))
-    compared = play(ready(decode(file.read_bytes()))).parting
+    compared = play(prepare(decode(file.read_bytes()))).divergence
     assert compared is not None and compared.what == ("same" if event else "virtual_more")
 
 

@@ -52,7 +52,7 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
     parts = [block for step in steps for block in step["blocks"] if block["kind"] != "program"]
     sentences = [title, *(row[0] for block in parts for row in block["rows"] if row)]
     sentences += [step["hint"] for step in steps]
-    spoken = page_lessons.spoken(number, language)
+    spoken = page_lessons.spoken_blocks(number, language)
     is_line_on_floor = has_line_on_floor(number)
     for each in sentences:
         assert of_text(each, language, is_line_on_floor=is_line_on_floor) == [], each

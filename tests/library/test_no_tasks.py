@@ -99,9 +99,9 @@ def test_the_studio_neither_sends_nor_simulates() -> None:
     assert found.image == b""
     message = found.findings[-1].message
     assert WORDS["es"] in message.message and (message.code, message.line) == ("TS313", 2)
-    line = checking.line(TEXT.encode(), ROBOT, "es")
+    line = checking.line_for_robot(TEXT.encode(), ROBOT, "es")
     assert not isinstance(line, str) and (line.code, line.line) == ("TS308", 2)
-    check = page_lessons.Check(1, TEXT.encode(), "es")
+    check = page_lessons.LessonCheck(1, TEXT.encode(), "es")
     assert check.go(1000)["verdict"] == page_lessons.MISTAKES
 
 
@@ -121,7 +121,7 @@ def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
 def test_a_recording_of_it_is_not_played() -> None:
     """No robot has run it."""
     checksum = tiniscript.compile(TEXT, ROBOT).checksum
-    head = recordings.head(recordings.REAL, TEXT, robots.load(ROBOT), checksum)
+    head = recordings.header_line(recordings.REAL, TEXT, robots.load(ROBOT), checksum)
     recording = recordings.decode(recordings.encode(head, (), 1).encode())
     with pytest.raises(recordings.BadRecording, match="other_program"):
-        playing.ready(recording)
+        playing.prepare(recording)

@@ -32,7 +32,7 @@ from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.semantics import ir
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import format_source
 from tools.generate import paper, poster, text_tables
@@ -152,7 +152,7 @@ def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
 
 def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     assert format_source(Source(PROGRAM.lower())) == PROGRAM
-    form = read(PROGRAM, KIT)
+    form = read_blocks(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
     assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())
     assert print_blocks(form).text == PROGRAM

@@ -405,7 +405,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(serving, "is_built", lambda: False)
     monkeypatch.setattr(building, "find_tools", lambda: None)
-    monkeypatch.setattr(building, "are_fetched", lambda: False)
+    monkeypatch.setattr(building, "are_packages_fetched", lambda: False)
     assert page_build.megabytes() == building.NODE_MB + building.NPM_MB
     monkeypatch.setattr(building, "find_tools", lambda: building.Tools([], [], ""))
     assert page_build.megabytes() == building.NPM_MB == 40  # as the READMEs say

@@ -254,7 +254,7 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     ("text", "kind"), [("SHOW(KEY_A)", "SENSOR"), ("KEY_A = 1;SHOW(KEY_A)", "NAME")]
 )
 def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
-    show = block_reading.read(text, TINIBOT).body[-1]
+    show = block_reading.read_blocks(text, TINIBOT).body[-1]
     assert show.values == (((kind, "KEY_A"),),)
 
 

@@ -25,7 +25,7 @@ import pytest
 from tests.sharing.test_strangers import driven, registration_of, say_all
 from tests.support.command import process
 from tests.support.waiting import HANGS_S
-from tiniscript.studio.serving import CONNECTIONS
+from tiniscript.studio.serving import MOST_CONNECTIONS
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="only Linux tells of a process what it has"
@@ -184,7 +184,7 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
             before = had(pid)
             with visitors(port, kind, count):
                 assert page(port) == b"<!doctype html>"
-                meanwhile = settled(pid, before.files + CONNECTIONS + 3)
+                meanwhile = settled(pid, before.files + MOST_CONNECTIONS + 3)
             found.append((kind, before, meanwhile, settled(pid, before.files + 3)))
             assert page(port) == b"<!doctype html>"
     return found
@@ -192,7 +192,7 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
 
 def test_the_studio_gives_its_page_among_many_who_come() -> None:
     for kind, before, meanwhile, after in attack_studio(TESTED):
-        assert meanwhile.files <= before.files + CONNECTIONS + 3, kind
+        assert meanwhile.files <= before.files + MOST_CONNECTIONS + 3, kind
         assert after.files <= before.files + 3, kind
         assert after.memory_kb <= before.memory_kb + GROWN_KB, kind
 

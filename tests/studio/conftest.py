@@ -28,7 +28,7 @@ def own(server: serving.Server) -> str:
 @pytest.fixture
 def unhurried(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page may be silent for as long as a busy computer keeps it so: its robot drives on."""
-    monkeypatch.setattr(attending, "HEARD_S", HANGS_S)
+    monkeypatch.setattr(attending, "ATTENDED_S", HANGS_S)
     monkeypatch.setattr(attending, "LEFT_S", HANGS_S)
 
 

@@ -14,8 +14,8 @@ from tests.oracle.task_programs import TaskAuthor
 from tiniscript import robots
 from tiniscript.bytecode.image import checksum
 from tiniscript.library.compiling import compile_source, fit_to_robot
-from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import VIRTUAL, Row, decode, encode, head
+from tiniscript.studio.playing import play, prepare
+from tiniscript.studio.recordings import VIRTUAL, Row, decode, encode, header_line
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
@@ -47,8 +47,8 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
             run.go(rng.randint(0, 30))
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
-    first = head(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
-                 told=told)  # fmt: skip
+    first = header_line(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
+                 given_readings=told)  # fmt: skip
     happened = [row for row in rows if not row.is_input]
     return encode(first, rows, end_ms).encode(), happened
 
@@ -64,9 +64,9 @@ def _act(rng: random.Random, run: Simulation) -> None:
 def differs(number: int) -> str | None:
     """Return how a random run differs when it is played again, or None."""
     data, happened = recorded(number)
-    played = play(ready(decode(data)))
+    played = play(prepare(decode(data)))
     again = [row for row in played.rows() if not row.is_input]
-    parting = played.parting
+    parting = played.divergence
     played.close()
     if parting is None or parting.what != "again" or parting.agreed != len(happened):
         return f"{parting}\n{data.decode()}"

@@ -22,15 +22,15 @@ from tiniscript.studio.block_form import (
     LEFT_OUT,
     Block,
     Form,
-    beginning,
     data_of,
+    first_blocks,
     from_data,
     in_order,
     size_of,
 )
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.worker import MOST_BLOCKS, answer
 from tiniscript.syntax.formatter import format_source
 from tiniscript.syntax.lexer import scan
@@ -39,7 +39,7 @@ TINIBOT = robots.load("tinibot").kit
 
 
 def kinds(text: str, kit: Kit = TINIBOT) -> list[str]:
-    return [block.kind for block in in_order(read(text, kit).body)]
+    return [block.kind for block in in_order(read_blocks(text, kit).body)]
 
 
 def comments(text: str) -> list[str]:
@@ -57,10 +57,10 @@ def words(text: str) -> list[str]:
 def check(text: str, kit: Kit) -> None:
     """A right program keeps its image and its comments, has no grey block, and is laid out."""
     before = compile_text(text, kit)
-    for form in (read(text, kit), touched(read(text, kit))):
+    for form in (read_blocks(text, kit), touched(read_blocks(text, kit))):
         check_form(form, text, kit, before.image)
     if "///" not in text and not text.startswith("PING"):
-        assert print_blocks(read(text, kit)).text == format_source(Source(text)), text
+        assert print_blocks(read_blocks(text, kit)).text == format_source(Source(text)), text
 
 
 def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
@@ -70,7 +70,7 @@ def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
     assert after.is_right and after.image == image, printed.text
     assert format_source(Source(printed.text)) == printed.text
     assert comments(printed.text) == comments(text), printed.text
-    again = read(printed.text, kit)
+    again = read_blocks(printed.text, kit)
     assert print_blocks(again).text == printed.text
     found = zip(in_order(again.body), printed.places, strict=True)
     for block, place in found:
@@ -85,7 +85,7 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
     if compile_text(program.text, kit).is_right:
         check(program.text, kit)
     else:
-        print_blocks(read(program.text, kit))
+        print_blocks(read_blocks(program.text, kit))
 
 
 @pytest.mark.sampled("first")
@@ -103,16 +103,16 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
         theirs, kit = KITS[seed % len(KITS)]
         text = oracle_programs.broken(rng, oracle_programs.program(rng, theirs))
         if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
-            print_blocks(read(text, kit))
+            print_blocks(read_blocks(text, kit))
         else:
-            assert words(print_blocks(read(text, kit)).text) == words(text), text
+            assert words(print_blocks(read_blocks(text, kit)).text) == words(text), text
 
 
 def test_what_pupils_write_becomes_blocks_and_text() -> None:
     for text in sorted({entry.program for entry in corpus.entries()}):
-        form = read(text, TINIBOT)
-        again = print_blocks(read(print_blocks(form).text, TINIBOT)).text
-        assert print_blocks(read(again, TINIBOT)).text == again, text
+        form = read_blocks(text, TINIBOT)
+        again = print_blocks(read_blocks(print_blocks(form).text, TINIBOT)).text
+        assert print_blocks(read_blocks(again, TINIBOT)).text == again, text
         assert not text.strip() or form.body or form.start or ";" in text, text
 
 
@@ -153,7 +153,7 @@ def of_word(word: str) -> str:
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
     check(text, TINIBOT)
-    printed = print_blocks(read(text, TINIBOT)).text
+    printed = print_blocks(read_blocks(text, TINIBOT)).text
     assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
     assert sorted(words(printed)) == sorted(words(text))
 
@@ -169,7 +169,7 @@ def test_a_way_is_a_move_with_another_unit(word: str, unit: str) -> None:
     way = f"{word}(X * 2 {unit}, 60)"
     for until, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
         check(f"X = 20;{way}{until}", TINIBOT)
-        (block,) = read(way + until, TINIBOT).body
+        (block,) = read_blocks(way + until, TINIBOT).body
         assert (block.kind, block.word) == (kind, f"{word} {unit}")
     assert kinds(way.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
 
@@ -191,7 +191,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     text = ";".join(of_word(word) for word in WORDS if WORDS[word].role.name not in left_out)
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
-    blocks = in_order(read(text, TINIBOT).body)
+    blocks = in_order(read_blocks(text, TINIBOT).body)
     assert {block.kind for block in blocks} == {
         kind.name for kind in KINDS.values() if not kind.gives
     }
@@ -227,7 +227,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     ],
 )  # fmt: skip
 def test_what_blocks_are_as_text(text: str, printed: str) -> None:
-    assert print_blocks(touched(read(text, TINIBOT))).text == printed
+    assert print_blocks(touched(read_blocks(text, TINIBOT))).text == printed
 
 
 def touched(form: Form) -> Form:
@@ -247,7 +247,7 @@ def test_who_changes_a_block_changes_its_line_alone() -> None:
         "IF(1.50 > (X));  // a\n  F((1), 080);\nELSEIF((X) > 2);  // b\n  S;\n"
         "ELSE;  // c\nENDIF;  // d\n"
     )
-    data = json.loads(json.dumps(data_of(read(text, TINIBOT))))
+    data = json.loads(json.dumps(data_of(read_blocks(text, TINIBOT))))
     block = data["body"][0]
     block["bodies"][0][0]["values"][0] = [["NUMBER", "3"]]
     block["bodies"][0][0]["said"] = []
@@ -260,7 +260,7 @@ def test_who_changes_a_block_changes_its_line_alone() -> None:
 
 def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
     text = "SI|F(2, 80)\nF(1; 80)\n  ¿qué? // hm\nIF(DISTANCE < 10)\nS\nENDIF\n"
-    form = read(text, TINIBOT)
+    form = read_blocks(text, TINIBOT)
     assert [(block.kind, block.word) for block in form.body if block.kind == "grey"] == [
         ("grey", "F(1; 80)"), ("grey", "¿qué? // hm")
     ]  # fmt: skip
@@ -270,13 +270,13 @@ def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
         "SI|F(2, 80);\nF(1; 80)\n¿qué? // hm\nIF(DISTANCE < 10);\n  S;\nENDIF;\n"
     )
     assert printed.places[:3] == ((1, 4, 1, 12), (2, 1, 2, 9), (3, 1, 3, 12))
-    assert print_blocks(read(printed.text, TINIBOT)).text == printed.text
+    assert print_blocks(read_blocks(printed.text, TINIBOT)).text == printed.text
 
 
 @pytest.mark.parametrize("text", ["F(1)", "S(2)", "S UNTIL(TRUE)", "HOP(1, 2)", "F(1, 2, 3)"])
 def test_what_no_block_has_room_for_is_grey(text: str) -> None:
     assert kinds(text) == ["grey"]
-    printed = print_blocks(read(f"{text} // no", TINIBOT)).text
+    printed = print_blocks(read_blocks(f"{text} // no", TINIBOT)).text
     assert printed.split() == [*text.split(), "//", "no"]
 
 
@@ -291,7 +291,7 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
         "SI|S\n\n/// F(1, 80);  // later\n/// IF(DISTANCE < 10);\n///   S;\n/// ENDIF;\n///\n"
         "/// = DISTANCE < 10\n///\n/// X = 5\n"
     )
-    form = read(text, TINIBOT)
+    form = read_blocks(text, TINIBOT)
     assert [block.kind for block in form.body] == ["stop"]
     assert [[block.kind for block in stack.body] for stack in form.loose] == [
         ["move", "if"], [], ["assign"]
@@ -303,7 +303,7 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
 
 @pytest.mark.parametrize("text", ["/// 5 of them", "/// SI|S", "///\n/// F(1", "/// S\nF(1, 80)"])
 def test_other_comments_with_three_signs_stay_comments(text: str) -> None:
-    form = read(text, TINIBOT)
+    form = read_blocks(text, TINIBOT)
     assert form.loose == () and form.body[0].kind == "comment"
     assert comments(print_blocks(form).text) == comments(text)
 
@@ -341,15 +341,15 @@ def test_a_very_long_program_stays_text() -> None:
     assert json.loads(answer(asked, many)) == {"size": MOST_BLOCKS + 1}
     deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
     assert json.loads(answer(asked, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
-    assert size_of(read("/// F(1, 2)", TINIBOT)) == 3
+    assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 
 @each_row("program", programs())
 def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> None:
-    form = read(program.text, robots.load(program.robot).kit)
+    form = read_blocks(program.text, robots.load(program.robot).kit)
     whole = in_order(form.body)
     for most in (1, 2, 7, 40, size_of(form)):
-        found = beginning(form, most)
+        found = first_blocks(form, most)
         assert size_of(found) <= most
         first = in_order(found.body)
         if size_of(form) <= most:

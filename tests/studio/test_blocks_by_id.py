@@ -14,7 +14,7 @@ from tiniscript import robots
 from tiniscript.studio import page_together
 from tiniscript.studio.block_form import data_of, from_data, in_order
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read as read_blocks
+from tiniscript.studio.block_reading import read_blocks as read_blocks
 from tiniscript.together.form import Change as Made
 from tiniscript.together.form import Delete, Insert, Place, Replace, change_of
 from tiniscript.together.layout import parse_tree, text_of
@@ -68,7 +68,7 @@ class Ana:
             data["id"] = id
         lines = [[id, block.place[0]] for id, block in zip(self.ids, blocks, strict=True)]
         fields = {"version": self.answer["version"], "lines": lines}
-        assert page_together.blocks(fields, b"") == {"is_known": True}
+        assert page_together.show_blocks(fields, b"") == {"is_known": True}
 
     def inside(self, body: list[Json]) -> list[Json]:
         found = []

@@ -133,7 +133,7 @@ def test_the_page_is_small_enough(page: Path) -> None:
     files = [
         path
         for path in page.iterdir()
-        if path.name not in (studio.STAMP, studio.LICENCES_FILE, serving.FIRMWARE)
+        if path.name not in (studio.STAMP, studio.LICENCES_FILE, serving.FIRMWARE_FILE)
     ]
     weights = weights_of(page)
     assert {*weights} == {path.name for path in files}
@@ -232,7 +232,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     assert {path.name for path in (tmp_path / "page").iterdir()} == set(given)
     for name, file in given.items():
         assert (tmp_path / "page" / name).read_bytes() == file.data
-    [row] = json.loads(given[serving.FIRMWARE].data)
+    [row] = json.loads(given[serving.FIRMWARE_FILE].data)
     assert row == {"title": "tinibot", "board": "uno", "file": brought.path.name}
     assert given[row["file"]].data == brought.path.read_bytes()
     assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum

@@ -259,7 +259,7 @@ class History:
         """What goes on after a crash has the same pupils, work, robots and settings."""
         kept = json.loads(json.dumps(self.room.made.state_to_keep()))
         after = Room(0)
-        assert after.made.go_on(kept) == len(state["pupils"])
+        assert after.made.resume(kept) == len(state["pupils"])
         again = after.teaches("class")
         for name in ("code", "turn_s", "places"):
             assert again[name] == state[name], name

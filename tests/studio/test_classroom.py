@@ -543,7 +543,7 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
     states.append(room.made.state_to_keep())
     for k, state in enumerate(states):
         after = Room(0)
-        after.made.go_on(json.loads(json.dumps(state)))
+        after.made.resume(json.loads(json.dumps(state)))
         assert "F(1, 50)" in texts_of(after)
         assert ("given" in after.here(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it takes it no second time
@@ -581,7 +581,7 @@ def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("places", [classroom.PLACES, class_keeping.MOST_PUPILS])
+@pytest.mark.parametrize("places", [classroom.PLACES_PER_ADDRESS, class_keeping.MOST_PUPILS])
 def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
     """Not of one address, and, where the teacher has allowed that, not of a whole network's."""
     room = Room()
@@ -602,9 +602,11 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
         failures += [answer["failure"]] if "failure" in answer else []
     assert set(texts_of(room)) >= {f"SHOW({k})" for k in range(30)}
     works = len(room.teaches("class_work")["pupils"])
-    assert works == min(30 + classroom.WORKS * places, class_keeping.MOST_WORKS)
-    assert failures[-1] == ("class_crowded" if places == classroom.PLACES else "class_full")
-    if places == classroom.PLACES:  # of others there is room
+    assert works == min(30 + classroom.WORKS_PER_PLACE * places, class_keeping.MOST_WORKS)
+    assert failures[-1] == (
+        "class_crowded" if places == classroom.PLACES_PER_ADDRESS else "class_full"
+    )
+    if places == classroom.PLACES_PER_ADDRESS:  # of others there is room
         assert room.joins("Luz", "198.51.100.77")
 
 
@@ -932,7 +934,7 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
         request = {"do": "join", "code": room.made.code, "name": name}
         return room.made.answer("", address, request)
 
-    tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES)]
+    tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES_PER_ADDRESS)]
     assert enters("more") == {"failure": "class_crowded"}
     assert "token" in enters("other", "192.0.2.10")
     room.now_s += classroom.PLACE_S + 1  # the first one's page was closed, and is opened again

@@ -20,7 +20,7 @@ from tests.support.page_server import serves
 from tests.support.waiting import HANGS_S, until
 from tiniscript.link.sharing import peers
 from tiniscript.studio import serving
-from tiniscript.studio.entrances import OPENS_S, Entrances
+from tiniscript.studio.entrances import OPEN_TIMEOUT_S, Entrances
 
 NOBODY = 65534
 # Stands for a browser: another user reads its command line while it runs.
@@ -76,7 +76,7 @@ def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
     doors = Entrances()
-    code = doors.code()
+    code = doors.new_code()
     assert doors.is_unused(code)
     assert doors.token_for(code, peer) == doors.token
     assert not doors.is_unused(code) and doors.token_for(code, peer) == ""
@@ -87,10 +87,10 @@ def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
 def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None:
     clock = Clock()
     doors = Entrances(clock)
-    early, late, printed = doors.code(True), doors.code(True), doors.code()
-    clock.now_s = OPENS_S
+    early, late, printed = doors.new_code(True), doors.new_code(True), doors.new_code()
+    clock.now_s = OPEN_TIMEOUT_S
     assert doors.token_for(early, peer) == doors.token
-    clock.now_s = OPENS_S + 1
+    clock.now_s = OPEN_TIMEOUT_S + 1
     assert doors.token_for(late, peer) == ""
     assert doors.token_for(printed, peer) == doors.token
 
@@ -101,13 +101,13 @@ def test_a_code_that_comes_again_ends_what_it_has_given(
     """Where no system tells the user, another one may have been quicker than the browser."""
     doors = Entrances()
     monkeypatch.setattr(peers, "tells_users", lambda: False)
-    code = doors.code(True)
+    code = doors.new_code(True)
     stolen = doors.token_for(code, peer)
     assert doors.is_owner(stolen, peer)
     assert doors.token_for(code, peer) == ""  # the browser
     assert not doors.is_owner(stolen, peer)
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    again = doors.code()
+    again = doors.new_code()
     given = doors.token_for(again, peer)
     assert doors.token_for(again, peer) == "" and doors.token == given
 
@@ -116,7 +116,7 @@ def test_a_code_that_comes_again_ends_what_it_has_given(
 def test_another_user_has_neither_code_nor_token(peer: socket.socket) -> None:
     doors = Entrances()
     for is_for_here in (True, False):
-        code = doors.code(is_for_here)
+        code = doors.new_code(is_for_here)
         assert doors.token_for(code, peer) == "" and doors.is_unused(code)
     assert not doors.is_owner(doors.token, peer)
 
@@ -125,7 +125,7 @@ def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
     peer: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     doors = Entrances()
-    shown, printed = doors.code(True), doors.code()
+    shown, printed = doors.new_code(True), doors.new_code()
     monkeypatch.setattr(peers, "is_on_this_computer", lambda peer: False)
     monkeypatch.setattr(peers, "is_of_this_user", lambda peer: False)
     assert doors.token_for(shown, peer) == "" and doors.is_unused(shown)
@@ -162,10 +162,10 @@ def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
 
 
 def enter(own: str, code: str) -> tuple[int, Any]:
-    return post(own, "", {"code": code}, serving.ENTER)
+    return post(own, "", {"code": code}, serving.ENTER_PATH)
 
 
-def post(own: str, token: str, request: object, path: str = serving.ROBOTS) -> tuple[int, Any]:
+def post(own: str, token: str, request: object, path: str = serving.ROBOTS_PATH) -> tuple[int, Any]:
     status, data = page_server.post(own, token, json.dumps(request).encode(), path)
     return status, json.loads(data) if status == 200 else data.decode()
 

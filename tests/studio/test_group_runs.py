@@ -85,7 +85,7 @@ class Page:
 
     def looks(self) -> list[Json]:
         known = self.ran[1] if self.ran[0] == self.runs.key else 0
-        number, found = self.runs.after(self.ran, self.name)
+        number, found = self.runs.news_after(self.ran, self.name)
         found = [each for each in json.loads(json.dumps(found)) if each["number"] > known]
         self.ran = [self.runs.key, max(known, number)]
         self.heard += found
@@ -206,7 +206,7 @@ def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
 def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
     runs = GroupRuns(lambda: 0.0)
     runs.tell("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    assert [each["event"] for each in runs.after(known, "teo")[1]] == ["STARTED"]
+    assert [each["event"] for each in runs.news_after(known, "teo")[1]] == ["STARTED"]
 
 
 def test_news_have_the_time_of_their_run() -> None:

@@ -44,7 +44,7 @@ class School(Room):
     def crashes(self) -> None:
         kept = json.loads(json.dumps(self.made.state_to_keep()))
         self.made = self.anew()
-        self.made.go_on(kept)
+        self.made.resume(kept)
         self.made.tidy()
 
 
@@ -235,10 +235,14 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     heard: list[Json] = []
     waiting = in_thread(lambda: heard.append(luz.asks("group", **luz.request(waits=True))))
     until(lambda: members_hold(school, luz) > 0, "the page waits")
-    group = school.made._groups.of(luz.token)
+    group = school.made._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
     begins = {"event": "STARTED", "program": "a", "is_program": True}
-    with group.news, school.made._lock, school.made._groups._lock:  # whoever is busy with these
+    with (
+        group.condition,
+        school.made._lock,
+        school.made._groups._lock,
+    ):  # whoever is busy with these
         telling = in_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
         telling.join(HANGS_S)
         assert not telling.is_alive()
@@ -290,14 +294,14 @@ def has_held(school: School, member: Member, count: int) -> bool:
 
 
 def members_hold(school: School, member: Member) -> int:
-    group = school.made._groups.of(member.token)
+    group = school.made._groups.group_of(member.token)
     assert group is not None
-    return group.members[member.token].holds
+    return group.members[member.token].hold_count
 
 
 def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
-    burst, per_s = groups.CHANGES
+    burst, per_s = groups.CHANGE_RATE
     for k in range(round(burst) + 20):
         ana.types("F(", "B(") if k % 2 == 0 else ana.types("B(1, 8", "F(1, 8")
     answers = [ana.sends() for _ in range(4)]
@@ -400,7 +404,7 @@ def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School
     ana.sends()
     kept = json.loads(json.dumps(school.made.state_to_keep()))
     school.made = school.anew()
-    school.made.go_on(kept, is_same_lesson=False)
+    school.made.resume(kept, is_same_lesson=False)
     assert [each["pupils"] for each in school.teaches("class")["groups"]] == [[]]
     assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
 
@@ -441,7 +445,7 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     assert teacher.page.lines == members[0].page.lines
     [said] = [each for each in members[0].sends()["others"] if each["name"] == "Teacher"]
     marks = {each["mark"] for each in teacher.sends()["others"]}
-    assert marks == set(range(groups.MARKS)) and said["mark"] not in marks
+    assert marks == set(range(groups.MARK_COUNT)) and said["mark"] not in marks
     teacher.types("80", "95")
     teacher.sends(at="i.3", writes=True)
     members[1].sends()
@@ -597,7 +601,7 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         for pupil in made._pupils.values():
             mates = made._mates(pupil)
             turns = [turn for turn in map(made._turn, mates) if turn is not None]
-            waiting = [mate for mate in mates if mate.waits is not None]
+            waiting = [mate for mate in mates if mate.queue_number is not None]
             assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
 
 
@@ -639,13 +643,16 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         member = chance.choice(members)
         turn = school.made._turn_of(school.made._mates(school.made._pupils[member.token]))
         assert turn is not None and turn.pupil is not None
-        robot = school.hosting.robots[turn.pupil.page]
+        robot = school.hosting.robots[turn.pupil.hosting_page]
         before = robot.stopped
         deed = chance.choice(("stop", "connect", "beat"))
         if deed == "connect":
             if turn.pupil.token != member.token:
                 request = {"do": "connect", "page": "x", "port": "y"}
-                early = {**request, "saw_stops": turn.stops - 1}  # it was pressed before a STOP
+                early = {
+                    **request,
+                    "saw_stops": turn.stop_number - 1,
+                }  # it was pressed before a STOP
                 refused = {"failure": "stopped_elsewhere"}
                 assert school.made.answer(member.token, HERE, early) == refused
                 assert turn.pupil.token != member.token
@@ -663,7 +670,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
 
 
 def page_of(school: School, member: Member) -> str:
-    return school.made._pupils[member.token].page
+    return school.made._pupils[member.token].hosting_page
 
 
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
@@ -723,4 +730,4 @@ def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: Sch
     [group] = school.teaches("class")["groups"]
     found = school.teaches("class_text", group=group["key"])
     assert found["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
-    assert [school.made._number(ana.token)] == group["pupils"]
+    assert [school.made._pupil_number(ana.token)] == group["pupils"]

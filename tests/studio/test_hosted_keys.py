@@ -15,7 +15,7 @@ from tests.studio.test_lost_requests import Asker
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript import compile, robots
-from tiniscript.studio.attending import HEARD_S
+from tiniscript.studio.attending import ATTENDED_S
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
@@ -178,7 +178,7 @@ def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot])
         return power_of(robot) == 60
 
     until(drives, "it drives")
-    until(lambda: power_of(robot) == 0, f"after {HEARD_S} s and a little")
+    until(lambda: power_of(robot) == 0, f"after {ATTENDED_S} s and a little")
 
 
 def test_what_nobody_can_hold_is_refused_and_the_next_word_is_heard(hand: Hand) -> None:

@@ -21,7 +21,7 @@ OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|
 
 def judged(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
     """Return what a check says, and its run once more, as the page lets it go on."""
-    marking = page_lessons.Check(number, program.encode(), "en")
+    marking = page_lessons.LessonCheck(number, program.encode(), "en")
     while not (answer := marking.go(700))["verdict"]:
         pass
     robot = catalogue.load(catalogue.folder_of(str(number))).robot
@@ -108,17 +108,17 @@ def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
 
 
 def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
-    (garage,) = page_lessons.goals(1, 1)
+    (garage,) = page_lessons.goal_shapes(1, 1)
     assert garage["is_flag"] and garage["around"] == [[95, 25], [150, 25], [150, 75], [95, 75]]
-    shop, home = page_lessons.goals(2, 1)
+    shop, home = page_lessons.goal_shapes(2, 1)
     assert (shop["x_cm"], shop["y_cm"], shop["radius_cm"], shop["is_flag"]) == (130, 50, 10, True)
     assert not home["is_flag"]
-    (exit_at,), (mirrored,) = page_lessons.goals(8, 1), page_lessons.goals(8, 2)
-    height_cm = page_lessons.world(8, 1).height_cm
+    (exit_at,), (mirrored,) = page_lessons.goal_shapes(8, 1), page_lessons.goal_shapes(8, 2)
+    height_cm = page_lessons.varied_world(8, 1).height_cm
     assert exit_at["y_cm"] == height_cm - mirrored["y_cm"]
-    lamps = [page_lessons.goals(10, seed)[0]["x_cm"] for seed in (1, 2)]
+    lamps = [page_lessons.goal_shapes(10, seed)[0]["x_cm"] for seed in (1, 2)]
     assert lamps[0] != lamps[1]
-    assert page_lessons.goals(13, 1) == []
+    assert page_lessons.goal_shapes(13, 1) == []
 
 
 def test_a_judged_run_can_be_stopped_before_its_end() -> None:

@@ -56,7 +56,7 @@ class CountedLink:
 class SteppedRobot:
     """A connection without a thread and a port."""
 
-    holds = False
+    is_holding_port = False
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
@@ -68,7 +68,9 @@ class SteppedRobot:
         self.has_ended = self.is_parting = False
 
     def _note(self, what: str, stops: int) -> None:
-        World.done.append((what, self.attending.stops if what == "stop" else stops, World.now_ms))
+        World.done.append(
+            (what, self.attending.stop_count if what == "stop" else stops, World.now_ms)
+        )
 
     def leave(self) -> None:
         self.is_parting = True
@@ -299,7 +301,7 @@ def asker(
     request: pytest.FixtureRequest, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Asker]:
     """One that has met its robot, and may ask as often as a test looks."""
-    monkeypatch.setattr(classroom, "REQUESTS", (1e9, 1e9))
+    monkeypatch.setattr(classroom, "REQUEST_RATE", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
         made = Asker(hosting.answer, robot.port)

@@ -178,6 +178,6 @@ def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(made: Path, way: s
     assert not found["over"]
     if way == "host":
         seconds = 6
-        assert found["asked"] / seconds < classroom.REQUESTS[1] - 1000 / 300, (
+        assert found["asked"] / seconds < classroom.REQUEST_RATE[1] - 1000 / 300, (
             "and it looks for its turn"
         )

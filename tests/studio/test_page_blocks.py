@@ -27,7 +27,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
 from tiniscript.studio.block_kinds import KINDS, PLAIN
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, why_stale
 
@@ -137,10 +137,13 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
     assert pane is not None and words is not None
     assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
-    forms = [read(program.text, robots.load(program.robot).kit) for program in programs()[part::10]]
+    forms = [
+        read_blocks(program.text, robots.load(program.robot).kit)
+        for program in programs()[part::10]
+    ]
     for seed in range(part, 300, 10):
         theirs, kit = KITS[seed % len(KITS)]
-        forms.append(read(oracle_programs.program(random.Random(seed), theirs), kit))
+        forms.append(read_blocks(oracle_programs.program(random.Random(seed), theirs), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
     for k, (want, got) in enumerate(zip(data, round_trip(page, data), strict=True)):
         assert got == want, k
@@ -571,7 +574,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     start(page, with_names, "all")
     assert offered(page) == kinds
     for word in (name for name, its in WORDS.items() if its.role.name != "later"):
-        assert kinds_in(read(of_word(word), robots.load("grabber").kit)) <= kinds, word
+        assert kinds_in(read_blocks(of_word(word), robots.load("grabber").kit)) <= kinds, word
     for name in some_of(pytestconfig, "toolboxes", robots.names(), 2):
         page.select_option("#robot", name)
         start(page, with_names, "all")
@@ -604,7 +607,9 @@ def test_a_lesson_offers_its_words_while_it_is_open(
         assert before - {"set"} <= found, number  # its robot may switch nothing
         before = set(found)
         found |= {"call"} if "def" in found else set()  # of a word that somebody has made
-        answers = [kinds_in(read(answer.program, kit)) for answer in catalogue.answers(folder)[0]]
+        answers = [
+            kinds_in(read_blocks(answer.program, kit)) for answer in catalogue.answers(folder)[0]
+        ]
         assert any(kinds <= found for kinds in answers), (number, answers, found)
     page.select_option("#lesson", "1")
     page.locator("#lesson_page[data-lesson='1']").wait_for()

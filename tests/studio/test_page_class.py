@@ -539,7 +539,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
 ) -> None:
     """By a teacher's press alone, and to one: whoever takes a name gets nothing by it."""
     write(ana, "F(1, 77)")
-    until(lambda: "F(1, 77)" in str(taught.room.work()), "the class has it")
+    until(lambda: "F(1, 77)" in str(taught.room.works()), "the class has it")
     teacher.click("#class_settings")
     with teacher.expect_download() as saving:
         teacher.click("[data-text=class_save]")
@@ -570,7 +570,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     row.wait_for(state="detached")  # once her page has said so
     assert "given" not in taught.room.answer(eve, "192.0.2.66", {"do": "here"})
     write(ana, "F(1, 78)")  # and what she writes then stays
-    until(lambda: "F(1, 78)" in str(taught.room.work()), "the class has it")
+    until(lambda: "F(1, 78)" in str(taught.room.works()), "the class has it")
     assert image(ana) == compile("F(1, 78)").image
     if teacher.locator("#class_giving[open]").count():
         teacher.click("#class_giving [data-text=close]")
@@ -587,7 +587,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
 ) -> None:
     """Its word is lost, and the page is loaded again: it gets the same once more."""
     write(ana, "F(1, 33)")
-    until(lambda: "F(1, 33)" in str(taught.room.work()), "the class has it")
+    until(lambda: "F(1, 33)" in str(taught.room.works()), "the class has it")
     asked = {"do": "class_bring", "name": "Ana", "text": "F(1, 77)", "robot": "", "lessons": []}
     taught.room.teach(asked)
     ana.evaluate(LOSES)
@@ -596,7 +596,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     row.filter(has_text="Ana is getting the work back.").wait_for()
     noted(ana, "Your teacher gave you back your work.")
     said(ana, "The teacher’s computer is not responding.")
-    assert "F(1, 77)" in str(taught.room.work())
+    assert "F(1, 77)" in str(taught.room.works())
     ana.reload()
     checked(ana)
     row.wait_for(state="detached")
@@ -620,7 +620,7 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
 ) -> None:
     page = joined(pages, taught, "Noa")
     write(page, "F(1, 66)")
-    until(lambda: "F(1, 66)" in str(taught.room.work()), "the class has it")
+    until(lambda: "F(1, 66)" in str(taught.room.works()), "the class has it")
     page.evaluate("sessionStorage.clear()")  # as if it was closed
     tile(teacher, "Noa").hover()
     tile(teacher, "Noa").locator(".out").click()

@@ -36,7 +36,7 @@ def test_a_new_board_becomes_a_robot(
     rows = [{"title": "tinibot", "board": "uno", "file": file.name}]
     page = {
         **serving.files(),
-        serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
+        serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
         file.name: serving.File(file.read_bytes(), "text/plain"),
     }
     with (

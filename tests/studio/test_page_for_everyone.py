@@ -290,7 +290,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
         ):
             data = page[name].data.replace(old, new, 1)
             assert data != page[name].data
-            page[name] = page[name]._replace(data=data, tag=f'"{new.hex()}"')
+            page[name] = page[name]._replace(data=data, etag=f'"{new.hex()}"')
         tab.evaluate(UPDATE)
         write(tab, "SI|F(3, 30)")  # the old one goes on
         tab.reload()
@@ -324,7 +324,7 @@ def test_the_service_worker_has_every_file() -> None:
         "index.html",
         "service_worker.js",
         "licences.txt",
-        serving.FIRMWARE,
+        serving.FIRMWARE_FILE,
     }
     said = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
     assert set(said) == set(languages())

@@ -57,7 +57,7 @@ def server(browser: Browser) -> Iterator[serving.Server]:
     rows = [{"title": "tinibot", "board": board, "file": FILE} for board in ("uno", "esp32dev")]
     page = {
         **serving.files(),
-        serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
+        serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
         FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
     with studio.served(page) as made:
@@ -207,7 +207,7 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
             assert b"comes 0s 3s" in data
             data = data.replace(b"comes 0s 3s", b"comes 0s .5s")
         if data != file.data:
-            page[name] = serving.File(data, file.kind)
+            page[name] = serving.File(data, file.content_type)
     with studio.served(page) as made:
         yield made
 

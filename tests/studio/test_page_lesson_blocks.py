@@ -47,13 +47,15 @@ def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(languag
     """Each lesson has a block to look for; what one has brought, no later one takes away."""
     seen: set[str] = set()
     for number in LESSONS:
-        taught, new = (f(number, language) for f in (page_lessons.taught, page_lessons.new))
+        taught, new = (
+            f(number, language) for f in (page_lessons.taught_kinds, page_lessons.new_pieces)
+        )
         kinds = {piece.partition(" ")[0] for piece in new}
         assert new and kinds <= set(taught)
         assert set(taught) - seen <= kinds
-        assert set(page_lessons.needed(number, language)) <= set(taught) <= KINDS.keys()
+        assert set(page_lessons.needed_kinds(number, language)) <= set(taught) <= KINDS.keys()
         seen |= set(taught)
-        assert set(page_lessons.offered(number, language)) == seen
+        assert set(page_lessons.offered_kinds(number, language)) == seen
 
 
 def test_a_piece_is_what_somebody_looks_for() -> None:
@@ -76,7 +78,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     level = "few"
     for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
-        needed = set(page_lessons.needed(number, "en")) & kinds["all"]
+        needed = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
         least = next(each for each in LEVELS if needed <= kinds[each] | {"set"})
         level = max(level, least, key=LEVELS.index)
         assert page.input_value("#level") == level, number

@@ -13,7 +13,7 @@ from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import HOLD_MS, REMOTE
 from tiniscript.studio import worker
-from tiniscript.studio.page_line import HEARD_MS, PageKeys, PageRobot
+from tiniscript.studio.page_line import ATTENDED_MS, PageKeys, PageRobot
 from tiniscript.studio.robot_link import MOST_WAITING, BadRequest
 
 FOREVER = "LOOP(FOREVER);\nF(1, 80);\nEND_LOOP"
@@ -73,10 +73,10 @@ def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> Non
     page.upload(FOREVER)
     page.go(300)
     assert page.robot.is_running
-    page.go(HEARD_MS - 100, is_away=True)
+    page.go(ATTENDED_MS - 100, is_away=True)
     page.go(50)
     assert page.robot.is_running  # for that long a browser may be busy
-    page.go(HEARD_MS + 50, is_away=True)
+    page.go(ATTENDED_MS + 50, is_away=True)
     assert page.robot.is_running  # its dead-man timer takes longer
     page.go(100)
     assert not page.robot.is_running

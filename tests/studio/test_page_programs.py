@@ -17,7 +17,7 @@ from tests.support.rows import each_row
 from tests.support.studio import SETTLED, Pages, asked, axe, checked, image, in_phase, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
-from tiniscript.studio.checking import line
+from tiniscript.studio.checking import line_for_robot
 from tools.builds.studio import find_tools
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
     for program, answer in zip(
         found, asked(page, [{"do": "line", **request} for request in requests]), strict=True
     ):
-        wanted = line(program.text.encode(), program.robot, "es")
+        wanted = line_for_robot(program.text.encode(), program.robot, "es")
         if isinstance(wanted, str):
             assert answer == {"text": wanted}, program.name
         else:
@@ -513,7 +513,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
         page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     page.locator("#programs[data-shared=done]").wait_for()
-    assert page.input_value("#shared") == line(b"SI|F(5, 50)", "tinibot", "en")
+    assert page.input_value("#shared") == line_for_robot(b"SI|F(5, 50)", "tinibot", "en")
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.id") == "my_programs"
     assert image(page) == compile("SI|F(5, 50)").image

@@ -12,8 +12,8 @@ from tests.studio.runs_again import recorded
 from tests.studio.test_page_robot import running, value
 from tests.support.studio import in_phase, write
 from tiniscript import compile, robots
-from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import REAL, Row, decode, encode, head
+from tiniscript.studio.playing import play, prepare
+from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -69,7 +69,7 @@ def told(page: Page, said: str) -> None:
 
 
 def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
-    first = head(REAL, text, robots.load("tinibot"), compile(text).checksum)
+    first = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
     return encode(first, [Row(*row) for row in rows], rows[-1][0])
 
 
@@ -130,7 +130,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     data = saved(page, 0)
     recording = decode(data)
     assert any(row.pressed is not None and row.pressed.keys for row in recording.rows)
-    played = play(ready(recording)).parting
+    played = play(prepare(recording)).divergence
     assert played is not None and (played.what, played.agreed) == (
         "again", sum(not row.is_input for row in recording.rows))  # fmt: skip
     page.click("#runs_close")

@@ -104,7 +104,7 @@ def loot() -> Iterator[Stranger]:
 
 
 def version() -> str:
-    source = serving.files()[serving.WORKER].data.decode()
+    source = serving.files()[serving.WORKER_FILE].data.decode()
     return source.partition('VERSION = "')[2].partition('"')[0]
 
 
@@ -125,11 +125,11 @@ def is_own(page: Page, server: serving.Server) -> None:
     assert page.evaluate(TOKEN) == server.entrances.token
     assert "code" not in page.evaluate("location.href")
     page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
-    assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER}"]
+    assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER_FILE}"]
 
 
 @pytest.mark.sampled("name", "options")
-@pytest.mark.parametrize("name", ["evil.js", serving.WORKER])
+@pytest.mark.parametrize("name", ["evil.js", serving.WORKER_FILE])
 @pytest.mark.parametrize("options", [{}, {"updateViaCache": "all"}], ids=["", "kept by browsers"])
 def test_no_worker_of_a_stranger_hears_the_code(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
@@ -144,7 +144,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
         page = context.new_page()
         enter(page, server.entrance())  # nothing that it has kept is shown later
         is_own(page, server)
-        assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER}"
+        assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER_FILE}"
     assert loot.taken == []
 
 
@@ -176,13 +176,18 @@ def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: S
 
 
 def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> None:
-    page = {"index.html": serving.File(b"x", "text/html"), serving.WORKER: serving.File(b"y", "z")}
+    page = {
+        "index.html": serving.File(b"x", "text/html"),
+        serving.WORKER_FILE: serving.File(b"y", "z"),
+    }
     with page_server.serves(serving.Server(page, 0)) as server:
         own = f"{serving.HOST}:{server.server_port}"
         for path in ("/evil.js", "/", "/index.html", "/a/b.js?c"):
             answer, data = page_server.ask(own, path, headers={"Service-Worker": "script"})
             assert answer.status == 200 and b"registration.unregister()" in data
             assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
-        asked = page_server.ask(own, f"/{serving.WORKER}", headers={"Service-Worker": "script"})
+        asked = page_server.ask(
+            own, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
+        )
         assert asked[1] == b"y"
         assert page_server.ask(own, "/evil.js")[0].status == 404

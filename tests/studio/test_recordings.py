@@ -13,8 +13,16 @@ from tiniscript import compile, robots
 from tiniscript.link.messages import UNTOLD
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import Parting, PlayedRun, play, ready
-from tiniscript.studio.recordings import BadRecording, Row, Rows, ToldReadings, decode, encode, head
+from tiniscript.studio.playing import Divergence, PlayedRun, play, prepare
+from tiniscript.studio.recordings import (
+    BadRecording,
+    ReadingRows,
+    Row,
+    Rows,
+    decode,
+    encode,
+    header_line,
+)
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
@@ -24,7 +32,7 @@ TINIBOT = robots.load("tinibot")
 def first(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
     if of == recordings.VIRTUAL:
         more = {"world": "obstacles", **more}
-    return head(of, text, TINIBOT, compile(text).checksum, **more)
+    return header_line(of, text, TINIBOT, compile(text).checksum, **more)
 
 
 def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
@@ -33,11 +41,11 @@ def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
     return encode(first(text, **more), rows, end_ms).encode()
 
 
-def parting(*events: tuple[int, str], text: str = LOOKS) -> Parting:
+def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
     is_by_button = text.startswith("SB|")
-    played = play(ready(decode(file(*events, text=text, is_by_button=is_by_button))))
-    assert played.parting is not None
-    return played.parting
+    played = play(prepare(decode(file(*events, text=text, is_by_button=is_by_button))))
+    assert played.divergence is not None
+    return played.divergence
 
 
 def found(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
@@ -46,11 +54,11 @@ def found(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
 
 def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
     """Its world has nothing at 17.5 cm: and what is calculated of the reading is the same."""
-    assert parting(*LINES) == Parting("same", 5)
+    assert parting(*LINES) == Divergence("same", 5)
 
 
 def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
-    assert parting(*LINES, text=LOOKS.replace("DISTANCE", "PAD_Y")) == Parting("same", 5)
+    assert parting(*LINES, text=LOOKS.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
 
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
@@ -70,7 +78,7 @@ def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(v
     shows = [(1017, "SHOW 1")] if value == "TRUE" else []
     rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *shows,
             (1900, "READ DISTANCE 9"), (2030, "SHOW 18"), (2031, "DONE")]  # fmt: skip
-    assert parting(*rows, text=text) == Parting("same", len(shows) + 2)
+    assert parting(*rows, text=text) == Divergence("same", len(shows) + 2)
     rows[-2] = (2030, "SHOW 16")
     assert found(*rows, text=text) == ("value", len(shows), 3)
 
@@ -101,13 +109,13 @@ def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
     end: list[tuple[int, str]],
 ) -> None:
     """By a person, by the link, or because the robot still runs: each of them is no difference."""
-    assert parting(*LINES[:2], *end) == Parting("same", 2)
+    assert parting(*LINES[:2], *end) == Divergence("same", 2)
     assert found(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
 
 
 def test_what_did_not_arrive_ends_the_comparison() -> None:
-    assert parting(*LINES[:2], (2060, "MISSED")) == Parting("missed", 2)
-    assert parting((9, "MISSED")) == Parting("missed", 0)
+    assert parting(*LINES[:2], (2060, "MISSED")) == Divergence("missed", 2)
+    assert parting((9, "MISSED")) == Divergence("missed", 0)
     assert found(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
     assert parting((9, "LOST")).what == parting().what == "empty"
 
@@ -119,14 +127,14 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
     """A hand is slow, and no robot tells when its program begins."""
     text = "SB|W(1);SHOW(5);W(2);SHOW(6)"
     lines = [(waited_ms, "SHOW 5"), (waited_ms + 2000, "SHOW 6"), (waited_ms + 2001, "DONE")]
-    assert parting(*lines, text=text) == Parting("same", 3)
+    assert parting(*lines, text=text) == Divergence("same", 3)
     there = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
     assert (there.what, there.agreed) == ("time", 1)
     assert there.virtual is not None and there.virtual.ms < 3100
     assert there.robot is not None and there.robot.ms == there.virtual.ms + 1000
-    assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Parting("same", 1)
-    assert parting((0, "STOPPED"), text=text) == Parting("same", 0)
-    assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Parting("same", 2)
+    assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Divergence("same", 1)
+    assert parting((0, "STOPPED"), text=text) == Divergence("same", 0)
+    assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Divergence("same", 2)
     assert parting((0, "SHOW 5"), text="SB|W(1)").what == "value"
 
 
@@ -140,8 +148,8 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
 def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
-    played = play(ready(decode(file(*events, text=text, is_by_button=True))))
-    assert played.parting is not None and played.parting.what == "same"
+    played = play(prepare(decode(file(*events, text=text, is_by_button=True))))
+    assert played.divergence is not None and played.divergence.what == "same"
     assert played.robot.now_ms < 8700
 
 
@@ -154,7 +162,7 @@ def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
 def test_a_program_that_means_something_else_now_is_not_played() -> None:
     for text in ("SHOW(1)", "SHOW("):
         with pytest.raises(BadRecording, match="other_program"):
-            ready(
+            prepare(
                 decode(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode()))
             )
 
@@ -195,8 +203,8 @@ VIRTUAL = {"of": recordings.VIRTUAL}
         (file((5, "KEYS 1"), **VIRTUAL), "unreadable", 2),
         (file(**VIRTUAL).replace(b'"obstacles"', b'"nowhere"'), "unreadable", 1),
         (file(**VIRTUAL, seed=0), "unreadable", 1),
-        (file(**VIRTUAL, told={0: []}), "unreadable", 1),
-        (file(**VIRTUAL, told={0: [10**9]}), "unreadable", 1),
+        (file(**VIRTUAL, given_readings={0: []}), "unreadable", 1),
+        (file(**VIRTUAL, given_readings={0: [10**9]}), "unreadable", 1),
         (b"{" + b" " * 1_000_000, "too_long", 1),
     ],
 )  # fmt: skip
@@ -210,8 +218,12 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     """No file of anybody ends in another error."""
     rng = random.Random(1)
     world = {"form": 1}
-    whole = [file(*LINES), file((289, "START"), (300, "KEYS 5 -100 0"), (400, "SHOW 1"), **VIRTUAL),
-             file(**VIRTUAL, world=world), file(**VIRTUAL, told={0: [5000, 6000]})]  # fmt: skip
+    whole = [
+        file(*LINES),
+        file((289, "START"), (300, "KEYS 5 -100 0"), (400, "SHOW 1"), **VIRTUAL),
+        file(**VIRTUAL, world=world),
+        file(**VIRTUAL, given_readings={0: [5000, 6000]}),
+    ]
     outcomes = set()
     for _ in range(3000):
         data = bytearray(rng.choice(whole))
@@ -249,15 +261,15 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
 
 def test_each_row_that_is_another_one_is_told() -> None:
     data, rows = recorded(3)
-    assert play(ready(decode(data))).parting == Parting("again", len(rows))
+    assert play(prepare(decode(data))).divergence == Divergence("again", len(rows))
     lines = data.decode().splitlines()
     for k, row in enumerate(rows):
         if k % max(1, len(rows) // 10):
             continue
-        at = next(n for n, line in enumerate(lines) if line == recordings.line(row))
-        for changed in ([recordings.line(Row(row.ms, "BEEP 1 1"))], []):
+        at = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
+        for changed in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
             other = "\n".join((*lines[:at], *changed, *lines[at + 1 :]))
-            there = play(ready(decode(other.encode()))).parting
+            there = play(prepare(decode(other.encode()))).divergence
             assert there is not None and there.what == "otherwise" and there.agreed <= k
 
 
@@ -268,13 +280,13 @@ def test_a_run_is_the_same_again(number: int) -> None:
 
 def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
     data, rows = recorded(5)
-    played = PlayedRun(ready(decode(data)))
+    played = PlayedRun(prepare(decode(data)))
     while not played.is_over:
         played.press(63, 100, 100)
         played.push()
         played.set_breakpoints((0, 3))
         played.go(37)
-    assert played.parting == Parting("again", len(rows))
+    assert played.divergence == Divergence("again", len(rows))
 
 
 UNTOLD_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
@@ -306,7 +318,7 @@ def test_a_sensor_that_is_shown_is_known_there_also_where_others_of_it_were_not_
 def test_a_reading_may_stand_after_rows_that_are_later() -> None:
     text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
     rows = [(1020, "SHOW 8"), (3, "READ DISTANCE 8"), (1021, "DONE")]
-    assert parting(*rows, text=text) == Parting("same", 2)
+    assert parting(*rows, text=text) == Divergence("same", 2)
     with pytest.raises(BadRecording):
         parting((1020, "SHOW 8"), (3, "SHOW 8"), text=text)
 
@@ -314,14 +326,14 @@ def test_a_reading_may_stand_after_rows_that_are_later() -> None:
 def test_a_reading_that_no_sensor_has_is_the_nearest_that_it_has() -> None:
     text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
     rows = [(3, "READ DISTANCE 9999999"), (4, "READ NOBODY 1"), (1020, "SHOW 400"), (1021, "DONE")]
-    assert parting(*rows, text=text) == Parting("same", 2)
+    assert parting(*rows, text=text) == Divergence("same", 2)
 
 
 def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
     """Also where more than 65 s go by between two of them, and each is 300 ms under way."""
     kit, rng = TINIBOT.kit, random.Random(1)
     for _ in range(200):
-        told, ms, ms_of = ToldReadings(kit), 0, dict[str, list[int]]()
+        told, ms, ms_of = ReadingRows(kit), 0, dict[str, list[int]]()
         for _ in range(20):
             ms += rng.choice((0, 1, 20, 999, 40_000, 70_000, 150_000))
             is_untold = rng.random() < 0.1
@@ -332,5 +344,5 @@ def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
                 before = ms_of.get("DISTANCE", [-1])[-1]
                 assert rows[0] == Row(before + 1, "UNREAD DISTANCE")
             ms_of.setdefault("DISTANCE", []).append(ms)
-        assert told.untold in ([], ["DISTANCE"])
-    assert ToldReadings(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"
+        assert told.incomplete_names in ([], ["DISTANCE"])
+    assert ReadingRows(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"

@@ -104,7 +104,7 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language:
     rows = []
     for number in range(1, len(catalogue.folders()) + 1):
         robot = catalogue.load(catalogue.folder_of(str(number))).robot
-        spoken = page_lessons.spoken(number, language)
+        spoken = page_lessons.spoken_blocks(number, language)
         rows += [{"robot": robot, "sentence": each, "spoken": spoken}
                  for each in sentences_of(number, language, BLOCKS)]  # fmt: skip
     rows += [{"robot": "tinibot", "sentence": each, "spoken": spoken_in(each)}

@@ -22,7 +22,7 @@ from tests.support.waiting import HANGS_S, until
 from tiniscript.library import opening
 from tiniscript.studio import hosted_robot, serving
 from tiniscript.studio import hosting as hosting_of
-from tiniscript.studio.attending import HEARD_S, LATCH_S, LEFT_S, Attending
+from tiniscript.studio.attending import ATTENDED_S, LATCH_S, LEFT_S, Attending
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import BadRequest, RobotLink
 
@@ -69,7 +69,7 @@ class NotingLink:
 class ThreadlessRobot:
     """A connection whose steps are the test's; it takes a while until it meets its robot."""
 
-    holds = False
+    is_holding_port = False
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
@@ -221,13 +221,13 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
             if is_heard:
                 attending.on_beat([], 0)
             was_driving, done = link.has_run, len(Room.done)
-            is_silent = attending.silent_s > HEARD_S
+            is_silent = attending.silent_s > ATTENDED_S
             attending.attend(cast(RobotLink, link), 0)
             assert link.has_run == (was_driving and not is_silent)
             stops = [what for what, _ in Room.done[done:]]
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
-    assert silences > 3 and HEARD_S < LEFT_S
+    assert silences > 3 and ATTENDED_S < LEFT_S
 
 
 # -- a robot that is left more than once
@@ -262,14 +262,14 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
 ) -> None:
     """Whoever else leaves it, before or after: a page, the end of a turn, and the studio's end."""
     monkeypatch.setattr(hosted_robot, "Client", HeldClient)
-    monkeypatch.setattr(hosted_robot, "about", lambda robot: {})
+    monkeypatch.setattr(hosted_robot, "robot_data", lambda robot: {})
     monkeypatch.setattr(opening, "remember", lambda *_: None)
     monkeypatch.setattr(HeldClient, "all_left", Event())
     monkeypatch.setattr(HeldClient, "was_held", None)
     made = hosted_robot.HostedRobot("p", "tinibot", "en")
     until(lambda: made.name != "", "it is met")
     for lets_go in leaves:
-        made.leave(lets_go=bool(lets_go))
+        made.leave(is_letting_go=bool(lets_go))
     HeldClient.all_left.set()
     made.join(HANGS_S)
     assert HeldClient.was_held == (not any(leaves))
@@ -308,7 +308,9 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
             connection.request("GET", what, None, given)
         else:
             body = what.encode()
-            connection.request("POST", serving.ROBOTS, body, {**given, serving.TOKEN: token})
+            connection.request(
+                "POST", serving.ROBOTS_PATH, body, {**given, serving.TOKEN_HEADER: token}
+            )
         response = connection.getresponse()
         data = response.read()
         return response.status, data, response.will_close

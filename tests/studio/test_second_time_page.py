@@ -60,7 +60,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the build makes for the page's sources."""
     folder = tmp_path_factory.mktemp("made")
     content = {"languages": [(code, language_info(code).name) for code in languages()], "lock": {},
-               "description": description(), "blocks": block_kinds.data(),
+               "description": description(), "blocks": block_kinds.table_data(),
                "texts": page_texts(SOURCE_LANGUAGE)}  # fmt: skip
     for name, value in content.items():
         (folder / f"{name}.json").write_text(json.dumps(value), encoding="utf-8")

@@ -100,7 +100,7 @@ def test_a_token_opens_its_own_door_alone(taught: Class) -> None:
     assert post(taught, {"do": "here"}, teacher) == 400
     assert post(taught, {"do": "class"}) == 400
     assert post(taught, {"do": "class"}, "0" * 32) == 403
-    assert post(taught, {"do": "here"}, **{serving.TOKEN: f"{ana}, {teacher}"}) == 403
+    assert post(taught, {"do": "here"}, **{serving.TOKEN_HEADER: f"{ana}, {teacher}"}) == 403
 
 
 def test_who_has_no_token_sends_little(taught: Class) -> None:
@@ -116,9 +116,9 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
     """They come from one computer, a pupil's or another, say nothing or half a request. The pupil's
     connection stays, and a new pupil is answered."""
     token = joins(taught)
-    headers = {"Origin": f"http://{own(taught)}", serving.TOKEN: token}
+    headers = {"Origin": f"http://{own(taught)}", serving.TOKEN_HEADER: token}
     pupil = HTTPConnection(own(taught), timeout=HANGS_S)
-    pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
+    pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
     kept, before = pupil.sock, active_count()
     source = kept.getsockname()[0] if is_same else ELSEWHERE
@@ -129,11 +129,11 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
                 source=source,
             )  # fmt: skip
             strangers.enter_context(some)
-            pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
+            pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
             assert ask(own(taught))[0].status == 200
         assert pupil.sock is kept
-        assert active_count() - before <= serving.CLASS_CONNECTIONS + 30
+        assert active_count() - before <= serving.MOST_CLASS_CONNECTIONS + 30
     pupil.close()
 
 
@@ -142,7 +142,10 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> Non
     early = HTTPConnection(own(taught), timeout=HANGS_S)
     early.connect()
     with crowd(
-        taught.server.server_port, count=serving.CLASS_CONNECTIONS + 50, host=HOST, source=ELSEWHERE
+        taught.server.server_port,
+        count=serving.MOST_CLASS_CONNECTIONS + 50,
+        host=HOST,
+        source=ELSEWHERE,
     ):
         assert ask(own(taught))[0].status == 200  # so all of them have come
         early.request("GET", "/")

@@ -67,10 +67,10 @@ def test_its_own_page_is_answered(server: serving.Server, own: str, robots: Reco
         {"Origin": "null"},
         {"Origin": None},
         {"Origin": "http://127.0.0.1:1"},
-        {serving.TOKEN: ""},
-        {serving.TOKEN: "0" * 32},
-        {serving.TOKEN: "\xff" * 32},
-        {serving.TOKEN: None},
+        {serving.TOKEN_HEADER: ""},
+        {serving.TOKEN_HEADER: "0" * 32},
+        {serving.TOKEN_HEADER: "\xff" * 32},
+        {serving.TOKEN_HEADER: None},
     ],
     ids=str,
 )
@@ -97,14 +97,14 @@ def test_what_is_no_request_is_refused(server: serving.Server, own: str, body: b
     [("Content-Length: -1", 400), ("Content-Length: 1e3", 400), ("Content-Length: ٣", 400),
      ("Content-Length: 99999999999999999999", 400), ("Content-Length: ", 400),
      ("Content-Length: 5\r\nContent-Length: 6", 400),
-     (f"{serving.TOKEN}: x\r\nContent-Length: 5", 403)],
+     (f"{serving.TOKEN_HEADER}: x\r\nContent-Length: 5", 403)],
 )  # fmt: skip
 def test_a_wrong_length_and_two_tokens_are_refused(
     server: serving.Server, own: str, robots: Recorder, field: str, status: int
 ) -> None:
     head = (
-        f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
-        f"{serving.TOKEN}: {server.entrances.token}\r\n{field}\r\n\r\n"
+        f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
+        f"{serving.TOKEN_HEADER}: {server.entrances.token}\r\n{field}\r\n\r\n"
     )
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(head.encode() + b'{"do"')
@@ -140,11 +140,11 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
 
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str) -> None:
     """They say nothing, or half a request; the page's own connection stays."""
-    headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
+    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
 
     def ask() -> int:
-        page.request("POST", serving.ROBOTS, PORTS, headers)
+        page.request("POST", serving.ROBOTS_PATH, PORTS, headers)
         response = page.getresponse()
         response.read()
         return response.status
@@ -158,7 +158,7 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str
             strangers.enter_context(some)
             assert ask() == 200
         assert page.sock is kept
-        assert active_count() - before <= serving.CONNECTIONS + 30
+        assert active_count() - before <= serving.MOST_CONNECTIONS + 30
     page.close()
 
 
@@ -189,11 +189,11 @@ def test_the_page_that_has_asked_last_is_kept(
     """Where all have shown the token, the one is closed that has asked nothing for longest."""
     monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is left as silent
     server.most_connections = 2
-    headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
+    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
     pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]
     kept = []
     for k in (0, 1, 0, 2, 0):
-        pages[k].request("POST", serving.ROBOTS, PORTS, headers)
+        pages[k].request("POST", serving.ROBOTS_PATH, PORTS, headers)
         pages[k].getresponse().read()
         kept.append(pages[k].sock)
     assert kept[0] is kept[2] is kept[4]

@@ -43,10 +43,10 @@ def ask(
 
 
 def post(
-    own: str, token: str, body: bytes, path: str = serving.ROBOTS,
+    own: str, token: str, body: bytes, path: str = serving.ROBOTS_PATH,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[int, bytes]:  # fmt: skip
     """Post as the page at `own` does, but for some headers; return the status and the answer."""
-    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: token, **(headers or {})}
+    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN_HEADER: token, **(headers or {})}
     response, data = ask(own, path, "POST", body, given)
     return response.status, data

@@ -41,9 +41,9 @@ class Editor:
 
     def ask(self, request: Json) -> Json:
         """Each page has a Python of its own."""
-        page_together._newest, page_together._before = self.python
+        page_together._newest, page_together._previous = self.python
         answer: Json = json.loads(worker.answer(json.dumps(request), self.text.encode()))
-        self.python = page_together._newest, page_together._before
+        self.python = page_together._newest, page_together._previous
         return answer
 
     def change(self, changes: list[tuple[int, int, str]]) -> None:

@@ -18,7 +18,7 @@ from tests.together.pupils import Pupil
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read as read_blocks
+from tiniscript.studio.block_reading import read_blocks as read_blocks
 from tiniscript.syntax.ast import Break, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.formatter import format_source
 from tiniscript.syntax.parser import parse

@@ -306,7 +306,7 @@ def _program(line_count: int = PROGRAM_LINES) -> str:
 
 def _packed_files() -> dict[str, serving.File]:
     return {
-        name: file._replace(packed=gzip.compress(file.data, 6, mtime=0))
+        name: file._replace(gzipped=gzip.compress(file.data, 6, mtime=0))
         for name, file in serving.files().items()
     }
 

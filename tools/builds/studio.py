@@ -28,7 +28,7 @@ from tiniscript.base.languages import SOURCE_LANGUAGE, catalogue, language_info,
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
-from tiniscript.studio.serving import FIRMWARE, POLICY, with_firmware
+from tiniscript.studio.serving import FIRMWARE_FILE, POLICY, with_firmware
 from tools import ROOT, CannotMake
 from tools.builds.page_texts import messages, page_texts
 
@@ -111,7 +111,7 @@ def build(page: Path = PAGE) -> None:
         f"texts.{SOURCE_LANGUAGE}.json", page_texts(SOURCE_LANGUAGE)
     )  # whose keys are checked
     write_made_file("description.json", description())
-    write_made_file("blocks.json", block_kinds.data())
+    write_made_file("blocks.json", block_kinds.table_data())
     write_blockly()
     write_made_file("lock.json", {"info": lock["info"], "packages": {}})
     check_types(tools)
@@ -130,7 +130,7 @@ def build(page: Path = PAGE) -> None:
         for name in BLOCKLY_PICTURES:
             shutil.copyfile(BLOCKLY / "media" / name, new_page / name)
         put_own_files(new_page)
-        (new_page / FIRMWARE).write_text("[]\n", encoding="utf-8")
+        (new_page / FIRMWARE_FILE).write_text("[]\n", encoding="utf-8")
         (new_page / LICENCES_FILE).write_text(licences(), encoding="utf-8")
         write_service_worker(new_page)
         stamp = {"sources": sources, "node": tools.version}
@@ -187,7 +187,9 @@ def build_again(page: Path) -> None:
 
 def bring_firmware(page: Path) -> None:
     """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
-    firmware_files = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
+    firmware_files = {
+        name: file for name, file in with_firmware({}).items() if name != FIRMWARE_FILE
+    }
     if not firmware_files:
         raise CannotMake(
             "the package has no firmware. Build it:  python -m tools.builds.firmware_files"
@@ -233,11 +235,11 @@ def find_tools() -> Tools:
 
 def install(tools: Tools) -> None:
     """Fetch the packages that the lock file names, unless they are there."""
-    if building.are_fetched():
+    if building.are_packages_fetched():
         return
     print_step(building.PACKAGES)
     run(tools.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund")
-    building.FETCHED.write_text(building.lock_digest(), encoding="utf-8")
+    building.FETCH_STAMP.write_text(building.lock_digest(), encoding="utf-8")
 
 
 def cobs_folder() -> Path:
@@ -275,7 +277,7 @@ def write_service_worker(target: Path) -> None:
         if code != SOURCE_LANGUAGE
         for name in files_by_language[code]
     }
-    not_cached = {"index.html", LICENCES_FILE, FIRMWARE, *later_files}
+    not_cached = {"index.html", LICENCES_FILE, FIRMWARE_FILE, *later_files}
     files = ["./", *(name for name in names if name not in not_cached)]
     constants = {
         "VERSION": build_hash.hexdigest()[:16],
@@ -321,7 +323,7 @@ def size_rows(page: Path) -> list[str]:
     """Return what the page's files weigh, and packed as a server sends them."""
     rows, total_bytes, packed_bytes = [], 0, 0
     for path in sorted(page.iterdir()):
-        if path.name in (STAMP, LICENCES_FILE, FIRMWARE) or path.suffix in (".hex", ".bin"):
+        if path.name in (STAMP, LICENCES_FILE, FIRMWARE_FILE) or path.suffix in (".hex", ".bin"):
             continue
         data = path.read_bytes()
         compressed_bytes = len(gzip.compress(data, 9, mtime=0))

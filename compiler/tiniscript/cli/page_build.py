@@ -47,7 +47,7 @@ def build(options: Namespace, language: str) -> None:
     progress = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
     def read_step(output: str) -> Step:
-        step_number = max(building.step(output), 0 if NPM in parts else 1)
+        step_number = max(building.step_number(output), 0 if NPM in parts else 1)
         is_fetching = STEP_KEYS[step_number] == "fetch_npm_now"
         return Step(
             STEP_KEYS[step_number],
@@ -60,7 +60,7 @@ def build(options: Namespace, language: str) -> None:
 def missing_parts() -> list[Part]:
     """Return what is fetched before the page can be built."""
     node = [] if building.find_tools() is not None else [NODE]
-    return node if building.are_fetched() else [*node, NPM]
+    return node if building.are_packages_fetched() else [*node, NPM]
 
 
 def megabytes() -> int:

@@ -18,58 +18,58 @@ from time import monotonic
 
 from tiniscript.studio.robot_link import BadRequest, Json, RobotLink
 
-HEARD_S = 0.5  # a page that is silent for longer does not drive
+ATTENDED_S = 0.5  # a page that is silent for longer does not drive
 LEFT_S = 3.0  # a page that is silent for longer has left
 LATCH_S = 2.0  # after a teacher's STOP, for uploads that are on their way
 LOOK_S = 0.02
-KEPT = 1000  # news for a page that does not fetch them
+MOST_KEPT_NEWS = 1000  # news for a page that does not fetch them
 ASKED, CONFIRMED, SILENT = "asked", "confirmed", "silent"  # what is known of a teacher's STOP
-_MAY_MISS = ("SHOW", "TEXT", "PLACE")
-_VOID = {"failure": "stopped_elsewhere"}
+_DROPPABLE_EVENTS = ("SHOW", "TEXT", "PLACE")
+_VOID_ANSWER = {"failure": "stopped_elsewhere"}
 
 
 class Attending:
-    """`last_stop`: what is known of the newest latching stop. `stops`: the page's newest one that
-    has nothing to stop any more. `witness`, if there is one, hears the news, too; it must not let
-    the robot wait."""
+    """`last_stop`: what is known of the newest latching stop. `stop_count`: the page's newest one
+    that has nothing to stop any more. `witness`, if there is one, hears the news, too; it must not
+    let the robot wait."""
 
-    def __init__(self, clock: Callable[[], float] = monotonic, stops: int = 0) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic, stop_count: int = 0) -> None:
         self.last_stop = ""
-        self.stops = stops
+        self.stop_count = stop_count
         self.witness: Callable[[list[Json]], object] | None = None
         self._clock = clock
         self._heard_s = clock()
         self._latched_until_s = float("-inf")
         self._lock = Lock()
-        self._asked: list[Json] = []
+        self._requests: list[Json] = []
         self._news: list[Json] = []
-        self._count = 0  # of news
+        self._news_count = 0
         self._wants_stop = self._is_silent = False
-        self._last = 0  # number of the last request: one that comes again was lost on its way back
-        self._latched = 0  # number of the news that tells of the newest latching stop
-        self._runs: dict[int, int] = {}  # that are asked for, with the stops before them
+        self._last_request_number = 0  # one that comes again was lost on its way back
+        self._latch_news_number = 0  # of what tells of the newest latching stop
+        self._stop_counts: dict[int, int] = {}  # that are asked for, with the stops before them
         self._was_heard = False
 
     # -- the page ---------------------------------------------------------------------------------
 
-    def on_beat(self, requests: list[Json], seen: int, stops: int = 0) -> list[Json]:
-        """The page is there: take its stops and its requests; return the news after number `seen`.
+    def on_beat(self, requests: list[Json], seen_number: int, stop_count: int = 0) -> list[Json]:
+        """The page is there: take its stops and its requests; return the news after `seen_number`.
 
-        `stops` is 0 where nobody has pressed STOP yet.
+        `stop_count` is 0 where nobody has pressed STOP yet.
         """
         with self._lock:
             self._heard_s = self._clock()
             self._was_heard = True
-            if stops > self.stops:
-                self._stop(stops)
+            if stop_count > self.stop_count:
+                self._stop(stop_count)
             for request in requests:
                 number = request.get("id")
-                if type(number) is int and number > self._last:
-                    self._last = number
-                    self._asked.append(request)
+                if type(number) is int and number > self._last_request_number:
+                    self._last_request_number = number
+                    self._requests.append(request)
             if self.is_latched:
                 self._void()
-            self._news = [item for item in self._news if item["number"] > seen]
+            self._news = [item for item in self._news if item["number"] > seen_number]
             return list(self._news)
 
     def connect_again(self) -> None:
@@ -77,22 +77,22 @@ class Attending:
         if not self._was_heard:
             self._heard_s = self._clock()
 
-    def stop(self, stops: int = 0) -> None:
+    def stop(self, stop_count: int = 0) -> None:
         """Stop the robot, whatever waits, except where that was done for this number; one without a
         number always stops."""
         with self._lock:
-            if not stops or stops > self.stops:
-                self._stop(stops)
+            if not stop_count or stop_count > self.stop_count:
+                self._stop(stop_count)
 
-    def latch(self, until_s: float | None = None, stops: bool = True) -> None:
+    def latch(self, until_s: float | None = None, is_stopping: bool = True) -> None:
         """Refuse what is asked for a while, and stop the robot."""
         with self._lock:
             self._latched_until_s = self._clock() + LATCH_S if until_s is None else until_s
-            if stops:
+            if is_stopping:
                 self._wants_stop = True
                 self.last_stop = ASKED
                 self._add({"stopped": True})
-                self._latched = self._count
+                self._latch_news_number = self._news_count
             self._void()
 
     @property
@@ -101,7 +101,7 @@ class Attending:
 
     @property
     def is_attended(self) -> bool:
-        return self.silent_s <= HEARD_S
+        return self.silent_s <= ATTENDED_S
 
     @property
     def silent_s(self) -> float:
@@ -133,18 +133,21 @@ class Attending:
             self._apply_news(link.news())  # no earlier stop confirms this one
         self.stop_if_wanted(link.stop)
         with self._lock:
-            asked, self._asked = self._asked, []
-        for request in asked:
-            stops = _count(request, "stops")
-            if stops < self.stops or _count(request, "seen") < self._latched:
-                self.tell([{"id": request["id"], **_VOID}])
+            requests, self._requests = self._requests, []
+        for request in requests:
+            stop_count = _number_in(request, "stops")
+            if (
+                stop_count < self.stop_count
+                or _number_in(request, "seen") < self._latch_news_number
+            ):
+                self.tell([{"id": request["id"], **_VOID_ANSWER}])
                 continue
-            if _runs(request):
-                self._runs[request["id"]] = stops
+            if _starts_run(request):
+                self._stop_counts[request["id"]] = stop_count
             try:
                 link.ask(request)
             except BadRequest:
-                self._runs.pop(request["id"], None)
+                self._stop_counts.pop(request["id"], None)
                 self.tell([{"id": request["id"], "failure": "bad_request"}])
         self._apply_news(link.news(limit_s))
         if self.is_attended:
@@ -163,16 +166,16 @@ class Attending:
         if self.last_stop == ASKED:
             self.last_stop = SILENT
 
-    def _stop(self, stops: int) -> None:
-        self.stops = max(self.stops, stops)
+    def _stop(self, stop_count: int) -> None:
+        self.stop_count = max(self.stop_count, stop_count)
         self._wants_stop = True
 
     def _apply_news(self, news: list[Json]) -> None:
         with self._lock:
             for item in news:
-                stops = self._runs.pop(item["id"], 0) if "id" in item else 0
+                stop_count = self._stop_counts.pop(item["id"], 0) if "id" in item else 0
                 if item.get("ok"):
-                    self.stops = max(self.stops, stops)
+                    self.stop_count = max(self.stop_count, stop_count)
         if self.last_stop == ASKED and not self._wants_stop:
             events = [item.get("event") for item in news]
             if "STOPPED" in events:
@@ -182,24 +185,26 @@ class Attending:
         self.tell(news)
 
     def _void(self) -> None:
-        for item in self._asked:
-            if item.get("do") != "stop":
-                self._add({"id": item["id"], **_VOID})
-        self._asked = [item for item in self._asked if item.get("do") == "stop"]
+        for request in self._requests:
+            if request.get("do") != "stop":
+                self._add({"id": request["id"], **_VOID_ANSWER})
+        self._requests = [request for request in self._requests if request.get("do") == "stop"]
 
     def _add(self, news: Json) -> None:
-        self._count += 1
-        self._news.append({**news, "number": self._count})
-        while len(self._news) > KEPT:
-            missed = next((item for item in self._news if item.get("event") in _MAY_MISS), None)
-            self._news.remove(missed or self._news[0])
+        self._news_count += 1
+        self._news.append({**news, "number": self._news_count})
+        while len(self._news) > MOST_KEPT_NEWS:
+            droppable = next(
+                (item for item in self._news if item.get("event") in _DROPPABLE_EVENTS), None
+            )
+            self._news.remove(droppable or self._news[0])
 
 
-def _count(request: Json, name: str) -> int:
-    result = request.get(name)
-    return result if type(result) is int else 0
+def _number_in(request: Json, name: str) -> int:
+    number = request.get(name)
+    return number if type(number) is int else 0
 
 
-def _runs(request: Json) -> bool:
-    do = request.get("do")
-    return do in ("live", "start") or (do == "upload" and request.get("runs") is True)
+def _starts_run(request: Json) -> bool:
+    action = request.get("do")
+    return action in ("live", "start") or (action == "upload" and request.get("runs") is True)

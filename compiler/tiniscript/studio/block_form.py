@@ -76,7 +76,8 @@ def data_of(form: Form) -> dict[str, Any]:
 def from_data(data: dict[str, Any]) -> Form:
     """Return the blocks that the page has sent. Raises KeyError and the like where it has a bug."""
     loose = tuple(
-        Stack(_blocks_from(item["body"]), _value_from(item["value"])) for item in data["loose"]
+        Stack(_blocks_from(fields["body"]), _value_from(fields["value"]))
+        for fields in data["loose"]
     )
     note, is_one_line = data["note"], data["is_one_line"]
     return Form(data["start"], note, is_one_line, _blocks_from(data["body"]), loose)
@@ -103,17 +104,17 @@ def kinds_in(form: Form) -> set[str]:
 def pieces_in(form: Form) -> set[tuple[str, str]]:
     """Return what a program's blocks are to who looks for them, and how each is used: with a unit,
     or a word of one's own with values."""
-    items: set[tuple[str, str]] = set()
+    pieces: set[tuple[str, str]] = set()
     for block in in_order(form.body):
         use = block.word.partition(" ")[2] if KINDS[block.kind].units else ""
         if block.kind in ("def", "call") and block.values:
             use = "values"
-        items.add((piece_of(block.kind, block.word), use))
-        items.update(
+        pieces.add((piece_of(block.kind, block.word), use))
+        pieces.update(
             (piece_of(KIND_OF[op], text or op), "")
             for value in block.values for op, text in value if op != "NUMBER"
         )  # fmt: skip
-    return items
+    return pieces
 
 
 def lone_block(form: Form) -> Block | None:
@@ -123,29 +124,31 @@ def lone_block(form: Form) -> Block | None:
     return form.body[0] if is_alone and is_understood else None
 
 
-def beginning(form: Form, most: int) -> Form:
+def first_blocks(form: Form, most_blocks: int) -> Form:
     """Return a form with no more than so many blocks, and a last one that says that there were."""
-    if size_of(form) <= most:
+    if size_of(form) <= most_blocks:
         return form
-    body, _ = _first_blocks(form.body, most - 1)
+    body, _ = _first_blocks(form.body, most_blocks - 1)
     return form._replace(body=body, loose=())
 
 
-def _first_blocks(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
+def _first_blocks(blocks: tuple[Block, ...], blocks_left: int) -> tuple[tuple[Block, ...], int]:
     """Return the first blocks and how many more may follow; -1 if some are left out."""
-    result: list[Block] = []
+    kept_blocks: list[Block] = []
     for block in blocks:
-        most -= _own_size(block)
-        if most < 0:
-            return (*result, LEFT_OUT), -1
+        blocks_left -= _own_size(block)
+        if blocks_left < 0:
+            return (*kept_blocks, LEFT_OUT), -1
         bodies = []
-        for item in block.bodies:
-            body, most = _first_blocks(item, most) if most >= 0 else ((), most)
+        for old_body in block.bodies:
+            body, blocks_left = (
+                _first_blocks(old_body, blocks_left) if blocks_left >= 0 else ((), blocks_left)
+            )
             bodies.append(body)
-        result.append(block._replace(bodies=tuple(bodies)))
-        if most < 0:
+        kept_blocks.append(block._replace(bodies=tuple(bodies)))
+        if blocks_left < 0:
             break
-    return tuple(result), most
+    return tuple(kept_blocks), blocks_left
 
 
 def _own_size(block: Block) -> int:
@@ -154,12 +157,12 @@ def _own_size(block: Block) -> int:
 
 def in_order(blocks: tuple[Block, ...]) -> list[Block]:
     """Return blocks with all that are in them, in the order of the text."""
-    result: list[Block] = []
+    blocks_in_order: list[Block] = []
     for block in blocks:
-        result.append(block)
+        blocks_in_order.append(block)
         for body in block.bodies:
-            result += in_order(body)
-    return result
+            blocks_in_order += in_order(body)
+    return blocks_in_order
 
 
 def _data_of_all(blocks: tuple[Block, ...]) -> list[dict[str, Any]]:
@@ -172,17 +175,17 @@ def _data_of_all(blocks: tuple[Block, ...]) -> list[dict[str, Any]]:
 def _blocks_from(data: list[dict[str, Any]]) -> tuple[Block, ...]:
     return tuple(
         Block(
-            item["kind"],
-            item["word"],
-            tuple(_value_from(value) for value in item["values"]),
-            tuple(_blocks_from(body) for body in item["bodies"]),
-            item["note"],
-            item["is_apart"],
-            said=tuple(item.get("said", ())),
-            comment=item.get("comment", ""),
-            is_behind=bool(item.get("is_behind")),
+            fields["kind"],
+            fields["word"],
+            tuple(_value_from(value) for value in fields["values"]),
+            tuple(_blocks_from(body) for body in fields["bodies"]),
+            fields["note"],
+            fields["is_apart"],
+            said=tuple(fields.get("said", ())),
+            comment=fields.get("comment", ""),
+            is_behind=bool(fields.get("is_behind")),
         )
-        for item in data
+        for fields in data
     )
 
 

@@ -120,7 +120,7 @@ KINDS |= {kind.name: kind for kind in (
 KIND_OF = {name.upper(): name for name in KINDS}
 for _kind in reversed(KINDS.values()):
     KIND_OF.update((word, _kind.name) for word in (_kind.part, *_kind.words) if word)
-_SETS = {device.name: device.name.partition("_")[0] for device in REMOTE}  # KEY, PAD
+_KEY_SETS = {device.name: device.name.partition("_")[0] for device in REMOTE}  # KEY, PAD
 
 
 def piece_of(kind: str, word: str) -> str:
@@ -131,13 +131,13 @@ def piece_of(kind: str, word: str) -> str:
     if kind not in KINDS or not KINDS[kind].is_each_word:
         return kind
     name = word.partition(" ")[0]
-    return f"{kind} {_SETS.get(name, name)}"
+    return f"{kind} {_KEY_SETS.get(name, name)}"
 
 
 SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **PLAIN}
 
 
-def data() -> dict[str, Any]:
+def table_data() -> dict[str, Any]:
     """Return the table as data for JSON: the kinds, and what is said in all languages."""
     kinds = {name: kind._asdict() for name, kind in KINDS.items()}
     for kind in kinds.values():

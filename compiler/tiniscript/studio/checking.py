@@ -49,13 +49,13 @@ class Variable(NamedTuple):
     is_yes_no: bool
 
 
-class Checked(NamedTuple):
+class CheckResult(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
     which offset on which range of the text it comes from, `halts` where a real robot halts before
     each of them, `shows` which of them are SHOWs with a
     name, by offset; `variables` are in the order of their
     numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
-    it was compiled for, which the text names where `names_robot`; `remote` are the words of a
+    it was compiled for, which the text names where `names_robot`; `remote_words` are those of a
     remote control that it reads."""
 
     image: bytes
@@ -68,53 +68,64 @@ class Checked(NamedTuple):
     start: str = ""
     robot: str = ""
     names_robot: bool = False
-    remote: tuple[str, ...] = ()
+    remote_words: tuple[str, ...] = ()
 
 
-def check(data: bytes, robot: str, language: str) -> Checked:
+def check(data: bytes, robot: str, language: str) -> CheckResult:
     """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
     does."""
     profile = profile_for(data, robot)
-    compiled = _compile(data, robot)
-    findings = _findings(compiled, language)
+    compilation = _compile(data, robot)
+    findings = _findings(compilation, language)
     names_robot = shipped_name_in(data) is not None
-    if not compiled.is_right or compiled.program is None:
-        return Checked(b"", 0, findings, (), robot=profile.name, names_robot=names_robot)
-    variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no_flags))
-    places = source_map.map_of_compiled(compiled)
-    starts = statement_starts(compiled.code)
-    halts = tuple(statement_of(starts, place.offset) for place in places.locations)
-    return Checked(compiled.image, len(compiled.code), findings, places.locations, halts,
-                   _show_places(places),
-                   variables, compiled.program.start, profile.name, names_robot,
-                   _remote(compiled, profile.kit))  # fmt: skip
+    if not compilation.is_right or compilation.program is None:
+        return CheckResult(b"", 0, findings, (), robot=profile.name, names_robot=names_robot)
+    variables = tuple(map(Variable, compilation.program.variables, compilation.yes_no_flags))
+    program_map = source_map.map_of_compiled(compilation)
+    statement_offsets = statement_starts(compilation.code)
+    halts = tuple(statement_of(statement_offsets, place.offset) for place in program_map.locations)
+    return CheckResult(
+        compilation.image,
+        len(compilation.code),
+        findings,
+        program_map.locations,
+        halts,
+        _show_places(program_map),
+        variables,
+        compilation.program.start,
+        profile.name,
+        names_robot,
+        _remote_words(compilation, profile.kit),
+    )
 
 
-def _remote(compiled: Compilation, kit: Kit) -> tuple[str, ...]:
-    uses = compiled.verdict.uses if compiled.verdict is not None else ()
-    read = {number - len(kit.sensors) for what, number in uses if what == "sensor"}
-    return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
+def _remote_words(compilation: Compilation, kit: Kit) -> tuple[str, ...]:
+    used_devices = compilation.verdict.uses if compilation.verdict is not None else ()
+    read_numbers = {number - len(kit.sensors) for what, number in used_devices if what == "sensor"}
+    return tuple(device.name for k, device in enumerate(REMOTE) if k in read_numbers)
 
 
-def _show_places(places: source_map.SourceMap) -> tuple[tuple[int, Show], ...]:
-    shows = Shows(places)
-    result = ((place.offset, shows.show_at(place.offset)) for place in places.locations)
-    return tuple((offset, show) for offset, show in result if show)
+def _show_places(program_map: source_map.SourceMap) -> tuple[tuple[int, Show], ...]:
+    shows = Shows(program_map)
+    shows_by_offset = (
+        (place.offset, shows.show_at(place.offset)) for place in program_map.locations
+    )
+    return tuple((offset, show) for offset, show in shows_by_offset if show)
 
 
-def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
+def repair(data: bytes, robot: str, finding_number: int) -> tuple[Change, ...]:
     """Return what the button of a finding does, or nothing where it does not help.
 
-    `which` counts the findings of this text from 0.
+    `finding_number` counts the findings of this text from 0.
     """
-    result = _compile(data, robot)
+    compilation = _compile(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
         return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
 
-    edits = edits_offered(result.source.text, result.diagnostics, which, check)
-    return tuple(_change(edit, result.source) for edit in edits)
+    edits = edits_offered(compilation.source.text, compilation.diagnostics, finding_number, check)
+    return tuple(_change(edit, compilation.source) for edit in edits)
 
 
 def open_text(data: bytes, robot: str, language: str) -> str | Message:
@@ -125,19 +136,25 @@ def open_text(data: bytes, robot: str, language: str) -> str | Message:
     return message(text.diagnostics[0], text.source, language)
 
 
-def line(data: bytes, robot: str, language: str) -> str | Message:
+def line_for_robot(data: bytes, robot: str, language: str) -> str | Message:
     """Return a program as a line of text with its checksum, as `tsc compile --text` writes it.
 
     Or what is wrong, where such a robot cannot read it.
     """
     profile = profile_for(data, robot)
-    result = compile_source(data, profile, "", is_strict=True)
-    if not result.is_right or result.program is None:
-        mistake = next(diagnostic for diagnostic in result.diagnostics if diagnostic.is_mistake)
-        return message(mistake, result.source, language)
+    compilation = compile_source(data, profile, "", is_strict=True)
+    if not compilation.is_right or compilation.program is None:
+        mistake = next(
+            diagnostic for diagnostic in compilation.diagnostics if diagnostic.is_mistake
+        )
+        return message(mistake, compilation.source, language)
     level = level_of(profile.board.chip, profile.board.discs is not None)
-    lacking = find_misfits(result.source, result.program, profile.kit, level)
-    return message(lacking[0], result.source, language) if lacking else line_of(result.source)
+    misfits = find_misfits(compilation.source, compilation.program, profile.kit, level)
+    return (
+        message(misfits[0], compilation.source, language)
+        if misfits
+        else line_of(compilation.source)
+    )
 
 
 @cache
@@ -157,14 +174,14 @@ def _compile(data: bytes, robot: str) -> Compilation:
     return fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
 
 
-def _findings(compiled: Compilation, language: str) -> tuple[Finding, ...]:
+def _findings(compilation: Compilation, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
-    named = [k for k, diagnostic in enumerate(compiled.diagnostics) if edits_of(diagnostic)][
-        :MOST_OFFERS
-    ]
+    repairable_indexes = [
+        k for k, diagnostic in enumerate(compilation.diagnostics) if edits_of(diagnostic)
+    ][:MOST_OFFERS]
     return tuple(
-        Finding(message(diagnostic, compiled.source, language), k in named)
-        for k, diagnostic in enumerate(compiled.diagnostics)
+        Finding(message(diagnostic, compilation.source, language), k in repairable_indexes)
+        for k, diagnostic in enumerate(compilation.diagnostics)
     )
 
 

@@ -42,26 +42,27 @@ class Work(NamedTuple):
     lessons: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, found: Json) -> Work | None:
+    def of(cls, data: Json) -> Work | None:
         """Return the work in data from elsewhere; None if it is none."""
-        text, robot, lessons = found.get("text"), found.get("robot"), found.get("lessons", [])
+        text, robot, lessons = data.get("text"), data.get("robot"), data.get("lessons", [])
         if not isinstance(text, str) or robot not in ("", *robots.names()):
             return None
         if not isinstance(lessons, list) or not all(is_lesson(lesson) for lesson in lessons):
             return None
-        kept = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()  # as the file has it
-        return cls(kept, str(robot), tuple(lessons[:MOST_LESSONS]))
+        # as the file has it
+        stored_text = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()
+        return cls(stored_text, str(robot), tuple(lessons[:MOST_LESSONS]))
 
 
 NOTHING = Work()
 
 
-def is_lesson(found: object) -> bool:
-    return isinstance(found, str) and _LESSON.fullmatch(found) is not None
+def is_lesson(value: object) -> bool:
+    return isinstance(value, str) and _LESSON.fullmatch(value) is not None
 
 
-def is_token(found: object) -> bool:
-    return isinstance(found, str) and _TOKEN.fullmatch(found) is not None
+def is_token(value: object) -> bool:
+    return isinstance(value, str) and _TOKEN.fullmatch(value) is not None
 
 
 # -- the file -------------------------------------------------------------------------------------
@@ -84,7 +85,7 @@ class Keeper:
     def __init__(self) -> None:
         """Raises Taken."""
         self._lock: int | None = None
-        self._newest = ""
+        self._newest_digest = ""
         if not self._is_ours():
             raise ClassTaken
 
@@ -96,23 +97,23 @@ class Keeper:
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
         try:
             path().parent.mkdir(parents=True, exist_ok=True)
-            number = os.open(path().with_name(path().name + LOCK_ENDING), flags, 0o600)
+            descriptor = os.open(path().with_name(path().name + LOCK_ENDING), flags, 0o600)
         except OSError:
             return True
         is_ours = True
         with suppress(OSError):
-            is_ours = try_lock(number)
+            is_ours = try_lock(descriptor)
         if is_ours:
-            self._lock = number
+            self._lock = descriptor
         else:
-            os.close(number)
+            os.close(descriptor)
         return is_ours
 
     def read(self) -> KeptClass | None:
         """Return the class that has not ended, or None. What is no class is put aside."""
         try:
-            result = json.loads(read_limited(path(), FILE_BYTES))
-            if not isinstance(result, dict) or result.get("form") != FORM:
+            state = json.loads(read_limited(path(), FILE_BYTES))
+            if not isinstance(state, dict) or state.get("form") != FORM:
                 raise ValueError
         except FileNotFoundError:
             return None
@@ -120,23 +121,23 @@ class Keeper:
             with suppress(OSError):
                 path().replace(_unread_path())
             return None
-        when_s = result.get("kept_s")
-        return KeptClass(result, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
+        kept_s = state.get("kept_s")
+        return KeptClass(state, type(kept_s) is int and time() - kept_s <= SAME_LESSON_S)
 
-    def keep(self, of_class: Json | None) -> None:
+    def keep(self, state: Json | None) -> None:
         """Keep a class if it is another than the newest that was kept. What could not be kept is
         tried again; of one that is over, None, nothing is kept."""
         if not self._is_ours():
             return
-        if of_class is None:
+        if state is None:
             forget()
-            self._newest = ""
+            self._newest_digest = ""
             return
-        digest = hashlib.sha256(json.dumps(of_class).encode()).hexdigest()
-        if digest != self._newest:
+        digest = hashlib.sha256(json.dumps(state).encode()).hexdigest()
+        if digest != self._newest_digest:
             with suppress(OSError, ValueError):  # a full disk ends no lesson
-                _write(of_class)
-                self._newest = digest
+                _write(state)
+                self._newest_digest = digest
 
     def close(self) -> None:
         if self._lock is not None:
@@ -157,14 +158,14 @@ def _unread_path() -> Path:
     return path().with_name("class.unread.json")
 
 
-def _write(of_class: Json) -> None:
+def _write(state: Json) -> None:
     """Write a class, so that not even a power cut loses it. Raises OSError or ValueError."""
-    data = json.dumps({"form": FORM, "kept_s": int(time()), **of_class}, ensure_ascii=False)
+    data = json.dumps({"form": FORM, "kept_s": int(time()), **state}, ensure_ascii=False)
     replace(path(), data.encode("utf-8", "replace"), mode=0o600, is_lasting=True)
 
 
 def forget() -> None:
     """Delete what is kept of a class that is over."""
-    for item in (path(), _unread_path()):
+    for file in (path(), _unread_path()):
         with suppress(OSError):
-            item.unlink()
+            file.unlink()

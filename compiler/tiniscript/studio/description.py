@@ -102,15 +102,15 @@ def _device(device: Device, role: str, labels: dict[str, str]) -> dict[str, Any]
 
 def _remote() -> list[dict[str, Any]]:
     """Return what a remote control says, to every robot here."""
-    result = []
+    devices = []
     for device in REMOTE:
         key = "remote_key" if device.is_yes_no else "remote_pad"
         labels = {
             language: f"{text('studio', key, language)} {REMOTE_SIGNS[device.name]}"
             for language in languages()
         }
-        result.append(_device(device, "sensor", labels))
-    return result
+        devices.append(_device(device, "sensor", labels))
+    return devices
 
 
 def _range(low: int, high: int, sample: str) -> dict[str, Any]:

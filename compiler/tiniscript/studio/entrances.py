@@ -17,7 +17,7 @@ from typing import NamedTuple
 from tiniscript.link.sharing import peers
 
 TOKEN_BYTES = 16
-OPENS_S = 120.0  # for a browser of this computer to open
+OPEN_TIMEOUT_S = 120.0  # for a browser of this computer to open
 
 
 class _Code(NamedTuple):
@@ -33,15 +33,15 @@ class Entrances:
         self._clock = clock
         self._lock = Lock()
         self._codes: dict[str, _Code] = {}
-        self._used: set[str] = set()
+        self._used_codes: set[str] = set()
 
-    def code(self, is_for_here: bool = False) -> str:
+    def new_code(self, is_for_here: bool = False) -> str:
         """Return a new code. `is_for_here`: a browser of this computer gets it, and is quick."""
-        result = new_token()
-        until_s = self._clock() + OPENS_S if is_for_here else float("inf")
+        code = new_token()
+        until_s = self._clock() + OPEN_TIMEOUT_S if is_for_here else float("inf")
         with self._lock:
-            self._codes[result] = _Code(is_for_here, until_s)
-        return result
+            self._codes[code] = _Code(is_for_here, until_s)
+        return code
 
     def is_unused(self, code: str) -> bool:
         with self._lock:
@@ -56,14 +56,14 @@ class Entrances:
         if not may_be_owner(peer):
             return ""
         with self._lock:
-            if code in self._used and not peers.tells_users():
+            if code in self._used_codes and not peers.tells_users():
                 self.token = new_token()
-            result = self._codes.get(code)
-            if result is None or (result.is_for_here and not peers.is_on_this_computer(peer)):
+            entry = self._codes.get(code)
+            if entry is None or (entry.is_for_here and not peers.is_on_this_computer(peer)):
                 return ""
             del self._codes[code]
-            self._used.add(code)
-            return self.token if self._clock() <= result.until_s else ""
+            self._used_codes.add(code)
+            return self.token if self._clock() <= entry.until_s else ""
 
     def is_owner(self, token: str, peer: socket.socket) -> bool:
         """Whether it is the token of this run, and nobody else of this computer shows it."""

@@ -18,9 +18,9 @@ from tiniscript.studio.entrances import new_token
 from tiniscript.studio.robot_link import Json
 
 MOST_BYTES = 2000  # that wait, as JSON
-_MAY_MISS = ("SHOW", "TEXT")
-_DURING = (*_MAY_MISS, "PLACE", "MISSED")
-_ENDS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
+_DROPPABLE_EVENTS = ("SHOW", "TEXT")
+_EVENTS_OF_RUN = (*_DROPPABLE_EVENTS, "PLACE", "MISSED")
+_ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 
 
 class _Row(NamedTuple):
@@ -37,77 +37,79 @@ class GroupRuns:
         self._clock = clock
         self._lock = Lock()
         self._rows: list[_Row] = []
-        self._count = 0  # of news
-        self._program = ""  # that runs, by its checksum
-        self._is_aside = False  # what runs is for the driver's page alone
-        self._first = 0  # number of the news with which the run begins
+        self._news_count = 0
+        self._program_checksum = ""  # of what runs
+        self._is_driver_alone = False  # what runs is for the driver's page alone
+        self._first_number = 0  # of the news with which the run begins
         self._began_s = 0.0
-        self._values = 0  # of the run
+        self._value_count = 0  # of the run
 
     def tell(self, driver: str, news: list[Json]) -> None:
         """The robot that a pupil drives has told this."""
         with self._lock:
             for item in news:
-                for event in self._heard(item):
+                for event in self._events_of(item):
                     self._add(driver, event)
 
-    def after(self, known: object, token: str) -> tuple[int, list[Json]]:
+    def news_after(self, position: object, token: str) -> tuple[int, list[Json]]:
         """Return the number of the newest news, and what a page has not heard that knows all until
-        `known`, a key and a number. One that knows nothing hears of what runs now."""
+        `position`, a key and a number. One that knows nothing hears of what runs now."""
         with self._lock:
-            match known:
+            match position:
                 case [self.key, int(number)]:
                     pass
                 case _:
-                    number = self._first - 1 if self._program else self._count
+                    number = self._first_number - 1 if self._program_checksum else self._news_count
             rows = [row for row in self._rows if row.driver != token]
-            return self._count, [row.news for row in rows if row.news["number"] > number]
+            return self._news_count, [row.news for row in rows if row.news["number"] > number]
 
-    def _heard(self, item: Json) -> Iterator[Json]:
+    def _events_of(self, item: Json) -> Iterator[Json]:
         """Yield what is told of an event of the link, each once in the order of the runs."""
         event, program = item.get("event"), str(item.get("program", ""))
         if "connected" in item:
             yield {"event": "ROBOT", "robot": item["connected"]["robot"]}
         elif "over" in item:
-            self._is_aside = False
+            self._is_driver_alone = False
             yield from self._end({"event": "OVER"})
         elif event == "STARTED" and item["is_program"]:
             yield self._begin(program)
         elif event == "STARTED":
-            self._is_aside = True
+            self._is_driver_alone = True
             yield from self._end({"event": "OVER"})
-        elif event in _ENDS:
-            self._is_aside = False
+        elif event in _ENDING_EVENTS:
+            self._is_driver_alone = False
             yield from self._end(item)
-        elif event in _DURING and not self._is_aside:
-            if item.get("at", -1) >= 0 and program != self._program:
+        elif event in _EVENTS_OF_RUN and not self._is_driver_alone:
+            if item.get("at", -1) >= 0 and program != self._program_checksum:
                 yield self._begin(program)  # by the robot's button: nothing has told of that
-            if self._program:
+            if self._program_checksum:
                 yield item
 
     def _begin(self, program: str) -> Json:
-        self._program, self._is_aside, self._values = program, False, 0
-        self._first, self._began_s = self._count + 1, self._clock()
+        self._program_checksum, self._is_driver_alone, self._value_count = program, False, 0
+        self._first_number, self._began_s = self._news_count + 1, self._clock()
         return {"event": "STARTED", "program": program, "is_program": True}
 
     def _end(self, event: Json) -> Iterator[Json]:
-        if self._program:
-            self._program = ""
+        if self._program_checksum:
+            self._program_checksum = ""
             yield event
 
     def _add(self, driver: str, event: Json) -> None:
         name = event["event"]
-        self._count += 1
-        news = {**event, "number": self._count, "ms": self._since_ms}
-        if name in _MAY_MISS:
-            self._values += 1
-            news["nth"] = self._values
+        self._news_count += 1
+        news = {**event, "number": self._news_count, "ms": self._since_ms}
+        if name in _DROPPABLE_EVENTS:
+            self._value_count += 1
+            news["nth"] = self._value_count
         if name == "PLACE":
             self._rows = [row for row in self._rows if row.news["event"] != "PLACE"]
         self._rows.append(_Row(driver, news, len(json.dumps(news))))
         while len(self._rows) > 1 and sum(row.size for row in self._rows) > MOST_BYTES:
-            missed = (row for row in self._rows[:-1] if row.news["event"] in _MAY_MISS)
-            self._rows.remove(next(missed, self._rows[0]))
+            droppable_rows = (
+                row for row in self._rows[:-1] if row.news["event"] in _DROPPABLE_EVENTS
+            )
+            self._rows.remove(next(droppable_rows, self._rows[0]))
 
     @property
     def _since_ms(self) -> int:

@@ -55,38 +55,38 @@ LOOK_S = 0.2  # between two looks at what the robot tells
 GONE_S = 20.0  # a page that is silent for longer gives its place away
 MOST_CHANGES = 50  # of a request
 CHANGE_BYTES = 64_000  # as JSON: a whole program is less
-COSTS_BYTES = 2000  # a change costs one for each of these that it begins
-CHANGES = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
-MARKS = 4  # colours of pupils; the next one is the teacher's
+BYTES_PER_COST = 2000  # a change costs one for each of these that it begins
+CHANGE_RATE = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
+MARK_COUNT = 4  # colours of pupils; the next one is the teacher's
 TEACHER = "teacher"  # no pupil has this token
-MOST_TOLD = 200  # changes that the teacher's page shows
-_NODE = re.compile(r"[a-z0-9.]{0,24}")
-_PAGE = re.compile(r"m[0-9]{1,6}")
+MOST_HISTORY_LINES = 200  # changes that the teacher's page shows
+_NODE_ID = re.compile(r"[a-z0-9.]{0,24}")
+_PAGE_NAME = re.compile(r"m[0-9]{1,6}")
 
 Clock = Callable[[], float]
 
 
 @dataclass(eq=False)
 class Member:
-    """`page` is the name of the page in the program; `at`: the instruction with the caret, which
-    the pupil `writes` or has only chosen. `holds` counts requests: the newest one is held."""
+    """`page` is the name of the page in the program; `node_id`: the instruction with the caret,
+    which the pupil `writes` or has only chosen. `hold_count` counts requests: one is held."""
 
     token: str
     name: str
     page: str
     heard_s: float
     mark: int = 0
-    at: str = ""
+    node_id: str = ""
     writes: bool = False
-    holds: int = 0
-    stops: int = 0
+    hold_count: int = 0
+    stop_count: int = 0
 
 
 @dataclass(eq=False)
 class Group:
     """`version` counts what is new besides the program: who is here, and where carets are.
 
-    No two pages have the same name, in all its time: `owners` are of the newest.
+    No two pages have the same name, in all its time: `owner_of_page` has the newest.
     """
 
     name: str
@@ -96,9 +96,9 @@ class Group:
     key: str
     members: dict[str, Member] = field(default_factory=dict)  # by token
     version: int = 0
-    owners: dict[str, str] = field(default_factory=dict)  # tokens by page; the newest ones
-    names: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone, by page
-    news: Condition = field(default_factory=Condition)
+    owner_of_page: dict[str, str] = field(default_factory=dict)  # tokens; the newest ones
+    name_of_page: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone
+    condition: Condition = field(default_factory=Condition)
     runs: GroupRuns = field(default_factory=GroupRuns)
 
     @property
@@ -107,7 +107,7 @@ class Group:
 
     @property
     def pupils(self) -> list[Member]:
-        return [each for each in self.members.values() if each.token != TEACHER]
+        return [member for member in self.members.values() if member.token != TEACHER]
 
 
 class Groups:
@@ -118,7 +118,7 @@ class Groups:
         self._folder = folder
         self._lock = RLock()  # never asked for by who has that of a group
         self._groups: dict[str, Group] = {}  # by key
-        self._rate = Rate(*CHANGES)
+        self._rate = Rate(*CHANGE_RATE)
         self._rate_lock = Lock()
 
     # -- pupils -----------------------------------------------------------------------------------
@@ -126,27 +126,27 @@ class Groups:
     def join(self, token: str, name: str, request: Json) -> Json:
         """A pupil joins the group of a name; where there is none, it begins with the pupil's own
         program. Raises BadRequest."""
-        wanted, text, before = request.get("name"), request.get("text"), request.get("before")
-        if not isinstance(wanted, str) or not isinstance(text, str):
+        group_name, text, old_page = request.get("name"), request.get("text"), request.get("before")
+        if not isinstance(group_name, str) or not isinstance(text, str):
             raise BadRequest
-        plain = plain_name(wanted)
-        if not plain:
+        typed_name = plain_name(group_name)
+        if not typed_name:
             return {"failure": "group_nameless"}
         with self._lock:
-            group = self._named(plain)
+            group = self._find_by_name(typed_name)
             if group is None:
                 try:
-                    group = self._found(token, plain, text)
+                    group = self._create(token, typed_name, text)
                 except Unparsed:
                     return {"failure": "group_mistakes"}
                 except Refused:
                     return {"failure": "group_long"}
                 if group is None:
                     return {"failure": "group_many"}
-            own = self.of(token)
-            if own is not None and own is not group:
+            own_group = self.group_of(token)
+            if own_group is not None and own_group is not group:
                 self.leave(token)
-            return self._enter(group, token, name, before)
+            return self._enter(group, token, name, old_page)
 
     def visit(self, request: Json) -> Json:
         """The teacher takes part in a group that there is. Raises BadRequest."""
@@ -154,20 +154,20 @@ class Groups:
         if not isinstance(name, str):
             raise BadRequest
         with self._lock:
-            group, own = self.by_key(request.get("group")), self.of(TEACHER)
+            group, own_group = self.by_key(request.get("group")), self.group_of(TEACHER)
             if group is None:
                 return {"failure": "group_gone"}
-            if own is not None and own is not group:
+            if own_group is not None and own_group is not group:
                 self.leave(TEACHER)
             return self._enter(group, TEACHER, plain_name(name), request.get("before"))
 
-    def _named(self, name: str) -> Group | None:
-        return next((item for item in self._groups.values() if are_alike(item.name, name)), None)
+    def _find_by_name(self, name: str) -> Group | None:
+        return next((group for group in self._groups.values() if are_alike(group.name, name)), None)
 
-    def _found(self, token: str, name: str, text: str) -> Group | None:
+    def _create(self, token: str, name: str, text: str) -> Group | None:
         """Return a new group; None where there are too many. Raises Unparsed, Refused."""
-        founded = [item for item in self._groups.values() if item.founder == token]
-        if len(self._groups) >= MOST_GROUPS or len(founded) >= MOST_FOUNDED:
+        own_groups = [group for group in self._groups.values() if group.founder == token]
+        if len(self._groups) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
             return None
         return self._add(name, token, new_token(), _tree_of(text))
 
@@ -181,29 +181,31 @@ class Groups:
         group = self._groups[key] = Group(name, founder, program, journal, key)
         return group
 
-    def _enter(self, group: Group, token: str, name: str, before: object) -> Json:
+    def _enter(self, group: Group, token: str, name: str, old_page: object) -> Json:
         now_s = self._clock()
-        with group.news:
+        with group.condition:
             member = group.members.get(token)
             if member is None:
-                here = group.pupils
-                if token != TEACHER and len(here) >= MOST_MEMBERS:
-                    silent = min(here, key=lambda each: each.heard_s)
-                    if now_s - silent.heard_s <= GONE_S:
+                pupils = group.pupils
+                if token != TEACHER and len(pupils) >= MOST_MEMBERS:
+                    silent_member = min(pupils, key=lambda each: each.heard_s)
+                    if now_s - silent_member.heard_s <= GONE_S:
                         return {"failure": "group_full"}
-                    del group.members[silent.token]
-                taken = {each.mark for each in group.members.values()}
-                free = (k for k in range(MARKS) if k not in taken)
-                mark = MARKS if token == TEACHER else next(free)
+                    del group.members[silent_member.token]
+                taken_marks = {member.mark for member in group.members.values()}
+                free_marks = (k for k in range(MARK_COUNT) if k not in taken_marks)
+                mark = MARK_COUNT if token == TEACHER else next(free_marks)
                 member = group.members[token] = Member(token, name, "", now_s, mark)
-            if not isinstance(before, str) or group.owners.get(before) != token:
-                before = f"m{1 + max((_number(page) for page in group.owners), default=0)}"
-                group.owners[before] = token
-                for page in list(group.owners)[:-MOST_PAGES]:
-                    del group.owners[page]
-            member.page, member.heard_s, member.name = before, now_s, name
-            group.names[before] = name
-            _tell(group)
+            if not isinstance(old_page, str) or group.owner_of_page.get(old_page) != token:
+                old_page = (
+                    f"m{1 + max((_page_number(page) for page in group.owner_of_page), default=0)}"
+                )
+                group.owner_of_page[old_page] = token
+                for page in list(group.owner_of_page)[:-MOST_PAGES]:
+                    del group.owner_of_page[page]
+            member.page, member.heard_s, member.name = old_page, now_s, name
+            group.name_of_page[old_page] = name
+            _notify(group)
             return {"group": group.name, "page": member.page,
                     **group.program.news(member.page, -1, "")}  # fmt: skip
 
@@ -211,15 +213,15 @@ class Groups:
         """Who has it leaves the group, if there is one. What nobody has changed goes with the last
         pupil."""
         with self._lock:
-            group = self.of(token)
+            group = self.group_of(token)
             if group is None:
                 return
-            with group.news:
+            with group.condition:
                 del group.members[token]
                 is_over = not group.pupils and group.program.number == 0
                 if is_over:
                     group.members.clear()
-                _tell(group)
+                _notify(group)
             if is_over:
                 del self._groups[group.key]
                 group.journal.forget()
@@ -229,61 +231,71 @@ class Groups:
 
         Raises BadRequest. To be called without any lock.
         """
-        group = self.of(token)
+        group = self.group_of(token)
         if group is None:
             return {"left": True}
-        since = whole_number(request, "since", -1, MOST_COUNT)
-        saw = whole_number(request, "saw", 0, MOST_COUNT, 0)
+        since_number = whole_number(request, "since", -1, MOST_COUNT)
+        seen_version = whole_number(request, "saw", 0, MOST_COUNT, 0)
         epoch, changes = request.get("epoch"), request.get("changes", [])
         if not isinstance(epoch, str) or not isinstance(changes, list):
             raise BadRequest
-        with group.news:
+        with group.condition:
             member = group.members.get(token)
             if member is None or member.page != request.get("page"):
                 return {"left": True}
             member.heard_s = self._clock()
-            self._miss_teacher(group)
-            is_slow = not self._take(group, member, changes)
+            self._drop_silent_teacher(group)
+            is_slow = not self._decide(group, member, changes)
             self._hear_caret(group, member, request)
-            group.news.notify_all()
-            ran = request.get("ran")
+            group.condition.notify_all()
+            run_position = request.get("ran")
             if request.get("waits") is True and not changes:
-                self._hold(group, member, since, saw, ran)
+                self._hold(group, member, since_number, seen_version, run_position)
             if group.members.get(token) is not member:
                 return {"left": True}
-            number, runs = group.runs.after(ran, token)
+            number, runs = group.runs.news_after(run_position, token)
             return {
-                **group.program.news(member.page, since, epoch),
+                **group.program.news(member.page, since_number, epoch),
                 "group": group.name,
                 "saw": group.version,
-                "others": [_said(each) for each in group.members.values() if each is not member],
+                "others": [
+                    _member_data(other) for other in group.members.values() if other is not member
+                ],
                 "ran": [group.runs.key, number],
                 **({"runs": runs} if runs else {}),
                 **({"slow": True} if is_slow else {}),
             }
 
-    def _miss_teacher(self, group: Group) -> None:
+    def _drop_silent_teacher(self, group: Group) -> None:
         """Nobody sees a teacher whose page is silent; one that comes back has left."""
         teacher = group.members.get(TEACHER)
         if teacher is not None and self._clock() - teacher.heard_s > GONE_S:
             del group.members[TEACHER]
-            _tell(group)
+            _notify(group)
 
-    def _hold(self, group: Group, member: Member, since: int, saw: int, ran: object) -> None:
+    def _hold(
+        self,
+        group: Group,
+        member: Member,
+        since_number: int,
+        seen_version: int,
+        run_position: object,
+    ) -> None:
         """Wait until there is something new, or the page asks again."""
-        member.holds += 1
-        held = member.holds
-        group.news.notify_all()
+        member.hold_count += 1
+        hold_number = member.hold_count
+        group.condition.notify_all()
         end_s = monotonic() + MOST_HELD_S
         while (
-            (group.program.number, group.version, member.holds) == (since, saw, held)
+            (group.program.number, group.version, member.hold_count)
+            == (since_number, seen_version, hold_number)
             and group.members.get(member.token) is member
-            and not group.runs.after(ran, member.token)[1]
+            and not group.runs.news_after(run_position, member.token)[1]
             and (left_s := end_s - monotonic()) > 0
         ):  # a robot's thread, which waits for nobody, wakes nobody
-            group.news.wait(min(left_s, LOOK_S))
+            group.condition.wait(min(left_s, LOOK_S))
 
-    def _take(self, group: Group, member: Member, changes: list[object]) -> bool:
+    def _decide(self, group: Group, member: Member, changes: list[object]) -> bool:
         """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
         if len(changes) > MOST_CHANGES:
             raise BadRequest
@@ -292,7 +304,7 @@ class Groups:
             if not isinstance(uid, str) or not is_uid(uid) or page_and_count(uid)[0] != member.page:
                 raise BadRequest
             size = len(json.dumps(row, separators=(",", ":")))
-            cost = 1 + min(size, CHANGE_BYTES) // COSTS_BYTES
+            cost = 1 + min(size, CHANGE_BYTES) // BYTES_PER_COST
             with self._rate_lock:
                 if not self._rate.take(member.token, self._clock(), cost):
                     return False
@@ -305,47 +317,51 @@ class Groups:
                 group.program.refuse(uid, BAD)
                 continue
             if group.program.submit([change]):
-                group.news.notify_all()
+                group.condition.notify_all()
         return True
 
     def _hear_caret(self, group: Group, member: Member, request: Json) -> None:
-        at, writes = request.get("at", member.at), request.get("writes", member.writes)
-        if not isinstance(at, str) or not _NODE.fullmatch(at) or not isinstance(writes, bool):
+        node_id, writes = request.get("at", member.node_id), request.get("writes", member.writes)
+        if (
+            not isinstance(node_id, str)
+            or not _NODE_ID.fullmatch(node_id)
+            or not isinstance(writes, bool)
+        ):
             raise BadRequest
-        if (at, writes) != (member.at, member.writes):
-            member.at, member.writes = at, writes
-            _tell(group)
+        if (node_id, writes) != (member.node_id, member.writes):
+            member.node_id, member.writes = node_id, writes
+            _notify(group)
 
     # -- for the class ----------------------------------------------------------------------------
 
-    def of(self, token: str) -> Group | None:
+    def group_of(self, token: str) -> Group | None:
         with self._lock:
-            return next((item for item in self._groups.values() if token in item.members), None)
+            return next((group for group in self._groups.values() if token in group.members), None)
 
-    def mates(self, token: str) -> list[str]:
+    def mate_tokens(self, token: str) -> list[str]:
         """Return the tokens of all who are in a pupil's group, the own one, too."""
-        group = self.of(token)
+        group = self.group_of(token)
         return [*group.members] if group is not None else [token]
 
     def runs_of(self, token: str) -> GroupRuns | None:
         """Return where what a pupil's robot tells goes: to the pupil's group, if any."""
-        group = self.of(token)
+        group = self.group_of(token)
         return group.runs if group is not None else None
 
     def is_new_stop(self, token: str, stops: int) -> bool:
         """Whether a pupil has not pressed STOP so often before; of no count it always is."""
-        group = self.of(token)
+        group = self.group_of(token)
         if group is None or not stops:
             return True
         member = group.members[token]
-        is_new, member.stops = stops > member.stops, max(stops, member.stops)
+        is_new, member.stop_count = stops > member.stop_count, max(stops, member.stop_count)
         return is_new
 
-    def shown(self) -> list[Json]:
+    def overview(self) -> list[Json]:
         """Return what a pupil sees of all groups."""
         with self._lock:
-            return [{"name": item.name, "members": [each.name for each in item.pupils]}
-                    for item in self._groups.values()]  # fmt: skip
+            return [{"name": group.name, "members": [member.name for member in group.pupils]}
+                    for group in self._groups.values()]  # fmt: skip
 
     def by_key(self, key: object) -> Group | None:
         with self._lock:
@@ -357,24 +373,31 @@ class Groups:
 
     def history(self, group: Group) -> list[Json]:
         """Return what was done, and by whom as far as that is known."""
-        with group.news:
-            return [{**taken.data(), "who": group.names.get(_page(taken), "")}
-                    for taken in group.program.taken_changes]  # fmt: skip
+        with group.condition:
+            return [
+                {**taken_change.data(), "who": group.name_of_page.get(_page_name(taken_change), "")}
+                for taken_change in group.program.taken_changes
+            ]
 
-    def told(self, group: Group) -> list[str]:
+    def history_lines(self, group: Group) -> list[str]:
         """Return the newest of that, one a line, as the teacher's page shows it."""
-        with group.news:
-            newest = [(group.names.get(_page(taken), "?"), ", ".join(map(_deed, taken.operations)))
-                      for taken in reversed(group.program.taken_changes[-MOST_TOLD:])]  # fmt: skip
-        return [f"{who}: {did}" for who, did in newest]
+        with group.condition:
+            deeds = [
+                (
+                    group.name_of_page.get(_page_name(taken_change), "?"),
+                    ", ".join(map(_operation_text, taken_change.operations)),
+                )
+                for taken_change in reversed(group.program.taken_changes[-MOST_HISTORY_LINES:])
+            ]
+        return [f"{who}: {did}" for who, did in deeds]
 
     def end(self) -> None:
         """Forget all groups, and what is kept of them."""
         with self._lock:
             for group in self._groups.values():
-                with group.news:
+                with group.condition:
                     group.members.clear()
-                    _tell(group)
+                    _notify(group)
                 group.journal.forget()
             self._groups.clear()
 
@@ -383,36 +406,36 @@ class Groups:
         with self._lock:
             return [
                 {
-                    "key": item.key,
-                    "name": item.name,
-                    "founder": item.founder,
-                    "owners": item.owners,
-                    "members": [[each.token, each.name, each.page]
-                                for each in item.members.values()],
+                    "key": group.key,
+                    "name": group.name,
+                    "founder": group.founder,
+                    "owners": group.owner_of_page,
+                    "members": [[member.token, member.name, member.page]
+                                for member in group.members.values()],
                 }
-                for item in self._groups.values()
+                for group in self._groups.values()
             ]  # fmt: skip
 
-    def go_on(self, rows: list[Json], is_here: Callable[[str], bool]) -> None:
+    def resume(self, rows: list[Json], is_here: Callable[[str], bool]) -> None:
         """Go on with groups from before a crash; what is damaged of them is left out."""
         with self._lock:
             for row in rows:
                 key, name, founder = row.get("key"), row.get("name"), row.get("founder")
-                plain = plain_name(name) if isinstance(name, str) else ""
+                group_name = plain_name(name) if isinstance(name, str) else ""
                 is_key = isinstance(key, str) and re.fullmatch("[0-9a-f]{32}", key) is not None
-                if not is_key or not plain or len(self._groups) >= MOST_GROUPS:
+                if not is_key or not group_name or len(self._groups) >= MOST_GROUPS:
                     continue
-                group = self._add(plain, str(founder), str(key), None)
+                group = self._add(group_name, str(founder), str(key), None)
                 if group is None:
                     continue
                 owners = row.get("owners")
-                known = dict.fromkeys(group.program.last_counts, "")
-                known.update(owners if isinstance(owners, dict) else {})
-                group.owners = {page: str(owner) for page, owner in known.items()
-                                if _PAGE.fullmatch(page)}  # fmt: skip
+                owner_of_page = dict.fromkeys(group.program.last_counts, "")
+                owner_of_page.update(owners if isinstance(owners, dict) else {})
+                group.owner_of_page = {page: str(owner) for page, owner in owner_of_page.items()
+                                if _PAGE_NAME.fullmatch(page)}  # fmt: skip
                 members = row.get("members")
-                for each in members if isinstance(members, list) else ():
-                    self._bring_back(group, each, is_here)
+                for member_data in members if isinstance(members, list) else ():
+                    self._bring_back(group, member_data, is_here)
 
     def tidy(self) -> None:
         """Delete journals of groups that there are not any more."""
@@ -421,16 +444,18 @@ class Groups:
                 if path.name.partition(".")[0] not in self._groups:
                     path.unlink()
 
-    def _bring_back(self, group: Group, found: object, is_here: Callable[[str], bool]) -> None:
-        if not isinstance(found, list) or len(found) != 3:
+    def _bring_back(
+        self, group: Group, member_data: object, is_here: Callable[[str], bool]
+    ) -> None:
+        if not isinstance(member_data, list) or len(member_data) != 3:
             return
-        token, name, page = map(str, found)
-        if is_here(token) and _PAGE.fullmatch(page) and len(group.members) < MOST_MEMBERS:
+        token, name, page = map(str, member_data)
+        if is_here(token) and _PAGE_NAME.fullmatch(page) and len(group.members) < MOST_MEMBERS:
             mark = len(group.members)
             group.members[token] = Member(token, name, page, self._clock(), mark)
 
 
-def _number(page: str) -> int:
+def _page_number(page: str) -> int:
     return int(page[1:])
 
 
@@ -444,19 +469,19 @@ def _tree_of(text: str) -> Tree:
     return tree_of(tree.snapshot())
 
 
-def _tell(group: Group) -> None:
+def _notify(group: Group) -> None:
     group.version += 1
-    group.news.notify_all()
+    group.condition.notify_all()
 
 
-def _said(member: Member) -> Json:
-    return {"name": member.name, "mark": member.mark, "at": member.at, "writes": member.writes}
+def _member_data(member: Member) -> Json:
+    return {"name": member.name, "mark": member.mark, "at": member.node_id, "writes": member.writes}
 
 
-def _deed(operation: Operation) -> str:
+def _operation_text(operation: Operation) -> str:
     """Return what an operation does, in signs that are the same in each language."""
     if isinstance(operation, Insert):
-        return "+ " + "; ".join(each.text for each in operation.nodes)
+        return "+ " + "; ".join(node.text for node in operation.nodes)
     if isinstance(operation, Delete):
         return f"− {len(operation.ids)}"
     if isinstance(operation, Replace):
@@ -464,5 +489,5 @@ def _deed(operation: Operation) -> str:
     return "+ " + operation.node.text if isinstance(operation, Wrap) else "↕"
 
 
-def _page(taken: TakenChange) -> str:
-    return page_and_count(taken.uid)[0]
+def _page_name(taken_change: TakenChange) -> str:
+    return page_and_count(taken_change.uid)[0]

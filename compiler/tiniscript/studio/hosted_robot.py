@@ -22,9 +22,9 @@ from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import ConnectionLost
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.studio.attending import LOOK_S, Attending
-from tiniscript.studio.robot_link import RobotLink, about
+from tiniscript.studio.robot_link import RobotLink, robot_data
 
-PARTS_S = 8.0  # for a stop to be confirmed, and a port to be closed
+PARTING_TIMEOUT_S = 8.0  # for a stop to be confirmed, and a port to be closed
 VERB = "studio"  # the name that other commands show for the process that holds the port
 
 
@@ -36,60 +36,60 @@ class HostedRobot:
 
     def __init__(
         self, port: str, robot: str, language: str, tab: str = "", connection: int = 0,
-        stops: int = 0, before: Sequence[HostedRobot] = (),
+        stop_count: int = 0, earlier_robots: Sequence[HostedRobot] = (),
     ) -> None:  # fmt: skip
         """`robot` is the profile of the page's programs.
 
-        `tab` and `connection` are the page's name of itself and its count of connections; `stops`:
-        how often that one has pressed STOP before, as far as it is done. The port is free when
-        those `before` have closed it.
+        `tab` and `connection` are the page's name of itself and its count of connections;
+        `stop_count`: how often that one has pressed STOP before, as far as it is done. The port is
+        free when `earlier_robots` have closed it.
         """
         self.port = port
         self.tab = tab
         self.connection = connection
         self.has_ended = self.is_unconfirmed = False
         self.name = ""  # of the robot, once it has answered
-        self.attending = Attending(stops=stops)
-        self._before = before
+        self.attending = Attending(stop_count=stop_count)
+        self._earlier_robots = earlier_robots
         self._profile = robots.load(robot)
         self._language = language
-        self._leaves = self._lets_go = False
-        self.holds = False  # the port for another command, which drives the robot through it
-        self._why = "left"
+        self._is_leaving = self._is_letting_go = False
+        self.is_holding_port = False  # for another command, which drives the robot through it
+        self._leave_reason = "left"
         self._link: RobotLink | None = None
         self._thread = Thread(target=self._run, name="studio robot", daemon=True)
         self._thread.start()
 
-    def leave(self, why: str = "left", lets_go: bool = False) -> None:
+    def leave(self, reason: str = "left", is_letting_go: bool = False) -> None:
         """Stop what the page has started, and close the port: once no other command drives the
-        robot through it, or at once where it `lets_go`."""
-        self._why = why
-        self._lets_go = self._lets_go or lets_go
-        self._leaves = True
+        robot through it, or at once where it `is_letting_go`."""
+        self._leave_reason = reason
+        self._is_letting_go = self._is_letting_go or is_letting_go
+        self._is_leaving = True
 
     @property
     def is_parting(self) -> bool:
         """Whether a stop is still to be confirmed, or the port to be closed."""
-        return (self.has_ended or self._leaves) and self._thread.is_alive()
+        return (self.has_ended or self._is_leaving) and self._thread.is_alive()
 
     @property
     def was_left(self) -> bool:
         """Whether the page has left it, whatever the robot does."""
-        return self._leaves or self.attending.has_left
+        return self._is_leaving or self.attending.has_left
 
     def join(self, limit_s: float) -> None:
         self._thread.join(limit_s)
 
     @property
     def is_attended(self) -> bool:
-        return not self._leaves and self.attending.is_attended
+        return not self._is_leaving and self.attending.is_attended
 
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
         self._wait_for_port()
         if self.was_left:
-            self._end(self._why)
+            self._end(self._leave_reason)
             return
         try:
             client = Client(
@@ -107,15 +107,15 @@ class HostedRobot:
                 while not self.was_left:
                     self.attending.attend(link)
                 self._part(link)
-                self._end(self._why if self._leaves else "unheard")
-                self.holds = client.holds_for_others
+                self._end(self._leave_reason if self._is_leaving else "unheard")
+                self.is_holding_port = client.holds_for_others
                 with suppress(RobotError):  # the port is gone, and the page is told already
-                    client.hold_for_others(lambda: not self._lets_go)
-        except ConnectionLost as gone:
-            lost = client.robot_error_for_loss(gone)
-            self._end(lost.key, str(lost))
-        except RobotError as lost:
-            self._end(lost.key, str(lost))
+                    client.hold_for_others(lambda: not self._is_letting_go)
+        except ConnectionLost as connection_lost:
+            error = client.robot_error_for_loss(connection_lost)
+            self._end(error.key, str(error))
+        except RobotError as error:
+            self._end(error.key, str(error))
         except Exception as bug:
             self._end("bug", str(bug))
             raise
@@ -125,16 +125,16 @@ class HostedRobot:
 
     def _wait_for_port(self) -> None:
         """Wait for those before, as long as their stops may take."""
-        end_s = monotonic() + PARTS_S
-        for hosted_robot in self._before:
+        end_s = monotonic() + PARTING_TIMEOUT_S
+        for earlier_robot in self._earlier_robots:
             while (
-                hosted_robot.is_parting
-                and not hosted_robot.holds
+                earlier_robot.is_parting
+                and not earlier_robot.is_holding_port
                 and monotonic() < end_s
                 and not self.was_left
             ):
-                hosted_robot.join(LOOK_S)
-        self._before = ()
+                earlier_robot.join(LOOK_S)
+        self._earlier_robots = ()
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
         """What another command has started is for that command to attend to."""
@@ -148,18 +148,18 @@ class HostedRobot:
 
     def _meet(self, client: Client) -> bool:
         """Say hello to the robot; return whether it has answered."""
-        line = client.connection
+        connection = client.connection
         try:
             robot = client.meet(is_patient=lambda: not self.was_left)
         except TiniScriptError as failure:
-            if line.has_ended:
+            if connection.has_ended:
                 raise
             # for what is no status the page has a sentence of its own
             self._end(failure.key, str(failure) if failure.key in STATUSES else "")
             return False
         opening.remember(self.port, robot.name)
         self.name = robot.name
-        self.attending.tell([{"connected": about(robot), "held_by": line.holder_verb}])
+        self.attending.tell([{"connected": robot_data(robot), "held_by": connection.holder_verb}])
         return True
 
     def _part(self, link: RobotLink) -> None:
@@ -179,7 +179,7 @@ class HostedRobot:
                 self.is_unconfirmed = False
                 return
 
-    def _end(self, reason: str, said: str = "") -> None:
+    def _end(self, reason: str, message: str = "") -> None:
         self.has_ended = True
         self.attending.end()
-        self.attending.tell([{"over": reason, "said": said}])
+        self.attending.tell([{"over": reason, "said": message}])

@@ -18,16 +18,16 @@ from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.studio.attending import LATCH_S
-from tiniscript.studio.hosted_robot import PARTS_S, HostedRobot
+from tiniscript.studio.hosted_robot import PARTING_TIMEOUT_S, HostedRobot
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
 from tiniscript.virtual import directory
 
 NAME_CHARACTERS = 64  # of a page
 PORT_CHARACTERS = 300
 MOST_ROBOTS = 40
-MOST_ASKED = 8  # requests at a time
-PORT_SHOWN = 200
-_OVER: Json = {"news": [{"over": "left", "said": "", "number": 0}]}
+MOST_REQUESTS = 8  # requests at a time
+DESCRIPTION_CHARACTERS = 200
+_OVER_ANSWER: Json = {"news": [{"over": "left", "said": "", "number": 0}]}
 
 
 class Hosting:
@@ -36,42 +36,42 @@ class Hosting:
     def __init__(self) -> None:
         self._lock = Lock()
         self._by_page: dict[str, HostedRobot] = {}
-        self._parting: list[HostedRobot] = []
-        self._stopping: list[HostedRobot] = []  # those that the last STOP for all has reached
+        self._parting_robots: list[HostedRobot] = []
+        self._stopped_robots: list[HostedRobot] = []  # those that the last STOP for all has reached
         self._latched_until_s = 0.0
 
     def answer(self, request: Json) -> Json:
         """Return the answer to a page's request. Raises BadRequest."""
-        do = request.get("do")
-        if do == "ports":
+        action = request.get("do")
+        if action == "ports":
             return {"ports": list_ports()}
-        if do == "stop_all":
+        if action == "stop_all":
             return self._stop_all()
-        if do == "stops":
-            return self._stops()
+        if action == "stops":
+            return self._stop_states()
         page = _text(request, "page", NAME_CHARACTERS)
-        if do == "connect":
+        if action == "connect":
             return self._connect(page, request)
         with self._lock:
             robot = self._by_page.get(page)
-        if do not in ("beat", "stop", "leave"):
+        if action not in ("beat", "stop", "leave"):
             raise BadRequest
         if robot is None:
-            return _OVER
-        if do == "stop":
-            stops = 0
+            return _OVER_ANSWER
+        if action == "stop":
+            stop_count = 0
             try:
                 if request.get("tab", page) == robot.tab:
-                    stops = whole_number(request, "stops", 0, MOST_COUNT, 0)
+                    stop_count = whole_number(request, "stops", 0, MOST_COUNT, 0)
             finally:  # whatever it counts
-                robot.attending.stop(stops)
+                robot.attending.stop(stop_count)
         if _connection(page, request) != (robot.tab, robot.connection):
-            return _OVER
-        if do == "leave":
+            return _OVER_ANSWER
+        if action == "leave":
             robot.leave()
-        seen = whole_number(request, "seen", 0, MOST_COUNT, 0)
-        stops = whole_number(request, "stops", 0, MOST_COUNT, 0)
-        return {"news": robot.attending.on_beat(_requests(request), seen, stops)}
+        seen_number = whole_number(request, "seen", 0, MOST_COUNT, 0)
+        stop_count = whole_number(request, "stops", 0, MOST_COUNT, 0)
+        return {"news": robot.attending.on_beat(_requests(request), seen_number, stop_count)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""
@@ -87,70 +87,81 @@ class Hosting:
         """Stop what pages have started, and close all ports; return those where no robot has
         confirmed that."""
         with self._lock:
-            hosted_robots = [*self._by_page.values(), *self._parting]
+            hosted_robots = [*self._by_page.values(), *self._parting_robots]
         for hosted_robot in hosted_robots:
-            hosted_robot.leave(lets_go=True)
+            hosted_robot.leave(is_letting_go=True)
         for hosted_robot in hosted_robots:
-            hosted_robot.join(PARTS_S)
+            hosted_robot.join(PARTING_TIMEOUT_S)
         return [robot.port for robot in hosted_robots if robot.is_unconfirmed]
 
     def _connect(self, page: str, request: Json) -> Json:
-        port, robot, language = port_of(request), robot_of(request), request.get("language")
+        port, profile_name, language = port_of(request), robot_of(request), request.get("language")
         if language not in languages():
             raise BadRequest
         tab, connection = _connection(page, request)
         with self._lock:
             self._forget_ended()
-            own = self._by_page.get(page)
-            is_same = own is not None and own.tab == tab
-            if own is not None and is_same and connection <= own.connection:
-                own.attending.connect_again()  # the answer was lost, or it comes late
+            own_robot = self._by_page.get(page)
+            is_same = own_robot is not None and own_robot.tab == tab
+            if own_robot is not None and is_same and connection <= own_robot.connection:
+                own_robot.attending.connect_again()  # the answer was lost, or it comes late
                 return {}
-            before = self._robots_at(port)
-            rivals = [item for item in {*before, *([own] if own else ())} if _is_driving(item)]
+            port_robots = self._robots_at(port)
+            rivals = [
+                rival
+                for rival in {*port_robots, *([own_robot] if own_robot else ())}
+                if _is_driving(rival)
+            ]
             if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
                 return {"failure": "other_tab"}
             for rival in rivals:  # nobody knows of it any more
                 rival.leave()
             if sum(map(_is_driving, self._by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
-            if own is not None:
-                self._parting.append(own)
-            stops = own.attending.stops if own is not None and is_same else 0
-            hosted_robot = HostedRobot(port, robot, str(language), tab, connection, stops, before)
-            hosted_robot.attending.latch(self._latched_until_s, stops=False)
+            if own_robot is not None:
+                self._parting_robots.append(own_robot)
+            stop_count = own_robot.attending.stop_count if own_robot is not None and is_same else 0
+            hosted_robot = HostedRobot(
+                port, profile_name, str(language), tab, connection, stop_count, port_robots
+            )
+            hosted_robot.attending.latch(self._latched_until_s, is_stopping=False)
             self._by_page[page] = hosted_robot
         return {}
 
     def _robots_at(self, port: str) -> list[HostedRobot]:
         """Return who has a port, or is closing it. One that holds it for another command shares it
         with whoever comes."""
-        same = canonical_port(port)
-        all_of_them = [*self._by_page.values(), *self._parting]
-        held = [robot for robot in all_of_them
-                if (robot.is_parting or not robot.has_ended) and not robot.holds]  # fmt: skip
-        return [robot for robot in held if canonical_port(robot.port) == same]
+        wanted_port = canonical_port(port)
+        all_robots = [*self._by_page.values(), *self._parting_robots]
+        open_robots = [
+            robot
+            for robot in all_robots
+            if (robot.is_parting or not robot.has_ended) and not robot.is_holding_port
+        ]
+        return [robot for robot in open_robots if canonical_port(robot.port) == wanted_port]
 
     def _forget_ended(self) -> None:
         """Forget what has ended, once its page knows why or is not there any more."""
-        all_of_them = dict.fromkeys([*self._by_page.values(), *self._parting])
-        self._parting = [hosted_robot for hosted_robot in all_of_them if hosted_robot.is_parting]
+        all_robots = dict.fromkeys([*self._by_page.values(), *self._parting_robots])
+        self._parting_robots = [
+            hosted_robot for hosted_robot in all_robots if hosted_robot.is_parting
+        ]
         self._by_page = {name: robot for name, robot in self._by_page.items()
                          if not (robot.has_ended and robot.attending.has_left)}  # fmt: skip
 
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            self._stopping = [robot for robot in self._by_page.values() if _is_driving(robot)]
+            self._stopped_robots = [robot for robot in self._by_page.values() if _is_driving(robot)]
             self._latched_until_s = monotonic() + LATCH_S
-        for hosted_robot in self._stopping:
+        for hosted_robot in self._stopped_robots:
             hosted_robot.attending.latch()
-        return self._stops()
+        return self._stop_states()
 
-    def _stops(self) -> Json:
+    def _stop_states(self) -> Json:
         """Return what is known of the last STOP for all."""
         with self._lock:
-            hosted_robots = self._stopping
+            hosted_robots = self._stopped_robots
         return {"robots": [{"name": robot.name or robot.port, "stop": robot.attending.last_stop}
                            for robot in hosted_robots]}  # fmt: skip
 
@@ -160,21 +171,26 @@ def list_ports() -> list[Json]:
 
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
-    known = known_ports.remembered_ports()
-    virtual = {item.address: item for item in directory.unclaimed_robots()}
-    about = {item.port: item.description for item in ports.list_ports()}
-    names = [*about, *(port for port in virtual if port not in about)]
-    names += [port for port in known.names
-              if port not in names and exists(port) and not directory.is_gone(port)]  # fmt: skip
-    names.sort(key=lambda port: port != known.last_port)
+    port_memory = known_ports.remembered_ports()
+    virtual_robots = {robot.address: robot for robot in directory.unclaimed_robots()}
+    descriptions = {robot.port: robot.description for robot in ports.list_ports()}
+    port_names = [*descriptions, *(port for port in virtual_robots if port not in descriptions)]
+    port_names += [
+        port
+        for port in port_memory.names
+        if port not in port_names and exists(port) and not directory.is_gone(port)
+    ]
+    port_names.sort(key=lambda port: port != port_memory.last_port)
     return [
         {
             "port": port,
-            "name": virtual[port].name if port in virtual else known.names.get(port, ""),
-            "description": printable(about.get(port, ""), PORT_SHOWN),
-            "virtual": virtual[port].robot if port in virtual else None,
+            "name": virtual_robots[port].name
+            if port in virtual_robots
+            else port_memory.names.get(port, ""),
+            "description": printable(descriptions.get(port, ""), DESCRIPTION_CHARACTERS),
+            "virtual": virtual_robots[port].robot if port in virtual_robots else None,
         }
-        for port in names
+        for port in port_names
     ]
 
 
@@ -196,16 +212,16 @@ def port_of(request: Json) -> str:
     return port
 
 
-def _text(request: Json, name: str, most: int) -> str:
-    result = request.get(name)
-    if not isinstance(result, str) or not 1 <= len(result) <= most or not result.isprintable():
+def _text(request: Json, name: str, most_characters: int) -> str:
+    text = request.get(name)
+    if not isinstance(text, str) or not 1 <= len(text) <= most_characters or not text.isprintable():
         raise BadRequest
-    return result
+    return text
 
 
 def _requests(request: Json) -> list[Json]:
     requests: Any = request.get("asked", [])
-    if not isinstance(requests, list) or len(requests) > MOST_ASKED:
+    if not isinstance(requests, list) or len(requests) > MOST_REQUESTS:
         raise BadRequest
     if not all(isinstance(request, dict) for request in requests):
         raise BadRequest

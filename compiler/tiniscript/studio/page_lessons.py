@@ -30,7 +30,7 @@ from tiniscript.link.session import Session
 from tiniscript.studio.block_form import Form as BlockForm
 from tiniscript.studio.block_form import kinds_in, lone_block, pieces_in
 from tiniscript.studio.block_kinds import KIND_OF, piece_of
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import NONCE, Marks, Simulation
 from tiniscript.studio.world_form import Form, form_of
@@ -39,13 +39,13 @@ from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
 STEPS, TASK = 2, 3  # of a page's headings, after what is needed
-CODE, WORD = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
+CODE_PATTERN, WORD_PATTERN = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
 # What makes a program of code in a sentence: the end of what it begins, or SHOW around a value.
-WHOLE = (
+PROGRAM_FORMS = (
     "{}",
     *(f"{{}}\n{end}" for end in ("END_LOOP", "ENDIF", "END_WHILE", "END_WHEN", "END_DEF")),
 )
-VALUE = "SHOW({})"
+VALUE_FORM = "SHOW({})"
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -61,110 +61,114 @@ def titles(language: str) -> list[dict[str, Any]]:
 def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
     """Return what to do, one step after the other: its blocks, and a hint. The last is the task."""
     page = catalogue.whole_page(_folder(number), catalogue.PUPIL, language, form)
-    matches: list[tuple[list[Block], list[str]]] = []
-    before: list[Block] = []  # what the lesson is about stands at its first step
+    blocks_and_hints: list[tuple[list[Block], list[str]]] = []
+    intro_blocks: list[Block] = []  # what the lesson is about stands at its first step
     section = 0
     for block in blocks(studio_part(page)):
         if block.kind == "heading":
             section += 1
             if section == TASK:
-                matches.append(([], []))
+                blocks_and_hints.append(([], []))
         elif section == 0 and block.kind == "paragraph":
-            before.append(block)
+            intro_blocks.append(block)
         elif section == STEPS and block.kind == "steps":
-            matches += (([Block("paragraph", (row,))], []) for row in block.rows)
+            blocks_and_hints += (([Block("paragraph", (row,))], []) for row in block.rows)
         elif section in (STEPS, TASK) and block.kind in ("paragraph", "program"):
             text = block.rows[0][0] if block.rows else ""
             if text.startswith(HINT):
-                matches[-1][1].append(text.removeprefix(HINT))
+                blocks_and_hints[-1][1].append(text.removeprefix(HINT))
             else:
-                matches[-1][0].append(block)
-    matches[0][0][:0] = before
+                blocks_and_hints[-1][0].append(block)
+    blocks_and_hints[0][0][:0] = intro_blocks
     return [
         {"blocks": [_without_blanks(part) for part in parts], "hint": " ".join(hints)}
-        for parts, hints in matches
+        for parts, hints in blocks_and_hints
     ]
 
 
 @cache
-def taught(number: int, language: str) -> list[str]:
+def taught_kinds(number: int, language: str) -> list[str]:
     """Return the kinds of blocks that a lesson speaks of, and those that its task asks for."""
-    return sorted({*needed(number, language), *_kinds_of(_words(number, language))})
+    return sorted({*needed_kinds(number, language), *_kinds_of(_words(number, language))})
 
 
-def offered(number: int, language: str) -> list[str]:
+def offered_kinds(number: int, language: str) -> list[str]:
     """Return the kinds of blocks that lessons have spoken of, this one included."""
-    return sorted({kind for each in range(1, number + 1) for kind in taught(each, language)})
+    return sorted(
+        {kind for other in range(1, number + 1) for kind in taught_kinds(other, language)}
+    )
 
 
 @cache
-def needed(number: int, language: str) -> list[str]:
+def needed_kinds(number: int, language: str) -> list[str]:
     """Return the kinds of blocks of a lesson's programs, and those that its task asks for."""
     kinds = (kinds_in(form) for form in _forms(number, language))
-    return sorted(_kinds_of(_asked(number)).union(*kinds))
+    return sorted(_kinds_of(_task_words(number)).union(*kinds))
 
 
-def new(number: int, language: str) -> list[str]:
+def new_pieces(number: int, language: str) -> list[str]:
     """Return the blocks that a lesson speaks of and no lesson before it.
 
     Where it has none, those that the fewest lessons before it speak of: they are the newest.
     """
-    before = Counter(item for other in range(1, number) for item in _items(other, language))
-    own = _items(number, language)
-    least = min((before[each] for each in own), default=0)
-    return sorted({item for item, use in own if before[item, use] == least})
+    earlier_counts = Counter(
+        piece for earlier in range(1, number) for piece in _pieces_with_use(earlier, language)
+    )
+    own_pieces = _pieces_with_use(number, language)
+    fewest = min((earlier_counts[piece] for piece in own_pieces), default=0)
+    return sorted({piece for piece, use in own_pieces if earlier_counts[piece, use] == fewest})
 
 
 @cache
-def _items(number: int, language: str) -> frozenset[tuple[str, str]]:
+def _pieces_with_use(number: int, language: str) -> frozenset[tuple[str, str]]:
     """Return the blocks that a lesson speaks of, and how each is used."""
     kit = profile_of(_lesson(number).robot).kit
-    words = _asked(number) | _words(number, language)
-    items = {piece_of(KIND_OF[word], word) for word in words & WORDS.keys() & KIND_OF.keys()}
-    items |= {piece_of("sensor", device.name) for device in kit.readings if device.name in words}
-    items |= {piece_of("set", device.name) for device in kit.actuators if device.name in words}
+    words = _task_words(number) | _words(number, language)
+    pieces = {piece_of(KIND_OF[word], word) for word in words & WORDS.keys() & KIND_OF.keys()}
+    pieces |= {piece_of("sensor", device.name) for device in kit.readings if device.name in words}
+    pieces |= {piece_of("set", device.name) for device in kit.actuators if device.name in words}
     in_programs = set[tuple[str, str]]().union(*map(pieces_in, _forms(number, language)))
-    return frozenset(in_programs.union((item, "") for item in items))
+    return frozenset(in_programs.union((piece, "") for piece in pieces))
 
 
-def spoken(number: int, language: str) -> dict[str, dict[str, Any]]:
+def spoken_blocks(number: int, language: str) -> dict[str, dict[str, Any]]:
     """Return the block that each code in a lesson's sentences is; of a value one without a kind."""
     return blocks_of(_codes(number, language, BLOCKS), profile_of(_lesson(number).robot).kit)
 
 
 def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
     """Return the block that each code is, but of a word alone."""
-    result: dict[str, dict[str, Any]] = {}
+    block_of_code: dict[str, dict[str, Any]] = {}
     for code in codes:
-        if WORD.fullmatch(code):
+        if WORD_PATTERN.fullmatch(code):
             continue  # what a word is called, the page knows
-        for text in (*WHOLE, VALUE):
-            block = lone_block(read(text.format(code), kit))
+        for text in (*PROGRAM_FORMS, VALUE_FORM):
+            block = lone_block(read_blocks(text.format(code), kit))
             if block is not None:
-                kind = "" if text == VALUE else block.kind
-                result[code] = {"kind": kind, "word": block.word, "values": block.values}
+                kind = "" if text == VALUE_FORM else block.kind
+                block_of_code[code] = {"kind": kind, "word": block.word, "values": block.values}
                 break
-    return result
+    return block_of_code
 
 
 def _kinds_of(words: set[str]) -> set[str]:
     return {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()}
 
 
-def _asked(number: int) -> set[str]:
+def _task_words(number: int) -> set[str]:
     """Return the words that a lesson's task asks for."""
     return {word for criterion in _lesson(number).criteria for word in criterion.words}
 
 
 def _words(number: int, language: str) -> set[str]:
     """Return the words of the code in a lesson's sentences and hints."""
-    return {word for code in _codes(number, language) for word in WORD.findall(code)}
+    return {word for code in _codes(number, language) for word in WORD_PATTERN.findall(code)}
 
 
 def _forms(number: int, language: str) -> list[BlockForm]:
     """Return the programs of a lesson's steps as blocks."""
     kit = profile_of(_lesson(number).robot).kit
-    return [read(text, kit) for text in _programs(number, language)]
+    return [read_blocks(text, kit) for text in _programs(number, language)]
 
 
 def _programs(number: int, language: str) -> list[str]:
@@ -183,7 +187,7 @@ def _codes(number: int, language: str, form: str = TEXT) -> list[str]:
 
 
 def _codes_in(sentences: list[str]) -> list[str]:
-    return [code for sentence in sentences for code in CODE.findall(sentence)]
+    return [code for sentence in sentences for code in CODE_PATTERN.findall(sentence)]
 
 
 def _text_of(block: dict[str, Any]) -> str:
@@ -192,28 +196,28 @@ def _text_of(block: dict[str, Any]) -> str:
 
 def _without_blanks(block: Block) -> dict[str, Any]:
     """Return a block without the blanks that are filled in on paper."""
-    rows = [[row.removesuffix(" ____") for row in item] for item in block.rows]
+    rows = [[row.removesuffix(" ____") for row in texts] for texts in block.rows]
     return {"kind": block.kind, "rows": rows}
 
 
-def world(number: int, seed: int) -> World:
+def varied_world(number: int, seed: int) -> World:
     """Return the world of a lesson where a program is tried."""
     return vary(_lesson(number), seed)._replace(flags=(), seconds=0)  # a lesson has its own task
 
 
 def world_form(number: int, seed: int) -> Form:
-    return form_of(world(number, seed))
+    return form_of(varied_world(number, seed))
 
 
-def goals(number: int, seed: int) -> list[dict[str, Any]]:
+def goal_shapes(number: int, seed: int) -> list[dict[str, Any]]:
     """Return where the task leads: a circle with a flag, or the area around a place."""
-    lesson, drawn = _lesson(number), world(number, seed)
-    result = []
+    lesson, drawn_world = _lesson(number), varied_world(number, seed)
+    shapes = []
     for criterion in lesson.criteria:
         if (criterion.kind not in GOALS and not criterion.area) or criterion.words:
             continue
         for place in criterion.places:
-            x_cm, y_cm = point_of(place, drawn, is_mirrored(lesson, seed))
+            x_cm, y_cm = point_of(place, drawn_world, is_mirrored(lesson, seed))
             is_flag = criterion.kind in GOALS and place.part != "start"
             goal: dict[str, Any] = {"x_cm": x_cm, "y_cm": y_cm, "is_flag": is_flag}
             if criterion.area:
@@ -222,11 +226,11 @@ def goals(number: int, seed: int) -> list[dict[str, Any]]:
                 goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
             else:
                 goal["radius_cm"] = criterion.numbers["within_cm"]
-            result.append(goal)
-    return result
+            shapes.append(goal)
+    return shapes
 
 
-class Check:
+class LessonCheck:
     """A program's text on its way through the worlds of a lesson."""
 
     def __init__(self, number: int, data: bytes, language: str) -> None:
@@ -237,10 +241,10 @@ class Check:
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
         self._kit = profile.kit
-        result = fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
-        if result.is_right:
+        compilation = fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
+        if compilation.is_right:
             seeds = range(1, lesson.world_count + 1)
-            text = result.source.text
+            text = compilation.source.text
             self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
@@ -260,19 +264,19 @@ class Check:
         self, verdict: str, seed: int, outcome: Outcome | None = None
     ) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
-        said, on_blocks = (
+        sentences, block_sentences = (
             [sentence(finding, self._language, form) for finding in findings]
             for form in (TEXT, BLOCKS)
         )
-        spoken = blocks_of(_codes_in(on_blocks), self._kit)
+        code_blocks = blocks_of(_codes_in(block_sentences), self._kit)
         run = None
         if outcome is not None and outcome.run.ending != ASKS:
-            first = findings[0].ms if findings else None
-            until_ms = outcome.run.end_ms if first is None else first
+            failure_ms = findings[0].ms if findings else None
+            until_ms = outcome.run.end_ms if failure_ms is None else failure_ms
             run = {"seed": outcome.run.seed, "until_ms": until_ms}
         return {
             "verdict": verdict, "seed": seed, "worlds": self._worlds, "run": run,
-            "said": said, "block_said": on_blocks, "spoken": spoken,
+            "said": sentences, "block_said": block_sentences, "spoken": code_blocks,
         }  # fmt: skip
 
 
@@ -290,7 +294,7 @@ class JudgedRun(Simulation):
         self.fault_at = None
         self._begin_rows()
         self.marks = marks._replace(breakpoints=())
-        self._score = Score(world(number, seed))
+        self._score = Score(varied_world(number, seed))
         self._owed_ms = 0  # that are less than a look of the judge's
         assert self.robot.started_ms is not None, "the program does not begin"
         self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))

@@ -23,7 +23,7 @@ from tiniscript.studio.robot_link import Json, RobotLink
 
 T = TypeVar("T")
 
-HEARD_MS = 500  # a page that was away for longer no longer attends to its robot
+ATTENDED_MS = 500  # a page that was away for longer no longer attends to its robot
 
 
 class PageKeys(KeyRing):
@@ -40,10 +40,10 @@ class PageKeys(KeyRing):
 
     def add(self, data: bytes) -> int:
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
-        given = with_known_seals(decode_keys(data), self.keys)
-        for key in given:
+        new_keys = with_known_seals(decode_keys(data), self.keys)
+        for key in new_keys:
             self.settle(key)
-        return len(given)
+        return len(new_keys)
 
     def _stored_keys(self) -> list[RobotKey]:
         return self.keys
@@ -53,9 +53,9 @@ class PageKeys(KeyRing):
         return True
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
-        after = change(self.keys)
-        self.has_changed = self.has_changed or after != self.keys
-        self.keys = after
+        new_keys = change(self.keys)
+        self.has_changed = self.has_changed or new_keys != self.keys
+        self.keys = new_keys
         return True
 
 
@@ -91,11 +91,11 @@ class PageLine(LinkConnection):
         self.note_heard(data)
         self.now_ms = now_ms
         self.session.receive(data, now_ms)
-        sent = self.session.poll(now_ms)
+        data_to_send = self.session.poll(now_ms)
         events = self.session.events()
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for event in events)
         self._events.put((now_ms, event) for event in events)
-        return sent
+        return data_to_send
 
 
 class PageRobot:
@@ -107,29 +107,29 @@ class PageRobot:
         self.keys = keys
         self.line = PageLine(profile.board.baud, profile.kit.fingerprint, keys)
         self.link = RobotLink(self.line, language)
-        self._was_here_ms: int | None = None
+        self._last_ms: int | None = None
 
-    def go(self, data: bytes, now_ms: int, asked: list[Json]) -> Json:
+    def go(self, data: bytes, now_ms: int, requests: list[Json]) -> Json:
         """Let the session go on, with the bytes that have arrived and new requests.
 
         Returns the bytes to `send` as hexadecimal digits, the time at which to call again at the
         latest (`wakes_ms`, or None), and the news.
         """
-        was_ms, self._was_here_ms = self._was_here_ms, now_ms
-        if was_ms is not None and now_ms - was_ms > HEARD_MS and self.link.has_run:
+        last_ms, self._last_ms = self._last_ms, now_ms
+        if last_ms is not None and now_ms - last_ms > ATTENDED_MS and self.link.has_run:
             self.line.now_ms = now_ms
             self.link.stop()
-        for request in asked:
+        for request in requests:
             self.link.ask(request)
-        sent = self.line.go(data, now_ms)
-        result: Json = {
-            "send": sent.hex(),
+        data_to_send = self.line.go(data, now_ms)
+        answer: Json = {
+            "send": data_to_send.hex(),
             "news": self.link.news(),
             "wakes_ms": self.line.session.wakes_at(),
         }
         if self.keys.has_changed:
-            result["keys"] = self.keys.file()
-        return result
+            answer["keys"] = self.keys.file()
+        return answer
 
 
 Answer = dict[str, Any]
@@ -164,6 +164,6 @@ def _import_keys(fields: Answer, data: bytes) -> Answer:
     return {"count": count, "keys": keys.file()}
 
 
-ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
     "connect": _connect, "link": _link, "import_keys": _import_keys,
 }  # fmt: skip

@@ -22,7 +22,7 @@ Answer = dict[str, Any]
 MOST_CHANGES = 50  # of a request to the class
 
 
-class Shown(NamedTuple):
+class ShownBlocks(NamedTuple):
     """What the blocks show: a page as it was then, and of which instruction each block is."""
 
     page: Page
@@ -36,26 +36,26 @@ class State(NamedTuple):
     version: int
     page: Page
     loose: list[str]
-    blocks: Shown | None = None
+    blocks: ShownBlocks | None = None
 
 
 _newest: State | None = None
-_before: State | None = None
+_previous: State | None = None
 
 
 def begin(fields: Answer, data: bytes) -> Answer:
     """Begin with what the class has answered to a page that joins a group, and with what the page
     has kept of before it was loaded again."""
-    global _newest, _before
-    name, news, kept = fields["news"]["page"], fields["news"], fields.get("kept")
+    global _newest, _previous
+    name, news, store = fields["news"]["page"], fields["news"], fields.get("kept")
     loose: list[str] = []
     try:
-        page = Page.of(name, news, kept)
-        loose = list(map(str, kept["loose"])) if kept else []
+        page = Page.of(name, news, store)
+        loose = list(map(str, store["loose"])) if store else []
     except (Refused, KeyError, TypeError, ValueError, AttributeError):
         page = Page.of(name, news)
-    _before, _newest = None, State(1, page, loose)
-    return _shown(_newest, data.decode(), None)
+    _previous, _newest = None, State(1, page, loose)
+    return _answer(_newest, data.decode(), None)
 
 
 def step(fields: Answer, data: bytes) -> Answer:
@@ -64,100 +64,110 @@ def step(fields: Answer, data: bytes) -> Answer:
     `hot`: a key was pressed in the line of the caret, which has not left it. `blocks`: what the
     blocks are now, whose text is not the editor's yet. `back`: an undo, or a redo.
     """
-    global _newest, _before
+    global _newest, _previous
     assert _newest is not None, "no group"
-    found = _newest if fields["from"] == _newest.version else _before
-    assert found is not None
-    assert found.version == fields["from"], "no such answer"
-    text, page, blocks = data.decode(), found.page.copy(), found.blocks
-    caret, is_hot = fields["caret"], fields["hot"]
-    rows, loose = split_loose(_rows(text, caret if is_hot else None))
-    page.type(rows, caret, is_hot)
+    state = _newest if fields["from"] == _newest.version else _previous
+    assert state is not None
+    assert state.version == fields["from"], "no such answer"
+    text, page, blocks = data.decode(), state.page.copy(), state.blocks
+    caret, is_line_edited = fields["caret"], fields["hot"]
+    rows, loose = split_loose(_rows(text, caret if is_line_edited else None))
+    page.type(rows, caret, is_line_edited)
     page.flush()
     printed: Printed | None = None
     if "blocks" in fields and blocks is not None:
         form = from_data(fields["blocks"]["form"])
         printed = print_blocks(form)
-        blocks = _written(page, blocks, form, fields["blocks"]["ids"])
+        blocks = _write_blocks(page, blocks, form, fields["blocks"]["ids"])
         loose = split_loose(_rows(printed.text, None))[1]
     for news in fields["news"]:
         page.receive(news)
     if "back" in fields:
         (page.undo if fields["back"] == "undo" else page.redo)()
-    _before, _newest = found, State(_newest.version + 1, page, loose, blocks)
-    answer = _shown(_newest, text, caret if caret < len(rows) else None)
+    _previous, _newest = state, State(_newest.version + 1, page, loose, blocks)
+    answer = _answer(_newest, text, caret if caret < len(rows) else None)
     if printed is not None:
         is_shown = _text(_newest) == printed.text
         answer |= {"places": printed.places, "is_shown": is_shown}
     return answer
 
 
-def blocks(fields: Answer, data: bytes) -> Answer:
+def show_blocks(fields: Answer, data: bytes) -> Answer:
     """The blocks show an answer from now on: `lines` says of each of them in which line it is."""
-    global _newest, _before
+    global _newest, _previous
     assert _newest is not None
-    found = _newest if fields["version"] == _newest.version else _before
-    if found is None or found.version != fields["version"]:
+    state = _newest if fields["version"] == _newest.version else _previous
+    if state is None or state.version != fields["version"]:
         return {"is_known": False}
-    ids = found.page.ids_of_lines()
+    ids = state.page.ids_of_lines()
     nodes = {block: ids[line - 1] for block, line in fields["lines"] if 0 < line <= len(ids)}
-    shown = Shown(found.page, nodes)
-    _newest, _before = _newest._replace(blocks=shown), _before and _before._replace(blocks=shown)
+    shown_blocks = ShownBlocks(state.page, nodes)
+    _newest = _newest._replace(blocks=shown_blocks)
+    _previous = _previous and _previous._replace(blocks=shown_blocks)
     return {"is_known": True}
 
 
-def _written(page: Page, shown: Shown, form: Form, ids: list[str]) -> Shown:
+def _write_blocks(page: Page, shown_blocks: ShownBlocks, form: Form, ids: list[str]) -> ShownBlocks:
     """Do in a page what was done to the blocks since they were shown; return what they show."""
     printed = print_blocks(form._replace(loose=()))
-    own = shown.page.copy()
-    own.id_count = page.id_count
+    blocks_page = shown_blocks.page.copy()
+    blocks_page.id_count = page.id_count
     rows = _rows(printed.text, None)
-    own.write(rows, _owners(rows, printed, form, ids, shown))
-    page.catch_up(own, shown.page)
-    found = own.ids_of_lines()
+    blocks_page.write(rows, _owners(rows, printed, form, ids, shown_blocks))
+    page.catch_up(blocks_page, shown_blocks.page)
+    ids_of_lines = blocks_page.ids_of_lines()
     nodes = {
-        block: found[lines[0]]
+        block: ids_of_lines[lines[0]]
         for block, lines in zip(ids, printed.lines, strict=True)
-        if lines[0] < len(found)
+        if lines[0] < len(ids_of_lines)
     }
-    return Shown(own, nodes)
+    return ShownBlocks(blocks_page, nodes)
 
 
 def _owners(
-    rows: list[str], printed: Printed, form: Form, ids: list[str], shown: Shown
+    rows: list[str], printed: Printed, form: Form, ids: list[str], shown_blocks: ShownBlocks
 ) -> list[str]:
     """Return of which instruction each line of changed blocks is; a new one has none."""
-    tree = shown.page.view
+    tree = shown_blocks.page.view
     owners = [""] * len(rows)
-    for id, block, (first, *more) in zip(ids, in_order(form.body), printed.lines, strict=True):
-        node = shown.nodes.get(id, "")
+    for id, block, (first_line, *other_lines) in zip(
+        ids, in_order(form.body), printed.lines, strict=True
+    ):
+        node = shown_blocks.nodes.get(id, "")
         if node not in tree or (block.is_behind and tree[node].kind != NOTE):
             continue
-        owners[first] = node
-        arms = [each for each in tree[node].children if tree[each].kind == ARM]
-        for line, arm in _paired([_said(rows[line]) for line in more[:-1]], tree, arms):
-            owners[more[line]] = arm
+        owners[first_line] = node
+        arms = [child for child in tree[node].children if tree[child].kind == ARM]
+        for line, arm in _pair_arms(
+            [_instruction_in(rows[line]) for line in other_lines[:-1]], tree, arms
+        ):
+            owners[other_lines[line]] = arm
     return owners
 
 
-def _paired(said: list[str], tree: Tree, arms: list[str]) -> list[tuple[int, str]]:
+def _pair_arms(arm_texts: list[str], tree: Tree, arms: list[str]) -> list[tuple[int, str]]:
     """Return which arms of a block are which of before: those that say the same, then in order."""
-    texts = [tree[arm].text for arm in arms]
-    found = []
-    for tag, i1, i2, j1, j2 in SequenceMatcher(None, said, texts, autojunk=False).get_opcodes():
-        found += [(i, arms[j]) for i, j in zip(range(i1, i2), range(j1, j2), strict=False)
-                  if tag == "equal" or first_word(said[i]) == first_word(texts[j])]  # fmt: skip
-    return found
+    old_texts = [tree[arm].text for arm in arms]
+    pairs = []
+    for tag, i1, i2, j1, j2 in SequenceMatcher(
+        None, arm_texts, old_texts, autojunk=False
+    ).get_opcodes():
+        pairs += [
+            (i, arms[j])
+            for i, j in zip(range(i1, i2), range(j1, j2), strict=False)
+            if tag == "equal" or first_word(arm_texts[i]) == first_word(old_texts[j])
+        ]
+    return pairs
 
 
-def _said(row: str) -> str:
+def _instruction_in(row: str) -> str:
     return row.split(BEFORE_COMMENT + "//")[0].strip().rstrip(";")
 
 
-def _rows(text: str, hot: int | None) -> list[str]:
-    """Return the lines of a text; the empty one at its end is none, unless it is `hot`."""
+def _rows(text: str, edited_line: int | None) -> list[str]:
+    """Return the lines of a text; the empty one at its end is none, unless it is `edited_line`."""
     rows = text.split("\n")
-    return rows[:-1] if not rows[-1] and hot != len(rows) - 1 else rows
+    return rows[:-1] if not rows[-1] and edited_line != len(rows) - 1 else rows
 
 
 def _text(state: State) -> str:
@@ -166,17 +176,17 @@ def _text(state: State) -> str:
     return "".join(f"{row}\n" for row in rows)
 
 
-def _shown(state: State, text: str, caret: int | None) -> Answer:
+def _answer(state: State, text: str, caret: int | None) -> Answer:
     page = state.page
-    wanted = _text(state)
+    new_text = _text(state)
     is_open = caret is not None and not text.endswith("\n")
-    if is_open or wanted == "\n" or wanted.endswith("\n\n"):
-        wanted = wanted[:-1]
+    if is_open or new_text == "\n" or new_text.endswith("\n\n"):
+        new_text = new_text[:-1]
     return {
         "version": state.version,
-        "changes": changes(text, wanted, None if caret is None else (caret, page.caret)),
+        "changes": changes(text, new_text, None if caret is None else (caret, page.caret)),
         "ids": page.ids_of_lines(),
-        "pending": [data_of_change(each) for each in page.pending_changes[:MOST_CHANGES]],
+        "pending": [data_of_change(change) for change in page.pending_changes[:MOST_CHANGES]],
         "since": -1 if page.is_astray else page.number,
         "epoch": page.epoch,
         "told": len(page.refusals),
@@ -192,28 +202,36 @@ def changes(old: str, new: str, caret: tuple[int, int] | None = None) -> list[tu
     A line that has changed keeps what is the same in it, where its caret and its undo are. `caret`:
     the line that the caret is in, in both; where that is the same, it is not touched.
     """
-    a, b = _with_ends(old), _with_ends(new)
-    if caret is None or a[caret[0] : caret[0] + 1] != b[caret[1] : caret[1] + 1]:
-        return _between(a, b, 0)
+    old_rows, new_rows = _with_ends(old), _with_ends(new)
+    if caret is None or old_rows[caret[0] : caret[0] + 1] != new_rows[caret[1] : caret[1] + 1]:
+        return _line_changes(old_rows, new_rows, 0)
     i, j = caret
-    return _between(a[:i], b[:j], 0) + _between(a[i:], b[j:], sum(map(_units, a[:i])))
+    return _line_changes(old_rows[:i], new_rows[:j], 0) + _line_changes(
+        old_rows[i:], new_rows[j:], sum(map(_utf16_length, old_rows[:i]))
+    )
 
 
-def _between(a: list[str], b: list[str], start: int) -> list[tuple[int, int, str]]:
+def _line_changes(
+    old_rows: list[str], new_rows: list[str], start: int
+) -> list[tuple[int, int, str]]:
     """Return the changes of lines of which the first begins at `start`."""
-    found: list[tuple[int, int, str]] = []
+    line_changes: list[tuple[int, int, str]] = []
     starts = [start]
-    for row in a:
-        starts.append(starts[-1] + _units(row))
-    for tag, i1, i2, j1, j2 in SequenceMatcher(None, a, b, autojunk=False).get_opcodes():
+    for row in old_rows:
+        starts.append(starts[-1] + _utf16_length(row))
+    for tag, i1, i2, j1, j2 in SequenceMatcher(
+        None, old_rows, new_rows, autojunk=False
+    ).get_opcodes():
         if tag == "equal":
             continue
         if tag == "replace" and i2 - i1 == j2 - j1:
-            for one, other, begin_at in zip(a[i1:i2], b[j1:j2], starts[i1:i2], strict=True):
-                found += _within(one, other, begin_at)
+            for old_row, new_row, begin_at in zip(
+                old_rows[i1:i2], new_rows[j1:j2], starts[i1:i2], strict=True
+            ):
+                line_changes += _changes_in_row(old_row, new_row, begin_at)
         else:
-            found.append((starts[i1], starts[i2], "".join(b[j1:j2])))
-    return found
+            line_changes.append((starts[i1], starts[i2], "".join(new_rows[j1:j2])))
+    return line_changes
 
 
 def _with_ends(text: str) -> list[str]:
@@ -222,16 +240,16 @@ def _with_ends(text: str) -> list[str]:
     return [row + "\n" for row in rows[:-1]] + [rows[-1]] * bool(rows[-1])
 
 
-def _within(old: str, new: str, start: int) -> list[tuple[int, int, str]]:
+def _changes_in_row(old: str, new: str, start: int) -> list[tuple[int, int, str]]:
     return [
-        (start + _units(old[:i1]), start + _units(old[:i2]), new[j1:j2])
+        (start + _utf16_length(old[:i1]), start + _utf16_length(old[:i2]), new[j1:j2])
         for tag, i1, i2, j1, j2 in SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
         if tag != "equal"
     ]
 
 
-def _units(text: str) -> int:
+def _utf16_length(text: str) -> int:
     return len(text) + sum(sign > "\uffff" for sign in text)
 
 
-ASKED = {"group_begin": begin, "group_step": step, "group_blocks": blocks}
+HANDLERS = {"group_begin": begin, "group_step": step, "group_blocks": show_blocks}

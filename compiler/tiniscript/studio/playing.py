@@ -31,16 +31,16 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
 from tiniscript.virtual.world import World
 
-LEAST_OFF_MS, OFF = 250, 0.05  # how much later or earlier is the same time
+LEAST_TOLERANCE_MS, TOLERANCE = 250, 0.05  # how much later or earlier is the same time
 STEP_MS = 100
 NO_SENSOR = -1
 EARLY_MS = 10  # half of the time between two checks: no clock is more exact
 BEGINNING_MS = 1000  # limit for a program to begin after its button
 _WORD = re.compile(r"\w+")
-TOLD = ("SHOW", "DONE", "FAULT")  # what a real robot says of its program, too
+PROGRAM_EVENTS = ("SHOW", "DONE", "FAULT")  # what a real robot says of its program, too
 
 
-class Parting(NamedTuple):
+class Divergence(NamedTuple):
     """Where a recording and the virtual robot part.
 
     `what` is again (a virtual robot has done all of it again), otherwise (not), same, missed (the
@@ -59,48 +59,54 @@ class Parting(NamedTuple):
     at_ms: int | None = None
 
 
-SAME = ("again", "same", "missed", "unread")
+SAME_OUTCOMES = ("again", "same", "missed", "unread")
 
 
-class Ready(NamedTuple):
+class PlayableRecording(NamedTuple):
     """A recording whose program was compiled again, to the same image."""
 
     recording: Recording
     image: bytes
-    places: SourceMap
-    shows: dict[int, int | None]  # the sensor that each SHOW alone shows, by its offset
-    reads: tuple[int, ...]  # the offsets of what names a sensor
+    program_map: SourceMap
+    sensor_of_show: dict[int, int | None]  # the sensor that each SHOW alone shows, by its offset
+    read_offsets: tuple[int, ...]  # the offsets of what names a sensor
     robot: Robot
 
 
-def ready(recording: Recording) -> Ready:
+def prepare(recording: Recording) -> PlayableRecording:
     """Raises BadRecording where the program is another one for this version of tsc."""
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
-    compiled: Compilation = compile_source(data, profile, "", is_strict=True, is_chosen=True)
-    compiled = fit_to_robot(compiled, profile)
+    compilation: Compilation = compile_source(data, profile, "", is_strict=True, is_chosen=True)
+    compilation = fit_to_robot(compilation, profile)
     if (
-        compiled.program is None
-        or not compiled.image
-        or checksum(compiled.image) != recording.program
+        compilation.program is None
+        or not compilation.image
+        or checksum(compilation.image) != recording.program
     ):
         raise BadRecording("other_program")
-    sensors = _shown_sensors(compiled.program)
-    places = map_of_compiled(compiled)
-    shows = {place.offset: sensors[part.span.start] for part, place in
-             zip(compiled.locations, places.locations, strict=True)
-             if part.span.start in sensors}  # fmt: skip
+    shown_sensors = _shown_sensors(compilation.program)
+    program_map = map_of_compiled(compilation)
+    sensor_of_show = {
+        place.offset: shown_sensors[code_location.span.start]
+        for code_location, place in zip(compilation.locations, program_map.locations, strict=True)
+        if code_location.span.start in shown_sensors
+    }
     names = {device.name for device in profile.kit.readings}
-    lines = compiled.source.text.split("\n")
-    reads = tuple(item.offset for item in places.locations if names & _words(lines, item))
-    return Ready(recording, compiled.image, places, shows, reads, profile)
+    lines = compilation.source.text.split("\n")
+    read_offsets = tuple(
+        location.offset for location in program_map.locations if names & _words(lines, location)
+    )
+    return PlayableRecording(
+        recording, compilation.image, program_map, sensor_of_show, read_offsets, profile
+    )
 
 
-def _words(lines: list[str], place: MapLocation) -> set[str]:
+def _words(lines: list[str], location: MapLocation) -> set[str]:
     """Return the words of a part of the text, in capitals."""
-    part = "\n".join(lines[place.line - 1 : place.end_line])
-    end = len(part) - len(lines[place.end_line - 1]) + place.end_column - 1
-    return set(_WORD.findall(part[place.column - 1 : end].upper()))
+    part = "\n".join(lines[location.line - 1 : location.end_line])
+    end = len(part) - len(lines[location.end_line - 1]) + location.end_column - 1
+    return set(_WORD.findall(part[location.column - 1 : end].upper()))
 
 
 class PlayedRun(Simulation):
@@ -110,33 +116,33 @@ class PlayedRun(Simulation):
     """
 
     def __init__(
-        self, ready: Ready, world: World | None = None, marks: Marks | None = None
+        self, playable: PlayableRecording, world: World | None = None, marks: Marks | None = None
     ) -> None:
-        recording = ready.recording
-        self.ready, self.recording = ready, recording
-        self.parting: Parting | None = None
-        self._next = 0  # of the rows that change what it does
+        recording = playable.recording
+        self.playable, self.recording = playable, recording
+        self.divergence: Divergence | None = None
+        self._next_input = 0  # of the rows that change what it does
         self._inputs = recording.rows
         if not recording.is_virtual:
             self._inputs = tuple(row for row in recording.rows if row.is_reading)
         self._is_over = False
         self._held_at_end = False
-        self._virtual: list[Row] = []
-        self._places: list[int] = []  # the line of each row that the virtual robot has told
-        told = recording.told if recording.is_virtual else self._first_readings()
-        self._known = set(told)  # sensors whose readings the recording has
-        self._lost = set[int]()  # those of which the recording lacks some
-        self._shown: int | None = None  # the one whose reading the SHOW that begins has told
-        self._unread: tuple[str, Row, int] | None = None
-        self._recorded = self._compared_rows()
-        self._seen = 0
-        self._at: int | None = None  # what the program does, as far as it names a sensor
-        where = recording.world or world or worlds.load(worlds.DEFAULT)
-        settings = Settings(seed=recording.seed, given_readings=told)
+        self._virtual_rows: list[Row] = []
+        self._virtual_lines: list[int] = []  # the line of each row that the virtual robot has told
+        readings = recording.given_readings if recording.is_virtual else self._first_readings()
+        self._known_sensors = set(readings)  # sensors whose readings the recording has
+        self._incomplete_sensors = set[int]()  # those of which the recording lacks some
+        self._shown_sensor: int | None = None  # the one whose reading the SHOW that begins has told
+        self._first_unread: tuple[str, Row, int] | None = None
+        self._recorded_rows = self._compared_rows()
+        self._compared_count = 0
+        self._program_offset: int | None = None  # as far as it names a sensor
+        played_world = recording.world or world or worlds.load(worlds.DEFAULT)
+        settings = Settings(seed=recording.seed, given_readings=readings)
         marks = (marks or Marks(()))._replace(is_held=False, breakpoints=())
         if not recording.is_virtual:
-            marks = marks._replace(breakpoints=(*ready.shows, *ready.reads))
-        super().__init__(recording.robot, where, ready.image, marks, settings)
+            marks = marks._replace(breakpoints=(*playable.sensor_of_show, *playable.read_offsets))
+        super().__init__(recording.robot, played_world, playable.image, marks, settings)
         if not recording.is_virtual and recording.is_by_button:
             self._push_button()
 
@@ -176,16 +182,16 @@ class PlayedRun(Simulation):
 
     def state(self) -> dict[str, Any]:
         """Return what is to be seen, too: whether it is over, and where the two part."""
-        parting = None
-        if self.parting is not None:
+        divergence = None
+        if self.divergence is not None:
             recorded_row, virtual_row = (
-                row and row._asdict() for row in (self.parting.robot, self.parting.virtual)
+                row and row._asdict() for row in (self.divergence.robot, self.divergence.virtual)
             )
             started_ms = (self.robot.started_ms or 0) if self.recording.is_virtual else 0
-            told = {"robot": recorded_row, "virtual": virtual_row, "began_ms": started_ms}
-            parting = {**self.parting._asdict(), **told}
-        whole = {**super().state(), "is_held": False}  # nobody but this class holds it
-        return {**whole, "is_over": self._is_over, "parting": parting}
+            rows = {"robot": recorded_row, "virtual": virtual_row, "began_ms": started_ms}
+            divergence = {**self.divergence._asdict(), **rows}
+        state = {**super().state(), "is_held": False}  # nobody but this class holds it
+        return {**state, "is_over": self._is_over, "parting": divergence}
 
     # -- a virtual robot's run, again -------------------------------------------------------------
 
@@ -201,9 +207,9 @@ class PlayedRun(Simulation):
                 return self._end()
 
     def _let_in(self) -> None:
-        while self._next < len(self._inputs) and self._is_due(self._inputs[self._next]):
-            row = self._inputs[self._next]
-            self._next += 1
+        while self._next_input < len(self._inputs) and self._is_due(self._inputs[self._next_input]):
+            row = self._inputs[self._next_input]
+            self._next_input += 1
             if not self.recording.is_virtual:
                 self._learn(row)
             elif row.event == HALT:
@@ -223,23 +229,25 @@ class PlayedRun(Simulation):
     def _compare(self, is_whole: bool) -> None:
         """Find the first row that is another one than in the recording."""
         self._take_rows()
-        if self.parting is not None:
+        if self.divergence is not None:
             return
         made_rows = self._rows.rows
-        recorded = self._recorded
-        while self._seen < len(made_rows):
-            row, k = made_rows[self._seen], self._seen
-            if k >= len(recorded):
+        recorded_rows = self._recorded_rows
+        while self._compared_count < len(made_rows):
+            row, k = made_rows[self._compared_count], self._compared_count
+            if k >= len(recorded_rows):
                 if row.ms < self._last_ms:
-                    return self._part("otherwise", k, None, row)
+                    return self._diverge("otherwise", k, None, row)
                 break
-            if recorded[k] != row:
-                return self._part("otherwise", k, recorded[k], row)
-            self._seen += 1
-        if is_whole and self._seen < len(recorded):
-            self._part("otherwise", self._seen, recorded[self._seen], None)
+            if recorded_rows[k] != row:
+                return self._diverge("otherwise", k, recorded_rows[k], row)
+            self._compared_count += 1
+        if is_whole and self._compared_count < len(recorded_rows):
+            self._diverge(
+                "otherwise", self._compared_count, recorded_rows[self._compared_count], None
+            )
         elif is_whole:
-            self.parting = Parting("again", len(recorded))
+            self.divergence = Divergence("again", len(recorded_rows))
 
     def _compared_rows(self) -> tuple[Row, ...]:
         """Return what the robot did up to where its program was held and stopped, or to the end."""
@@ -248,16 +256,16 @@ class PlayedRun(Simulation):
         self._last_ms = rows[count].ms if count < len(rows) else self.recording.end_ms
         return tuple(row for row in rows[:count] if not row.is_input)
 
-    def _part(
+    def _diverge(
         self, what: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
     ) -> None:
         at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
-        at = (
+        offset = (
             virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.offset
         )
-        place = self.ready.places.location_at(at) if at is not None else None
-        line = place.line if place is not None else 0
-        self.parting = Parting(what, agreed, line, recorded_row, virtual_row, "", at_ms)
+        location = self.playable.program_map.location_at(offset) if offset is not None else None
+        line = location.line if location is not None else 0
+        self.divergence = Divergence(what, agreed, line, recorded_row, virtual_row, "", at_ms)
 
     # -- a real robot's run, beside it ------------------------------------------------------------
 
@@ -270,87 +278,96 @@ class PlayedRun(Simulation):
             self._replace_readings()
             started_ms = self.robot.started_ms or 0
             is_late = self.robot.now_ms - started_ms >= self._until_ms()
-            has_more = len(self._virtual) > len(self.recording.rows)
+            has_more = len(self._virtual_rows) > len(self.recording.rows)
             has_ended = self.robot.started_ms is not None and not self.robot.is_running
             if is_late or has_more or has_ended:
-                if self.parting is None:
-                    self.parting = self._compare_runs()
+                if self.divergence is None:
+                    self.divergence = self._compare_runs()
                 return self._end()
 
     def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
         self._listen()
         while self.held_at is not None:
-            self._at = self.held_at
-            if self._at in self.ready.shows:
-                self._tell_shown(self._at)
+            self._program_offset = self.held_at
+            if self._program_offset in self.playable.sensor_of_show:
+                self._tell_shown(self._program_offset)
             self.go_on()
             self._listen()
 
-    def _tell_shown(self, at: int) -> None:
-        sensor, place = self.ready.shows[at], self.ready.places.location_at(at)
-        texts = [row.event for row in self.recording.rows if _is_told(row)]
-        message = texts[len(self._places)] if len(self._places) < len(texts) else ""
-        if sensor is not None and message.startswith("SHOW"):
-            self.robot.sensing.set_reading(sensor, _number(message.removeprefix("SHOW ")))
-            self._shown = sensor
-            if sensor not in self._lost:
-                self._known.add(sensor)
-        self._places.append(place.line if place is not None else 0)
+    def _tell_shown(self, offset: int) -> None:
+        sensor = self.playable.sensor_of_show[offset]
+        location = self.playable.program_map.location_at(offset)
+        recorded_events = [row.event for row in self.recording.rows if _is_program_event(row)]
+        event = (
+            recorded_events[len(self._virtual_lines)]
+            if len(self._virtual_lines) < len(recorded_events)
+            else ""
+        )
+        if sensor is not None and event.startswith("SHOW"):
+            self.robot.sensing.set_reading(sensor, _reading_value(event.removeprefix("SHOW ")))
+            self._shown_sensor = sensor
+            if sensor not in self._incomplete_sensors:
+                self._known_sensors.add(sensor)
+        self._virtual_lines.append(location.line if location is not None else 0)
 
     def _first_readings(self) -> dict[int, list[int]]:
         """Return what each sensor reads first, whenever that is."""
-        found: dict[int, list[int]] = {}
-        lost = set[int]()
+        readings: dict[int, list[int]] = {}
+        incomplete_sensors = set[int]()
         for row in self._inputs:
-            what, number, value = self._reading(row)
-            if what == UNREAD:
-                lost.add(number)
-            elif number not in lost:
-                found.setdefault(number, [value])
-        found.pop(NO_SENSOR, None)
-        return found
+            kind, number, value = self._reading(row)
+            if kind == UNREAD:
+                incomplete_sensors.add(number)
+            elif number not in incomplete_sensors:
+                readings.setdefault(number, [value])
+        readings.pop(NO_SENSOR, None)
+        return readings
 
     def _reading(self, row: Row) -> tuple[str, int, int]:
         """Return the parts of the row of a reading; its sensor may be NO_SENSOR."""
-        what, name, *value = row.event.split(" ")
-        readings = self.ready.robot.kit.readings
-        number = next((k for k, each in enumerate(readings) if each.name == name), NO_SENSOR)
+        kind, name, *value = row.event.split(" ")
+        readings = self.playable.robot.kit.readings
+        number = next((k for k, device in enumerate(readings) if device.name == name), NO_SENSOR)
         if not value or number == NO_SENSOR:
-            return what, number, 0
+            return kind, number, 0
         return (
-            what,
+            kind,
             number,
-            max(readings[number].low, min(readings[number].high, _number(value[0]))),
+            max(readings[number].low, min(readings[number].high, _reading_value(value[0]))),
         )
 
     def _learn(self, row: Row) -> None:
         """The virtual sensors have the readings that the robot has told."""
-        what, number, value = self._reading(row)
-        if what == UNREAD:
-            self._lost.add(number)
-            self._known.discard(number)
+        kind, number, value = self._reading(row)
+        if kind == UNREAD:
+            self._incomplete_sensors.add(number)
+            self._known_sensors.discard(number)
         elif number != NO_SENSOR:
             self.robot.sensing.set_reading(number, value)
-            if number not in self._lost:
-                self._known.add(number)
+            if number not in self._incomplete_sensors:
+                self._known_sensors.add(number)
 
     def _listen(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
             is_read = event.kind == "READ"
-            is_shown = is_read and event.values[0] == self._shown
+            is_shown = is_read and event.values[0] == self._shown_sensor
             if is_shown:
-                self._shown = None
-            is_unread = is_read and not is_shown and event.values[0] not in self._known
-            if is_unread and not self._unread:
+                self._shown_sensor = None
+            is_unread = is_read and not is_shown and event.values[0] not in self._known_sensors
+            if is_unread and not self._first_unread:
                 name = self.robot.profile.kit.readings[event.values[0]].name
-                place = self.ready.places.location_at(self._at) if self._at is not None else None
+                location = (
+                    self.playable.program_map.location_at(self._program_offset)
+                    if self._program_offset is not None
+                    else None
+                )
                 row = Row(event.time_ms - started_ms, event.text)
-                self._unread = (name, row, place.line if place is not None else 0)
-                self._virtual.append(row)
-            elif event.kind in TOLD:
-                self._virtual.append(Row(event.time_ms - started_ms, event.text))
+                self._first_unread = (name, row, location.line if location is not None else 0)
+                self._virtual_rows.append(row)
+            elif event.kind in PROGRAM_EVENTS:
+                self._virtual_rows.append(Row(event.time_ms - started_ms, event.text))
 
     def _push_button(self) -> None:
         """Push the start button, and wait until the program has begun."""
@@ -369,79 +386,83 @@ class PlayedRun(Simulation):
         By its button its first row is waited for, whose time the recording does not have.
         """
         recording = self.recording
-        messages = [row for row in recording.rows if _is_told(row)]
-        if not recording.is_by_button or not messages:
-            return recording.end_ms + _off_ms(recording.end_ms)
-        texts = [row for row in self._virtual if _is_told(row)]
-        if not texts:
+        recorded_rows = [row for row in recording.rows if _is_program_event(row)]
+        if not recording.is_by_button or not recorded_rows:
+            return recording.end_ms + _tolerance_ms(recording.end_ms)
+        virtual_rows = [row for row in self._virtual_rows if _is_program_event(row)]
+        if not virtual_rows:
             return MOST_MS
-        late_ms = texts[0].ms - messages[0].ms
-        return recording.end_ms + late_ms + _off_ms(recording.end_ms + late_ms)
+        late_ms = virtual_rows[0].ms - recorded_rows[0].ms
+        return recording.end_ms + late_ms + _tolerance_ms(recording.end_ms + late_ms)
 
-    def _compare_runs(self) -> Parting:
+    def _compare_runs(self) -> Divergence:
         rows = self.recording.rows
-        messages = [row for row in rows if _is_told(row)]
-        virtual = [row for row in self._virtual if _is_told(row)]
+        recorded_rows = [row for row in rows if _is_program_event(row)]
+        virtual_rows = [row for row in self._virtual_rows if _is_program_event(row)]
         if not rows or rows[0].event == "LOST":
-            return Parting("empty")
+            return Divergence("empty")
         late_ms = 0
-        if self.recording.is_by_button and messages and virtual:
-            late_ms = virtual[0].ms - messages[0].ms
-        messages = [row._replace(ms=row.ms + late_ms) for row in messages]
+        if self.recording.is_by_button and recorded_rows and virtual_rows:
+            late_ms = virtual_rows[0].ms - recorded_rows[0].ms
+        recorded_rows = [row._replace(ms=row.ms + late_ms) for row in recorded_rows]
         end_ms = self.recording.end_ms + late_ms
         started_ms = self.robot.started_ms or 0
-        before = len(virtual)  # rows of the virtual robot before it read what nobody knows
-        if self._unread is not None:
-            before = self._virtual.index(self._unread[1])
-        for count, recorded_row in enumerate(messages):
-            line = self._places[count] if count < len(self._places) else 0
-            virtual_row = virtual[count] if count < len(virtual) else None
-            if self._unread is not None and count >= before:
+        known_count = len(
+            virtual_rows
+        )  # rows of the virtual robot before it read what nobody knows
+        if self._first_unread is not None:
+            known_count = self._virtual_rows.index(self._first_unread[1])
+        for count, recorded_row in enumerate(recorded_rows):
+            line = self._virtual_lines[count] if count < len(self._virtual_lines) else 0
+            virtual_row = virtual_rows[count] if count < len(virtual_rows) else None
+            if self._first_unread is not None and count >= known_count:
                 return self._unread_parting(count, started_ms)
             if virtual_row is None:
-                return Parting(
+                return Divergence(
                     "robot_more", count, line, recorded_row, None, "", recorded_row.ms + started_ms
                 )
             if recorded_row.event != virtual_row.event:
-                return Parting(
+                return Divergence(
                     "value", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
                 )
-            if abs(recorded_row.ms - virtual_row.ms) > _off_ms(
+            if abs(recorded_row.ms - virtual_row.ms) > _tolerance_ms(
                 max(recorded_row.ms, virtual_row.ms)
             ):
-                return Parting(
+                return Divergence(
                     "time", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
                 )
-        count = len(messages)
-        cut = rows[-1].event if rows[-1].event in CUT else ""
-        if self._unread is not None:
+        count = len(recorded_rows)
+        cut_event = rows[-1].event if rows[-1].event in CUT else ""
+        if self._first_unread is not None:
             return self._unread_parting(count, started_ms)
-        if cut in ("", "STOPPED") and len(virtual) > count:
-            virtual_row = virtual[count]  # the robot has not said that, and had the time for it
-            if virtual_row.ms + _off_ms(end_ms) < end_ms:
-                line = self._places[count] if count < len(self._places) else 0
-                return Parting(
+        if cut_event in ("", "STOPPED") and len(virtual_rows) > count:
+            virtual_row = virtual_rows[
+                count
+            ]  # the robot has not said that, and had the time for it
+            if virtual_row.ms + _tolerance_ms(end_ms) < end_ms:
+                line = self._virtual_lines[count] if count < len(self._virtual_lines) else 0
+                return Divergence(
                     "virtual_more", count, line, None, virtual_row, "", virtual_row.ms + started_ms
                 )
-        return Parting("missed" if cut == "MISSED" else "same", count)
+        return Divergence("missed" if cut_event == "MISSED" else "same", count)
 
-    def _unread_parting(self, agreed: int, started_ms: int) -> Parting:
-        assert self._unread is not None
-        name, row, line = self._unread
-        return Parting("unread", agreed, line, None, row, name, row.ms + started_ms)
+    def _unread_parting(self, agreed: int, started_ms: int) -> Divergence:
+        assert self._first_unread is not None
+        name, row, line = self._first_unread
+        return Divergence("unread", agreed, line, None, row, name, row.ms + started_ms)
 
 
-def play(ready: Ready, world: World | None = None) -> PlayedRun:
+def play(playable: PlayableRecording, world: World | None = None) -> PlayedRun:
     """Return the run, when it is over. Raises WorldRefused."""
-    played = PlayedRun(ready, world)
-    while not played.is_over:
-        played.go(STEP_MS)
-    return played
+    run = PlayedRun(playable, world)
+    while not run.is_over:
+        run.go(STEP_MS)
+    return run
 
 
-def _is_told(row: Row) -> bool:
+def _is_program_event(row: Row) -> bool:
     """Whether a robot says that of its program, real or virtual."""
-    return row.event.partition(" ")[0] in TOLD
+    return row.event.partition(" ")[0] in PROGRAM_EVENTS
 
 
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
@@ -454,10 +475,10 @@ def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
     return shown_sensors
 
 
-def _number(said: str) -> int:
+def _reading_value(text: str) -> int:
     """Return what a row says, as a reading."""
-    return int(said == "TRUE") if said in ("TRUE", "FALSE") else round(float(said) * ONE)
+    return int(text == "TRUE") if text in ("TRUE", "FALSE") else round(float(text) * ONE)
 
 
-def _off_ms(ms: int) -> int:
-    return LEAST_OFF_MS + round(ms * OFF)
+def _tolerance_ms(ms: int) -> int:
+    return LEAST_TOLERANCE_MS + round(ms * TOLERANCE)

@@ -23,15 +23,15 @@ from tiniscript.studio.world_form import Form, form_of, toml_of
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 
-HEAD = "tiniscript_run"
-OLDER = "tiniscript_recording"  # of 0.3.0 and before: without the program
+HEADER_KEY = "tiniscript_run"
+OLD_HEADER_KEY = "tiniscript_recording"  # of 0.3.0 and before: without the program
 VERSION = 1
 MOST_BYTES = 1_000_000
 MOST_ROW_BYTES = 600_000  # of all rows; then the recording is over
 MOST_MS = 600_000
 MOST_TEXT = 200_000  # bytes of a program
 MOST_READINGS = 10_000
-MS_TOLD = 1 << 16  # a robot tells the time of a reading modulo that
+MS_MODULUS = 1 << 16  # a robot tells the time of a reading modulo that
 
 VIRTUAL, REAL = "virtual", "real"
 # What somebody did: the robot did the rest. HALT is a stop over the link, or while it was held.
@@ -89,15 +89,15 @@ class Row(NamedTuple):
 
 
 class Recording(NamedTuple):
-    """A run of the program `text` on `robot`, `of` a VIRTUAL or a REAL one.
+    """A run of the program `text` on `robot`, whose `robot_kind` is VIRTUAL or REAL.
 
-    Of a virtual robot `ms` count from when it is switched on, in `world` with `seed` and the
-    readings `told` in thousandths, by sensor number; of a real one from when its program began, and
-    where that `is_by_button`, from its first row. `rows` are in their order, without END, which was
-    at `end_ms`; `version` is that of the tsc which recorded it.
+    Of a virtual robot `ms` count from when it is switched on, in `world` with `seed` and
+    `given_readings` in thousandths, by sensor number; of a real one from when its program began,
+    and where that `is_by_button`, from its first row. `rows` are in their order, without END, which
+    was at `end_ms`; `version` is that of the tsc which recorded it.
     """
 
-    of: str
+    robot_kind: str
     text: str
     robot: str
     kit: int
@@ -106,13 +106,13 @@ class Recording(NamedTuple):
     end_ms: int
     world: World | None = None
     seed: int = 1
-    told: Mapping[int, Sequence[int]] = {}
+    given_readings: Mapping[int, Sequence[int]] = {}
     is_by_button: bool = False
     version: str = __version__
 
     @property
     def is_virtual(self) -> bool:
-        return self.of == VIRTUAL
+        return self.robot_kind == VIRTUAL
 
 
 class Rows:
@@ -125,17 +125,17 @@ class Rows:
     def __init__(self) -> None:
         self.rows: list[Row] = []
         self.is_full = False
-        self._read: dict[str, str] = {}
+        self._last_values: dict[str, str] = {}
         self._bytes = 0
 
     def add(self, row: Row) -> bool:
         """Take a row; return whether the file has it."""
         if row.event.startswith("READ "):
             _, name, value = row.event.split(" ", 2)
-            if self._read.get(name) == value:
+            if self._last_values.get(name) == value:
                 return False
-            self._read[name] = value
-        self._bytes += len(line(row)) + 1
+            self._last_values[name] = value
+        self._bytes += len(encode_row(row)) + 1
         self.is_full = self.is_full or self._bytes > MOST_ROW_BYTES or row.ms > MOST_MS
         if self.is_full:
             return False
@@ -144,17 +144,17 @@ class Rows:
         return True
 
 
-class ToldReadings:
+class ReadingRows:
     """The rows of a real robot's run for what it tells of its readings.
 
-    `untold` are the sensors of which it could not tell all.
+    `incomplete_names` are the sensors of which it could not tell all.
     """
 
     def __init__(self, kit: Kit) -> None:
         self._devices = kit.readings
         self._ms = 0  # of the last one, since the start
         self._next_ms: dict[str, int] = {}  # after the last one of each sensor
-        self.untold: list[str] = []
+        self.incomplete_names: list[str] = []
 
     def rows(self, event: ReadingEvent, since_ms: int) -> list[Row]:
         """Return the rows of one that has come so long after the start of its run: they may be of
@@ -163,41 +163,49 @@ class ToldReadings:
         device = self._devices[number] if number < len(self._devices) else None
         if device is None or not device.name:
             return []
-        self._ms += (event.ms - self._ms) % MS_TOLD
-        self._ms += max(0, round((since_ms - self._ms) / MS_TOLD)) * MS_TOLD
-        found = []
-        if event.sensor & UNTOLD and device.name not in self.untold:
-            self.untold.append(device.name)
-            found.append(Row(self._next_ms.get(device.name, 0), f"{UNREAD} {device.name}"))
+        self._ms += (event.ms - self._ms) % MS_MODULUS
+        self._ms += max(0, round((since_ms - self._ms) / MS_MODULUS)) * MS_MODULUS
+        rows = []
+        if event.sensor & UNTOLD and device.name not in self.incomplete_names:
+            self.incomplete_names.append(device.name)
+            rows.append(Row(self._next_ms.get(device.name, 0), f"{UNREAD} {device.name}"))
         self._next_ms[device.name] = self._ms + 1
-        return [*found, Row(self._ms, f"{READ} {device.name} {device.text(event.value)}")]
+        return [*rows, Row(self._ms, f"{READ} {device.name} {device.text(event.value)}")]
 
 
-def head(
-    of: str, text: str, robot: Robot, program: int, *, world: str | Form | None = None,
-    seed: int = 1, told: dict[int, list[int]] | None = None, is_by_button: bool = False,
+def header_line(
+    robot_kind: str, text: str, robot: Robot, program: int, *, world: str | Form | None = None,
+    seed: int = 1, given_readings: dict[int, list[int]] | None = None, is_by_button: bool = False,
 ) -> str:  # fmt: skip
     """Return the first line of a file; `world` is the name of a shipped one, or a form."""
-    found: dict[str, Any] = {HEAD: VERSION, "tsc": __version__, "of": of, "robot": robot.name,
-                             "kit": f"{robot.kit.fingerprint:04x}", "program": f"{program:08x}",
-                             "text": text}  # fmt: skip
-    if of == VIRTUAL:
+    fields: dict[str, Any] = {
+        HEADER_KEY: VERSION,
+        "tsc": __version__,
+        "of": robot_kind,
+        "robot": robot.name,
+        "kit": f"{robot.kit.fingerprint:04x}",
+        "program": f"{program:08x}",
+        "text": text,
+    }
+    if robot_kind == VIRTUAL:
         names = [device.name for device in robot.kit.readings]
-        found |= {"world": world, "seed": seed}
-        found["told"] = {names[number]: values for number, values in (told or {}).items()}
+        fields |= {"world": world, "seed": seed}
+        fields["told"] = {
+            names[number]: values for number, values in (given_readings or {}).items()
+        }
     elif is_by_button:
-        found["is_by_button"] = True
-    return json.dumps(found, ensure_ascii=False, separators=(",", ":")) + "\n"
+        fields["is_by_button"] = True
+    return json.dumps(fields, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
-def line(row: Row) -> str:
+def encode_row(row: Row) -> str:
     """Return a row as a line of the file, without its end."""
     return json.dumps(row.cells, separators=(",", ":"))
 
 
-def encode(first: str, rows: Iterable[Row], end_ms: int) -> str:
-    """Return the whole file that begins with the line `first`."""
-    return "".join((first, *(f"{line(row)}\n" for row in (*rows, Row(end_ms, END)))))
+def encode(header: str, rows: Iterable[Row], end_ms: int) -> str:
+    """Return the whole file that begins with the line `header`."""
+    return "".join((header, *(f"{encode_row(row)}\n" for row in (*rows, Row(end_ms, END)))))
 
 
 def decode(data: bytes) -> Recording:
@@ -206,48 +214,48 @@ def decode(data: bytes) -> Recording:
         raise BadRecording("too_long")
     lines = _decode_text(data).rstrip("\r\n").split("\n")
     fields = _parse(lines[0], 1, dict)
-    if OLDER in fields:
+    if OLD_HEADER_KEY in fields:
         raise BadRecording("older")
-    if HEAD in fields and fields[HEAD] != VERSION:
-        raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
-    result = _parse_header(fields)
+    if HEADER_KEY in fields and fields[HEADER_KEY] != VERSION:
+        raise BadRecording("other_version" if type(fields[HEADER_KEY]) is int else "unreadable")
+    recording = _parse_header(fields)
     rows: list[Row] = []
     last_ms = 0
-    for number, each in enumerate(lines[1:], 2):
+    for number, line in enumerate(lines[1:], 2):
         if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
-        row = _row(each, number, result.of)
-        is_late = not result.is_virtual and row.is_reading  # it came later than it was
+        row = _row(line, number, recording.robot_kind)
+        is_late = not recording.is_virtual and row.is_reading  # it came later than it was
         if row.ms < last_ms and not is_late:
             raise BadRecording("unreadable", number)
         last_ms = last_ms if is_late else row.ms
         if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
-        if rows and not result.is_virtual and rows[-1].event in CUT and row.event != END:
+        if rows and not recording.is_virtual and rows[-1].event in CUT and row.event != END:
             raise BadRecording("unreadable", number)
         rows.append(row)
     if not rows or rows[-1].event != END:
         raise BadRecording("cut", len(lines))
-    *rows, end = rows
-    if not result.is_virtual:
-        rows = [row._replace(ms=min(row.ms, end.ms)) for row in rows]
+    *rows, end_row = rows
+    if not recording.is_virtual:
+        rows = [row._replace(ms=min(row.ms, end_row.ms)) for row in rows]
         rows.sort(key=lambda row: (row.ms, not row.is_reading))
-    return result._replace(rows=tuple(rows), end_ms=end.ms)
+    return recording._replace(rows=tuple(rows), end_ms=end_row.ms)
 
 
 def _parse_header(fields: dict[str, Any]) -> Recording:
     """Return what the first line says. Raises BadRecording."""
-    text, robot, of = fields.get("text"), fields.get("robot"), fields.get("of")
+    text, robot, robot_kind = fields.get("text"), fields.get("robot"), fields.get("of")
     seed = fields.get("seed", 1)
     if (
-        fields.get(HEAD) != VERSION
-        or of not in (VIRTUAL, REAL)
+        fields.get(HEADER_KEY) != VERSION
+        or robot_kind not in (VIRTUAL, REAL)
         or not isinstance(text, str)
         or len(text.encode("utf-8", "replace")) > MOST_TEXT
         or not isinstance(robot, str)
-        or not _is(_PROGRAM, fields.get("program"))
-        or not _is(_KIT, fields.get("kit"))
-        or not _is(_VERSION, fields.get("tsc"))
+        or not _matches(_PROGRAM, fields.get("program"))
+        or not _matches(_KIT, fields.get("kit"))
+        or not _matches(_VERSION, fields.get("tsc"))
         or type(seed) is not int
         or not 1 <= seed < 1 << 32
     ):
@@ -255,22 +263,32 @@ def _parse_header(fields: dict[str, Any]) -> Recording:
     kit = int(fields["kit"], 16)
     if robot not in robots.names() or robots.load(robot).kit.fingerprint != kit:
         raise BadRecording("other_robot")
-    is_virtual = of == VIRTUAL
+    is_virtual = robot_kind == VIRTUAL
     return Recording(
-        of=of, text=text, robot=robot, kit=kit, program=int(fields["program"], 16), rows=(),
-        end_ms=0, world=world_in(fields.get("world")) if is_virtual else None, seed=seed,
-        told=_parse_readings(fields.get("told"), robots.load(robot)) if is_virtual else {},
-        is_by_button=not is_virtual and fields.get("is_by_button") is True, version=fields["tsc"],
-    )  # fmt: skip
+        robot_kind=robot_kind,
+        text=text,
+        robot=robot,
+        kit=kit,
+        program=int(fields["program"], 16),
+        rows=(),
+        end_ms=0,
+        world=world_in(fields.get("world")) if is_virtual else None,
+        seed=seed,
+        given_readings=_parse_readings(fields.get("told"), robots.load(robot))
+        if is_virtual
+        else {},
+        is_by_button=not is_virtual and fields.get("is_by_button") is True,
+        version=fields["tsc"],
+    )
 
 
-def world_in(found: object) -> World:
+def world_in(data: object) -> World:
     """Return a shipped world by its name, or the one of a form. Raises BadRecording."""
-    if isinstance(found, str) and found in worlds.names():
-        return worlds.load(found)
+    if isinstance(data, str) and data in worlds.names():
+        return worlds.load(data)
     try:
-        assert isinstance(found, dict)
-        return worlds.read(toml_of(found), "")
+        assert isinstance(data, dict)
+        return worlds.read(toml_of(data), "")
     except (ProfileRefused, AssertionError, KeyError, TypeError, ValueError, AttributeError,
             RecursionError, OverflowError):  # fmt: skip
         raise BadRecording("unreadable") from None
@@ -285,11 +303,11 @@ def stored_form(world: World) -> tuple[World, str | Form]:
     return world_in(form), form
 
 
-def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
+def _parse_readings(data: object, robot: Robot) -> dict[int, list[int]]:
     """Return the readings that single sensors gave one after the other."""
     numbers = {device.name: k for k, device in enumerate(robot.kit.readings) if device.name}
-    result: dict[int, list[int]] = {}
-    for name, values in found.items() if isinstance(found, dict) else ():
+    readings: dict[int, list[int]] = {}
+    for name, values in data.items() if isinstance(data, dict) else ():
         number = numbers.get(name)
         if number is None or not isinstance(values, list) or not 0 < len(values) <= MOST_READINGS:
             raise BadRecording("unreadable")
@@ -298,18 +316,20 @@ def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
             type(value) is not int or not device.low <= value <= device.high for value in values
         ):
             raise BadRecording("unreadable")
-        result[number] = values
-    return result
+        readings[number] = values
+    return readings
 
 
-def _row(written_row: str, number: int, of: str) -> Row:
-    cells = _parse(written_row, number, list)
+def _row(line: str, number: int, robot_kind: str) -> Row:
+    cells = _parse(line, number, list)
     if len(cells) not in (2, 3) or any(type(cell) is not int for cell in (cells[0], *cells[2:])):
         raise BadRecording("unreadable", number)
     row = Row(*cells)
-    known = _EVENT.fullmatch if of == VIRTUAL else _REAL.fullmatch
-    is_event = isinstance(row.event, str) and (row.event == END or known(row.event) is not None)
-    if not is_event and not (isinstance(row.event, str) and of == VIRTUAL and row.pressed):
+    match_event = _EVENT.fullmatch if robot_kind == VIRTUAL else _REAL.fullmatch
+    is_event = isinstance(row.event, str) and (
+        row.event == END or match_event(row.event) is not None
+    )
+    if not is_event and not (isinstance(row.event, str) and robot_kind == VIRTUAL and row.pressed):
         raise BadRecording("unreadable", number)
     if row.ms < 0 or not -1 <= row.at < 1 << 16:
         raise BadRecording("unreadable", number)
@@ -324,18 +344,18 @@ def _decode_text(data: bytes) -> str:
     return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")
 
 
-def _parse(written_line: str, number: int, kind: type) -> Any:
+def _parse(line: str, number: int, json_type: type) -> Any:
     try:
-        result = json.loads(written_line)
+        value = json.loads(line)
     except (ValueError, RecursionError):
-        result = None
-    if not isinstance(result, kind):
+        value = None
+    if not isinstance(value, json_type):
         raise BadRecording("unreadable", number)
-    return result
+    return value
 
 
-def _is(form: re.Pattern[str], found: object) -> bool:
-    return isinstance(found, str) and form.fullmatch(found) is not None
+def _matches(pattern: re.Pattern[str], value: object) -> bool:
+    return isinstance(value, str) and pattern.fullmatch(value) is not None
 
 
 def from_rows(rows: Sequence[Sequence[Any]]) -> list[Row]:

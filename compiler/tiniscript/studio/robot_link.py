@@ -61,13 +61,13 @@ from tiniscript.link.remote import RemoteState, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, status_text
 from tiniscript.link.trim import Trim, trim_from_reply
-from tiniscript.studio.recordings import ToldReadings
+from tiniscript.studio.recordings import ReadingRows
 
 Json = dict[str, Any]
 T = TypeVar("T")
 
 LIMIT_MS = EXCHANGE_TIMEOUT_MS  # for a robot that is known: it is silent, or busy with saving
-LONGEST_MS = 20_000
+LONGEST_LIMIT_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
 MOST_EVENTS = 200  # at a time
@@ -79,7 +79,7 @@ class BadRequest(Exception):
     """What has come is no request: it is not of this page."""
 
 
-class _Asked(NamedTuple):
+class _PageRequest(NamedTuple):
     number: int
     pending: PendingRequest[Any]
     is_program: bool  # it sends or starts one, and no line
@@ -101,51 +101,55 @@ class RobotLink:
         self.language = language
         self._connection = connection
         connection.tell_places()
-        self._asked: list[_Asked] = []
+        self._requests: list[_PageRequest] = []
         self._answers: list[Json] = []
         # Runs: which the page has started, which was the last to begin, and to end.
-        self._run: _Run | None = None
-        self._begun: _Run | None = None
-        self._over: _Run | None = None
-        self._readings: ToldReadings | None = None
-        self._reads: tuple[_Run, int] | None = None  # the run that they are of, and when it began
+        self._own_run: _Run | None = None
+        self._begun_run: _Run | None = None
+        self._ended_run: _Run | None = None
+        self._reading_rows: ReadingRows | None = None
+        self._readings_run: tuple[_Run, int] | None = None  # theirs, and when it began
         self._program_run: _Run | None = None  # of the newest program that the page has started
 
     @property
     def has_run(self) -> bool:
-        return self._run is not None or any(item.pending.starts for item in self._asked)
+        return self._own_run is not None or any(
+            request.pending.starts for request in self._requests
+        )
 
     def ask(self, request: Json) -> None:
         """Begin a request; its answer is among the news, with its `id`.
 
         Raises BadRequest, ConnectionLost.
         """
-        number, do = whole_number(request, "id", 0, MOST_COUNT), request.get("do")
-        if do == "stop":
+        number, action = whole_number(request, "id", 0, MOST_COUNT), request.get("do")
+        if action == "stop":
             self.stop()
             self._answers.append({"id": number, "ok": True})
             return
-        if not isinstance(do, str) or do not in _MAKERS:
+        if not isinstance(action, str) or action not in _MAKERS:
             raise BadRequest
-        if do != "keys" and sum(not item.is_keys for item in self._asked) >= MOST_WAITING:
+        if action != "keys" and sum(not item.is_keys for item in self._requests) >= MOST_WAITING:
             raise BadRequest
-        make = _MAKERS[do](request)
-        limit_ms = whole_number(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
-        refused = self._refusal_of(request) if "image" in request else None
-        if refused is not None:
-            self._answers.append({"id": number, **self._failure(refused)})
+        make = _MAKERS[action](request)
+        limit_ms = whole_number(request, "limit_ms", 1, LONGEST_LIMIT_MS, LIMIT_MS)
+        refusal_reply = self._refusal_of(request) if "image" in request else None
+        if refusal_reply is not None:
+            self._answers.append({"id": number, **self._failure(refusal_reply)})
             return
 
-        def with_limit(session: Requester) -> PendingRequest[Any]:
+        def make_pending(session: Requester) -> PendingRequest[Any]:
             pending = make(session)
-            if do != "claim":  # it waits for a hand on the button
+            if action != "claim":  # it waits for a hand on the button
                 pending.limit_ms = limit_ms
             return pending
 
-        if do in ("upload", "start") and self._tells_readings:
+        if action in ("upload", "start") and self._tells_readings:
             self._connection.begin(lambda session: session.tell_readings(True))
-        pending = self._connection.begin(with_limit)
-        self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
+        pending = self._connection.begin(make_pending)
+        self._requests.append(
+            _PageRequest(number, pending, action in ("upload", "start"), action == "keys")
+        )
 
     def stop(self) -> None:
         """Stop the robot, whoever has started what it does."""
@@ -156,47 +160,51 @@ class RobotLink:
 
         Raises ConnectionLost.
         """
-        found, self._answers = self._answers, []
-        found += self._outcomes()
+        news, self._answers = self._answers, []
+        news += self._outcomes()
         for _ in range(MOST_EVENTS):
-            event = self._connection.event(0 if found else limit_s)
-            found += self._outcomes()  # an answer is there before the events that follow from it
+            event = self._connection.event(0 if news else limit_s)
+            news += self._outcomes()  # an answer is there before the events that follow from it
             if event is None:
                 break
-            self._follow(event[1])
+            self._note_run(event[1])
             if isinstance(event[1], ReadingEvent):
-                found += self._rows(event[1], event[0])
+                news += self._rows(event[1], event[0])
             else:
-                found += self._event(event[1])
-        return found
+                news += self._event(event[1])
+        return news
 
     def _outcomes(self) -> list[Json]:
-        over = [item for item in self._asked if item.pending.outcome is not None]
-        self._asked = [item for item in self._asked if item.pending.outcome is None]
-        for item in over:
-            reply = item.pending.outcome
+        finished_requests = [
+            request for request in self._requests if request.pending.outcome is not None
+        ]
+        self._requests = [request for request in self._requests if request.pending.outcome is None]
+        for request in finished_requests:
+            reply = request.pending.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
-                if item.is_program:
+                if request.is_program:
                     self._program_run = self._known_run(reply.values.run)
-        return [{"id": item.number, **self._answer(item.pending)} for item in over]
+        return [
+            {"id": request.number, **self._answer(request.pending)} for request in finished_requests
+        ]
 
-    def _follow(self, event: Event) -> None:
+    def _note_run(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;
         one without a number may be that of a run before. Another run that begins ends it, too: what
         the page leaves to be stopped is its own."""
         if event.name == "STARTED":
-            begun = self._known_run(event.run)
-            if self._begun == self._run != begun:
-                self._run = None
-            self._begun, self._over = begun, None
+            run = self._known_run(event.run)
+            if self._begun_run == self._own_run != run:
+                self._own_run = None
+            self._begun_run, self._ended_run = run, None
         elif event.name in ("DONE", "FAULT"):
-            self._over = self._known_run(event.run)
+            self._ended_run = self._known_run(event.run)
         elif event.name == "STOPPED":
-            self._over = self._begun
+            self._ended_run = self._begun_run
         if event.name in ("LOST", "RESTARTED") or (
-            self._over is not None and self._over == self._run
+            self._ended_run is not None and self._ended_run == self._own_run
         ):
-            self._run = None
+            self._own_run = None
 
     @property
     def _tells_readings(self) -> bool:
@@ -209,11 +217,11 @@ class RobotLink:
         name = shipped_name_of_kit(robot.kit) if robot is not None else None
         if name is None:
             return []
-        if self._reads is None or self._reads[0] != run:  # its first one
-            self._readings = ToldReadings(robots.load(name).kit)
-            self._reads = run, time_ms - event.ms
-        assert self._readings is not None
-        rows = self._readings.rows(event, time_ms - self._reads[1])
+        if self._readings_run is None or self._readings_run[0] != run:  # its first one
+            self._reading_rows = ReadingRows(robots.load(name).kit)
+            self._readings_run = run, time_ms - event.ms
+        assert self._reading_rows is not None
+        rows = self._reading_rows.rows(event, time_ms - self._readings_run[1])
         return [{"event": event.name, "rows": [row.cells for row in rows]}]
 
     def _known_run(self, number: int) -> _Run:
@@ -236,8 +244,8 @@ class RobotLink:
         values = reply.values
         if isinstance(values, ReceiptReply):
             run = self._known_run(values.run)
-            if pending.starts and run != self._over:
-                self._run = run
+            if pending.starts and run != self._ended_run:
+                self._own_run = run
             return {
                 "ok": True,
                 "program": f"{values.program:08x}",
@@ -254,54 +262,54 @@ class RobotLink:
             return {"ok": True, "tasks": tasks}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
-            return {"ok": True, "robot": about(robot)}
+            return {"ok": True, "robot": robot_data(robot)}
         return {"ok": True}
 
     def _failure(self, reply: Reply[Any]) -> Json:
         reason = reason_of(self._connection, reply)
-        found = find_stranger(self._connection) if reason == FOREIGN else None
-        if found is not None:
+        board = find_stranger(self._connection) if reason == FOREIGN else None
+        if board is not None:
             from tiniscript.link.foreign import explain
 
-            said, advice = explain(found, self.language)
-            return {"failure": reason, "said": said, "advice": advice}
+            message, advice = explain(board, self.language)
+            return {"failure": reason, "said": message, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
-        said, advice = status_text(reply.status, reply.detail, self.language)
-        return {"failure": name_of(reply.status), "said": said, "advice": advice}
+        message, advice = status_text(reply.status, reply.detail, self.language)
+        return {"failure": name_of(reply.status), "said": message, "advice": advice}
 
     # -- events -----------------------------------------------------------------------------------
 
     def _event(self, event: Event) -> list[Json]:
-        found: Json = {"event": event.name}
+        data: Json = {"event": event.name}
         if event.name == "SHOW":
-            found["value"] = value_text(event.value, bool(event.is_yes_no))
+            data["value"] = value_text(event.value, bool(event.is_yes_no))
             if event.at >= 0:
-                found |= {"at": event.at, "program": f"{event.program:08x}"}
+                data |= {"at": event.at, "program": f"{event.program:08x}"}
         elif event.name == "FAULT":
-            found |= {"fault": fault_name(event.fault), "at": event.at,
+            data |= {"fault": fault_name(event.fault), "at": event.at,
                       "program": f"{event.program:08x}"}  # fmt: skip
         elif event.name == "STOPPED":
-            found["cause"] = cause_name(event.cause)
+            data["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
-            found |= {"at": event.at, "program": f"{event.program:08x}"}
+            data |= {"at": event.at, "program": f"{event.program:08x}"}
         elif event.name == "HALTED":
-            found |= {"at": event.at, "task": event.task,
+            data |= {"at": event.at, "task": event.task,
                       "is_program": self._known_run(event.run) == self._program_run}  # fmt: skip
         elif event.name == "MISSED":
-            found["count"] = event.count
+            data["count"] = event.count
         elif event.name == "TEXT":
-            found["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
+            data["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
         elif event.name == "STARTED":
-            found["program"] = f"{event.program:08x}"
+            data["program"] = f"{event.program:08x}"
             # no line, and nobody else's
-            found["is_program"] = self._known_run(event.run) == self._program_run
+            data["is_program"] = self._known_run(event.run) == self._program_run
         elif event.name not in ("DONE", "RESTARTED", "LOST"):
             return []  # who else uses the port is no news for a page
-        return [found]
+        return [data]
 
 
-def about(robot: DeviceInfo) -> Json:
+def robot_data(robot: DeviceInfo) -> Json:
     """Return what a robot says of itself: `robot` is the name of its shipped profile or None,
     `owner` is free, yours or other, `room` in bytes of code."""
     return {
@@ -346,27 +354,27 @@ def _name(request: Json) -> _Make:
 
 
 def _trim(request: Json) -> _Make:
-    result = request.get("trim")
-    if result is None:
+    fields = request.get("trim")
+    if fields is None:
         return lambda session: session.trim()
-    if not isinstance(result, dict):
+    if not isinstance(fields, dict):
         raise BadRequest
     trim = Trim(  # without a pace: the robot leaves what it has
-        result.get("is_exchanged") is True,
-        result.get("is_left_reversed") is True,
-        result.get("is_right_reversed") is True,
-        whole_number(result, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole_number(result, "least", 0, MOST_LEAST),
+        fields.get("is_exchanged") is True,
+        fields.get("is_left_reversed") is True,
+        fields.get("is_right_reversed") is True,
+        whole_number(fields, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole_number(fields, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 
 
 def _keys(request: Json) -> _Make:
     keys = whole_number(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
-    held = RemoteState(
-        keys, *(whole_number(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y"))
+    state = RemoteState(
+        keys, *(whole_number(request, axis, -MOST_PAD, MOST_PAD) for axis in ("x", "y"))
     )
-    return lambda session: session.press(*held)
+    return lambda session: session.press(*state)
 
 
 def _break(request: Json) -> _Make:
@@ -381,8 +389,8 @@ def _break(request: Json) -> _Make:
 
 
 def _resume(request: Json) -> _Make:
-    how = RESUME_STEP if request.get("is_step") is True else RESUME_GO
-    return lambda session: session.resume(how)
+    mode = RESUME_STEP if request.get("is_step") is True else RESUME_GO
+    return lambda session: session.resume(mode)
 
 
 def _variables(request: Json) -> _Make:
@@ -409,10 +417,12 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
 }
 
 
-def whole_number(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+def whole_number(
+    request: Json, name: str, least: int, most: int, default: int | None = None
+) -> int:
     """Return a number of a request. Raises BadRequest."""
-    number = found.get(name, usual)
-    if type(number) is not int or not low <= number <= high:
+    number = request.get(name, default)
+    if type(number) is not int or not least <= number <= most:
         raise BadRequest
     return number
 

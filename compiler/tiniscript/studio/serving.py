@@ -73,24 +73,24 @@ TYPES = {
 
 
 PAGE = Path(__file__).with_name("page")
-FIRST = "index.html"
-WORKER = "service_worker.js"
-FIRMWARE = "firmware.json"  # which files of firmware there are
+INDEX_FILE = "index.html"
+WORKER_FILE = "service_worker.js"
+FIRMWARE_FILE = "firmware.json"  # which files of firmware there are
 HOST = "127.0.0.1"
-NAMES = (HOST, "localhost")  # by which a browser here may call it
+HOST_NAMES = (HOST, "localhost")  # by which a browser here may call it
 HTTP_PORT = 80
 SILENT_S = 10  # after which a client that asks nothing is left
-ROBOTS = "/robots"  # where a page asks for robots
-ENTER = "/enter"  # where it gets the token for its code
-TOKEN = "X-TiniScript-Token"
-BEFORE_CODE = "#code="
+ROBOTS_PATH = "/robots"  # where a page asks for robots
+ENTER_PATH = "/enter"  # where it gets the token for its code
+TOKEN_HEADER = "X-TiniScript-Token"
+CODE_PREFIX = "#code="
 ENTER_BYTES = 200  # of a request with a code
 HEAD_BYTES = 16_384  # of a request
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
 # At a time; one more, and one is closed, of the address that has most. A browser has six.
-CONNECTIONS = 64
-CLASS_CONNECTIONS = 400
-HTML = b'<html lang="en"'
+MOST_CONNECTIONS = 64
+MOST_CLASS_CONNECTIONS = 400
+HTML_START = b'<html lang="en"'
 
 Robots = Callable[[Json], Json]  # raises BadRequest
 
@@ -106,17 +106,17 @@ class Pupils(Protocol):
 
 
 class File(NamedTuple):
-    """`tag` changes with the data; `packed` is the data gzipped, or empty."""
+    """`etag` changes with the data; `gzipped` is the data gzipped, or empty."""
 
     data: bytes
-    kind: str
-    tag: str = ""
-    packed: bytes = b""
+    content_type: str
+    etag: str = ""
+    gzipped: bytes = b""
 
 
 def is_built() -> bool:
     """Whether this installation has the page."""
-    return (PAGE / FIRST).is_file()
+    return (PAGE / INDEX_FILE).is_file()
 
 
 def files(folder: Path | None = None) -> dict[str, File]:
@@ -131,41 +131,52 @@ def files(folder: Path | None = None) -> dict[str, File]:
 
 def with_firmware(page: dict[str, File]) -> dict[str, File]:
     """Return the page with the firmware that the package brings, for boards at its browser."""
-    result = dict(page)
-    brought = [*ready.files(), *ready.images()]
-    for item in brought:
-        result[item.path.name] = _with_etag(item.path.read_bytes(), TYPES[item.path.suffix])
-    rows = [{"title": item.title, "board": item.board, "file": item.path.name} for item in brought]
-    result[FIRMWARE] = _with_etag(json.dumps(rows).encode(), TYPES[".json"])
-    return result
+    whole_page = dict(page)
+    firmware_files = [*ready.files(), *ready.images()]
+    for firmware_file in firmware_files:
+        whole_page[firmware_file.path.name] = _with_etag(
+            firmware_file.path.read_bytes(), TYPES[firmware_file.path.suffix]
+        )
+    rows = [
+        {
+            "title": firmware_file.title,
+            "board": firmware_file.board,
+            "file": firmware_file.path.name,
+        }
+        for firmware_file in firmware_files
+    ]
+    whole_page[FIRMWARE_FILE] = _with_etag(json.dumps(rows).encode(), TYPES[".json"])
+    return whole_page
 
 
 def for_class(page: dict[str, File]) -> dict[str, File]:
     """Return the page as thirty tablets on one radio fetch it: packed, and marked as a class's."""
-    result = {}
+    class_page = {}
     for name, file in page.items():
         data = file.data
-        if name == FIRST:
-            data = data.replace(HTML, HTML + b" data-class", 1)
-        packed = gzip.compress(data, 6, mtime=0)
-        result[name] = _with_etag(data, file.kind, packed if len(packed) < len(data) else b"")
-    return result
+        if name == INDEX_FILE:
+            data = data.replace(HTML_START, HTML_START + b" data-class", 1)
+        gzipped = gzip.compress(data, 6, mtime=0)
+        class_page[name] = _with_etag(
+            data, file.content_type, gzipped if len(gzipped) < len(data) else b""
+        )
+    return class_page
 
 
-def _with_etag(data: bytes, kind: str, packed: bytes = b"") -> File:
-    return File(data, kind, f'"{hashlib.sha256(data).hexdigest()[:32]}"', packed)
+def _with_etag(data: bytes, content_type: str, gzipped: bytes = b"") -> File:
+    return File(data, content_type, f'"{hashlib.sha256(data).hexdigest()[:32]}"', gzipped)
 
 
 # For a browser that asks for a worker which this server has not: it is of a server that had this
 # address before, and goes.
-_GONE = File(
+_GONE_WORKER = File(
     b"addEventListener('install', () => skipWaiting());\n"
     b"addEventListener('activate', () => registration.unregister());\n",
     TYPES[".js"],
 )
-_FOREIGN = File(b"This page is for this computer alone.\n", TYPES[".txt"])
-_MISSING = File(b"There is no such file.\n", TYPES[".txt"])
-_NO_REQUEST = File(b"That is no request.\n", TYPES[".txt"])
+_FORBIDDEN_ANSWER = File(b"This page is for this computer alone.\n", TYPES[".txt"])
+_MISSING_ANSWER = File(b"There is no such file.\n", TYPES[".txt"])
+_BAD_REQUEST_ANSWER = File(b"That is no request.\n", TYPES[".txt"])
 
 
 class _Client(NamedTuple):
@@ -194,16 +205,16 @@ class Server(ThreadingHTTPServer):
         self.page = page
         self.robots = robots
         self.pupils = pupils
-        names = NAMES if host == HOST else (host,)
-        self.own = {f"{name}:{self.server_port}" for name in names}
+        names = HOST_NAMES if host == HOST else (host,)
+        self.own_hosts = {f"{name}:{self.server_port}" for name in names}
         if self.server_port == HTTP_PORT:
-            self.own |= set(names)  # a browser leaves it out
+            self.own_hosts |= set(names)  # a browser leaves it out
         self.address = f"http://{host}:{self.server_port}/"
         self.headers = {
             name: value for name, value in HEADERS.items() if host == HOST or name != SECURE_ONLY
         }
         self.entrances = Entrances()
-        self.most_connections = CONNECTIONS if pupils is None else CLASS_CONNECTIONS
+        self.most_connections = MOST_CONNECTIONS if pupils is None else MOST_CLASS_CONNECTIONS
         self._lock = Lock()
         # Which has asked last is the last.
         self._connections: dict[socket.socket, _Client] = {}
@@ -212,16 +223,16 @@ class Server(ThreadingHTTPServer):
         """Return a new address by which the user's page reaches the robots, the first time."""
         if self.robots is None:
             return self.address
-        return f"{self.address}{BEFORE_CODE}{self.entrances.code(is_for_here)}"
+        return f"{self.address}{CODE_PREFIX}{self.entrances.new_code(is_for_here)}"
 
     def is_unused(self, entrance: str) -> bool:
         """Whether nobody has opened such an address."""
-        return self.entrances.is_unused(entrance.rpartition(BEFORE_CODE)[2])
+        return self.entrances.is_unused(entrance.rpartition(CODE_PREFIX)[2])
 
     def enter(self, request: Json, peer: socket.socket) -> Json:
         """Return the token of the run for a code that gives it."""
-        given = self.entrances.token_for(str(request.get("code")), peer)
-        return {"token": given} if given else {"failure": "host_used"}
+        token = self.entrances.token_for(str(request.get("code")), peer)
+        return {"token": token} if token else {"failure": "host_used"}
 
     def most_bytes(self, token: str, peer: socket.socket) -> int:
         """Return how large a request with this token may be; 0: it is refused."""
@@ -240,33 +251,35 @@ class Server(ThreadingHTTPServer):
     def trust(self, client: socket.socket) -> None:
         """A client has shown a token: others are closed before it."""
         with self._lock:
-            result = self._connections.pop(client, None)
-            if result is not None:
-                self._connections[client] = result._replace(is_known=True)
+            known_client = self._connections.pop(client, None)
+            if known_client is not None:
+                self._connections[client] = known_client._replace(is_known=True)
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        closed = None
+        closed_connection = None
         with self._lock:
             if len(self._connections) >= self.most_connections:
-                closed = self._idle()
-                del self._connections[closed]
+                closed_connection = self._idlest_connection()
+                del self._connections[closed_connection]
             self._connections[request] = _Client(client_address[0], False)
-        if closed is not None:
+        if closed_connection is not None:
             with suppress(OSError):  # it has gone
-                closed.shutdown(socket.SHUT_RDWR)
+                closed_connection.shutdown(socket.SHUT_RDWR)
         super().process_request(request, client_address)
 
-    def _idle(self) -> socket.socket:
+    def _idlest_connection(self) -> socket.socket:
         """Return the connection that has asked nothing for longest: of those without a token, if
         there are any, and of the address that has most of these."""
-        found = {
+        candidates = {
             connection: client
             for connection, client in self._connections.items()
             if not client.is_known
         }
-        found = found or self._connections
-        [(most, _)] = Counter(client.address for client in found.values()).most_common(1)
-        return next(connection for connection, client in found.items() if client.address == most)
+        candidates = candidates or self._connections
+        [(address, _)] = Counter(client.address for client in candidates.values()).most_common(1)
+        return next(
+            connection for connection, client in candidates.items() if client.address == address
+        )
 
     def shutdown_request(self, request: Any) -> None:
         with self._lock:
@@ -286,17 +299,17 @@ class _Reader:
 
     def __init__(self, stream: BufferedIOBase) -> None:
         self._stream = stream
-        self._left = HEAD_BYTES
+        self._left_bytes = HEAD_BYTES
         self.read = stream.read
         self.close = stream.close
 
     def begin(self) -> None:
-        self._left = HEAD_BYTES
+        self._left_bytes = HEAD_BYTES
 
     def readline(self, size: int) -> bytes:
-        line = self._stream.readline(min(size, self._left + 1))
-        self._left -= len(line)
-        if self._left < 0:
+        line = self._stream.readline(min(size, self._left_bytes + 1))
+        self._left_bytes -= len(line)
+        if self._left_bytes < 0:
             raise _HeadTooLarge
         return line
 
@@ -327,38 +340,38 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         server = self.server
         origins = self.headers.get_all("Origin", [])
-        if server.robots is None or self.path not in (ROBOTS, ENTER):
-            self._send(HTTPStatus.NOT_FOUND, _MISSING)
+        if server.robots is None or self.path not in (ROBOTS_PATH, ENTER_PATH):
+            self._send(HTTPStatus.NOT_FOUND, _MISSING_ANSWER)
             return
         # A browser says of each POST where it is from.
-        tokens = self.headers.get_all(TOKEN, [])
+        tokens = self.headers.get_all(TOKEN_HEADER, [])
         token = tokens[0] if len(tokens) == 1 else ""
-        most = server.most_bytes(token, self.connection) if len(tokens) < 2 else 0
-        if self.path == ENTER:
-            most = ENTER_BYTES
-        if not self._is_own() or len(origins) != 1 or not most:
-            self._send(HTTPStatus.FORBIDDEN, _FOREIGN)
+        most_bytes = server.most_bytes(token, self.connection) if len(tokens) < 2 else 0
+        if self.path == ENTER_PATH:
+            most_bytes = ENTER_BYTES
+        if not self._is_own() or len(origins) != 1 or not most_bytes:
+            self._send(HTTPStatus.FORBIDDEN, _FORBIDDEN_ANSWER)
             return
         try:
-            asked = self._request(most)
-            if self.path == ENTER:
-                answer = server.enter(asked, self.connection)
+            request = self._request(most_bytes)
+            if self.path == ENTER_PATH:
+                answer = server.enter(request, self.connection)
             else:
-                answer = server.answer(token, self.connection, self.client_address[0], asked)
+                answer = server.answer(token, self.connection, self.client_address[0], request)
         except (BadRequest, OSError):
-            self._send(HTTPStatus.BAD_REQUEST, _NO_REQUEST)
+            self._send(HTTPStatus.BAD_REQUEST, _BAD_REQUEST_ANSWER)
             return
         if token:
             server.trust(self.connection)
         self._send(HTTPStatus.OK, File(json.dumps(answer).encode(), TYPES[".json"]))
 
-    def _request(self, most: int) -> Json:
-        """Return the object of JSON in the body, of `most` bytes. Raises BadRequest, OSError."""
+    def _request(self, most_bytes: int) -> Json:
+        """Return the object of JSON in the body, of `most_bytes`. Raises BadRequest, OSError."""
         lengths = self.headers.get_all("Content-Length", [])
         if len(lengths) != 1 or not lengths[0].isascii() or not lengths[0].isdigit():
             raise BadRequest
         length = int(lengths[0][:9])
-        if length > most or self.headers.get("Transfer-Encoding") is not None:
+        if length > most_bytes or self.headers.get("Transfer-Encoding") is not None:
             raise BadRequest
         data = self.rfile.read(length)
         try:
@@ -368,18 +381,18 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         if not self._is_own():
-            self._send(HTTPStatus.FORBIDDEN, _FOREIGN)
+            self._send(HTTPStatus.FORBIDDEN, _FORBIDDEN_ANSWER)
             return
-        name = urlsplit(self.path).path.removeprefix("/") or FIRST
+        name = urlsplit(self.path).path.removeprefix("/") or INDEX_FILE
         file = self.server.page.get(name)
-        if self.headers.get("Service-Worker") == "script" and name != WORKER:
-            self._send(HTTPStatus.OK, _GONE)
+        if self.headers.get("Service-Worker") == "script" and name != WORKER_FILE:
+            self._send(HTTPStatus.OK, _GONE_WORKER)
         elif file is None:
-            self._send(HTTPStatus.NOT_FOUND, _MISSING)
-        elif file.tag in self.headers.get_all("If-None-Match", []):
-            self._send(HTTPStatus.NOT_MODIFIED, file._replace(data=b"", packed=b""))
-        elif file.packed and "gzip" in self.headers.get("Accept-Encoding", ""):
-            self._send(HTTPStatus.OK, file._replace(data=file.packed), "gzip")
+            self._send(HTTPStatus.NOT_FOUND, _MISSING_ANSWER)
+        elif file.etag in self.headers.get_all("If-None-Match", []):
+            self._send(HTTPStatus.NOT_MODIFIED, file._replace(data=b"", gzipped=b""))
+        elif file.gzipped and "gzip" in self.headers.get("Accept-Encoding", ""):
+            self._send(HTTPStatus.OK, file._replace(data=file.gzipped), "gzip")
         else:
             self._send(HTTPStatus.OK, file)
 
@@ -389,22 +402,24 @@ class _Handler(BaseHTTPRequestHandler):
     def _is_own(self) -> bool:
         """Whether the request is for a page of this address: a name that somebody else has made for
         this computer is not (DNS rebinding), nor is a page from elsewhere."""
-        if self.headers.get_all("Host", []) not in [[name] for name in self.server.own]:
+        if self.headers.get_all("Host", []) not in [[name] for name in self.server.own_hosts]:
             return False
         origins = self.headers.get_all("Origin", [])
-        return all(origin in {f"http://{name}" for name in self.server.own} for origin in origins)
+        return all(
+            origin in {f"http://{name}" for name in self.server.own_hosts} for origin in origins
+        )
 
-    def _send(self, status: HTTPStatus, file: File, coding: str = "") -> None:
+    def _send(self, status: HTTPStatus, file: File, encoding: str = "") -> None:
         self.send_response(status)
-        self.send_header("Content-Type", file.kind)
+        self.send_header("Content-Type", file.content_type)
         if status is not HTTPStatus.NOT_MODIFIED:
             self.send_header("Content-Length", str(len(file.data)))
-        if coding:
-            self.send_header("Content-Encoding", coding)
-        if file.packed:
+        if encoding:
+            self.send_header("Content-Encoding", encoding)
+        if file.gzipped:
             self.send_header("Vary", "Accept-Encoding")
-        if file.tag:
-            self.send_header("ETag", file.tag)
+        if file.etag:
+            self.send_header("ETag", file.etag)
         for name, value in self.server.headers.items():
             self.send_header(name, value)
         if status not in (HTTPStatus.OK, HTTPStatus.NOT_MODIFIED):

@@ -21,13 +21,13 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
-LONGEST_MS = 10_000  # for a robot to answer
+LONGEST_ANSWER_MS = 10_000  # for a robot to answer
 PUSH_MS = 60
 FAULT_MS = 500  # for a robot to tell of a fault
 NONCE = 1  # the same program makes the same run
 PART, BREAKPOINT = 1, 2  # marks in a program's code
 MOST_CODE = 1 << 16  # bytes
-SAID_MS = HOLD_MS // 10  # what is held already is said no sooner again
+REPEAT_GAP_MS = HOLD_MS // 10  # what is held already is said no sooner again
 
 
 class Marks(NamedTuple):
@@ -66,13 +66,13 @@ class Simulation:
         self.is_stopped = False
         self.fault_at: int | None = None  # where the last fault was, as the robot has told
         self.marks = marks or Marks(())
-        self._mark()
-        self._want(is_stepping=self.marks.is_held)
+        self._mark_code()
+        self._hold_before(is_stepping=self.marks.is_held)
         upload = self._upload = self.session.upload(unpack(image), runs=True, saves=True)
         self._until(lambda: upload.outcome is not None or self.held_at is not None)
         is_taken = upload.outcome is not None and upload.outcome.status == OK
         assert self.held_at is not None or is_taken, "not taken"
-        self._want(is_stepping=False)
+        self._hold_before(is_stepping=False)
         self.go(0)
 
     def go(self, duration_ms: int) -> None:
@@ -91,8 +91,8 @@ class Simulation:
     def set_breakpoints(self, breakpoints: Iterable[int]) -> None:
         """Hold the program in front of these offsets from now on, and of no others."""
         self.marks = self.marks._replace(breakpoints=tuple(breakpoints))
-        self._mark()
-        self._want(is_stepping=False)
+        self._mark_code()
+        self._hold_before(is_stepping=False)
 
     def go_on(self) -> None:
         """Let a program that is held go on to the next breakpoint, as time goes on."""
@@ -100,20 +100,20 @@ class Simulation:
 
     def step(self, limit_ms: int) -> None:
         """Let time go on until another part of the text is next, or the program has ended."""
-        self._want(is_stepping=True)
+        self._hold_before(is_stepping=True)
         self.robot.go_on()
         for _ in range(limit_ms):
             if self.held_at is not None or not self.robot.is_running:
                 break
             self.go(1)
-        self._want(is_stepping=False)
+        self._hold_before(is_stepping=False)
 
     @property
     def held_at(self) -> int | None:
         """Return the offset in front of which the program is held, or None."""
         return self.robot.firmware.held_at
 
-    def _mark(self) -> None:
+    def _mark_code(self) -> None:
         marks = bytearray(MOST_CODE)
         for offsets, bit in ((self.marks.parts, PART), (self.marks.breakpoints, BREAKPOINT)):
             for offset in offsets:
@@ -121,45 +121,45 @@ class Simulation:
                     marks[offset] |= bit
         self.robot.firmware.mark(bytes(marks))
 
-    def _want(self, is_stepping: bool) -> None:
+    def _hold_before(self, is_stepping: bool) -> None:
         bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * bool(is_stepping)
         self.robot.firmware.hold_before(bits)
 
     def _begin_rows(self) -> None:
         self._rows = Rows()
-        self._taken = 0  # rows that somebody has had
+        self._taken_count = 0  # rows that somebody has had
         self._events: list[Event] = []
-        self._done: list[str] = []  # by somebody, for the next whole millisecond
-        self._pressed, self._said_ms = NOTHING_PRESSED, 0
-        self._is_amid = False  # a millisecond: the program was held
+        self._waiting_inputs: list[str] = []  # by somebody, for the next whole millisecond
+        self._remote_state, self._pressed_ms = NOTHING_PRESSED, 0
+        self._is_held_midway = False  # a millisecond: the program was held
 
     def _advance(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             if self.held_at is not None:
                 break
-            if not self._is_amid and self._upload.outcome is not None:
+            if not self._is_held_midway and self._upload.outcome is not None:
                 self._let_in()
             self._computer.wait(1)
-            self._is_amid = self.held_at is not None
+            self._is_held_midway = self.held_at is not None
             self._score.update(self.robot)
         self._take_events()
 
     def _let_in(self) -> None:
         """What somebody has done meanwhile reaches the robot now."""
-        done, self._done = self._done, []
-        for item in done:
-            self._replay_event(item)
-            self._note(item)
+        inputs, self._waiting_inputs = self._waiting_inputs, []
+        for event in inputs:
+            self._replay_event(event)
+            self._note(event)
 
-    def _replay_event(self, done: str) -> None:
-        if done == DOWN:
+    def _replay_event(self, event: str) -> None:
+        if event == DOWN:
             self.robot.press()
-        elif done == UP:
+        elif event == UP:
             self.robot.let_go()
         else:
-            pressed = Row(0, done).pressed
-            assert pressed is not None, done
-            self.session.press(*pressed)
+            remote_state = Row(0, event).pressed
+            assert remote_state is not None, event
+            self.session.press(*remote_state)
 
     def _note(self, event: str) -> None:
         self._take_rows()
@@ -175,8 +175,8 @@ class Simulation:
     def rows(self) -> list[Row]:
         """Return the rows of the run since the last time, as its file has them."""
         self._take_rows()
-        rows = self._rows.rows[self._taken :]
-        self._taken = len(self._rows.rows)
+        rows = self._rows.rows[self._taken_count :]
+        self._taken_count = len(self._rows.rows)
         return rows
 
     @property
@@ -202,27 +202,27 @@ class Simulation:
         A held program does nothing more.
         """
         self.is_stopped = False
-        self._note(HELD if self._is_amid else HALT)
+        self._note(HELD if self._is_held_midway else HALT)
         self.session.stop(self.robot.now_ms)
         self._until(lambda: self.is_stopped)
 
     def push(self) -> None:
         """Push the start button."""
-        self._done.append(DOWN)
+        self._waiting_inputs.append(DOWN)
         self.go(PUSH_MS)
-        self._done.append(UP)
+        self._waiting_inputs.append(UP)
         self.go(1)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Hold these keys of a remote control and its pad so, until something else is said; who
         says nothing for half a second of the robot's time holds nothing."""
-        pressed, now_ms = RemoteState(keys, x, y), self.robot.now_ms
-        if pressed == self._pressed and (
-            pressed == NOTHING_PRESSED or now_ms - self._said_ms < SAID_MS
+        remote_state, now_ms = RemoteState(keys, x, y), self.robot.now_ms
+        if remote_state == self._remote_state and (
+            remote_state == NOTHING_PRESSED or now_ms - self._pressed_ms < REPEAT_GAP_MS
         ):
             return
-        self._pressed, self._said_ms = pressed, now_ms
-        self._done.append(f"KEYS {keys} {x} {y}")
+        self._remote_state, self._pressed_ms = remote_state, now_ms
+        self._waiting_inputs.append(f"KEYS {keys} {x} {y}")
 
     def close(self) -> None:
         self.robot.switch_off()
@@ -231,7 +231,7 @@ class Simulation:
         """Return what is to be seen, and what has happened since the last time."""
         robot = self.robot
         x_cm, y_cm, heading = robot.pose
-        touched = robot.driving.touch_point(robot.pose)
+        touch_point = robot.driving.touch_point(robot.pose)
         kit = robot.profile.kit
         readings = [robot.sensing.peek(number, robot.pose) for number in range(len(kit.sensors))]
         return {
@@ -244,7 +244,7 @@ class Simulation:
             "fault": robot.fault,
             "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
-            "touches": touched and list(touched),
+            "touches": touch_point and list(touch_point),
             "score": self._score.state(),
             "rivals": [list(pose) for pose in robot.driving.rivals],
             "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
@@ -264,10 +264,10 @@ class Simulation:
 
     def _until(self, is_over: Callable[[], bool]) -> None:
         """Let time go on, also for a program that is held."""
-        for _ in range(LONGEST_MS):
+        for _ in range(LONGEST_ANSWER_MS):
             if is_over():
                 return
             self._computer.wait(1)
-            self._is_amid = self.held_at is not None
+            self._is_held_midway = self.held_at is not None
             self._take_events()
         raise AssertionError("the virtual robot does not answer")

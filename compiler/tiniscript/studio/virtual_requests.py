@@ -21,20 +21,20 @@ from tiniscript.virtual.worlds import read as read_world
 Answer = dict[str, Any]
 
 _simulation: Simulation | None = None  # a page has one robot
-_opened: playing.Ready | None = None  # the recorded run that was opened last
+_opened_run: playing.PlayableRecording | None = None  # the recorded run that was opened last
 
 
-def _world(where: Any) -> World:
+def _world(description: Any) -> World:
     """Return a world: a shipped one's name, a form, or the number and the seed of one of a lesson.
 
     Raises WorldRefused.
     """
-    if isinstance(where, str):
-        assert where in worlds.names(), where
-        return worlds.load(where)
-    if "form" in where:
-        return read_world(toml_of(where["form"]), "")
-    world: World = _lessons().world(where["lesson"], where["seed"])
+    if isinstance(description, str):
+        assert description in worlds.names(), description
+        return worlds.load(description)
+    if "form" in description:
+        return read_world(toml_of(description["form"]), "")
+    world: World = _lessons().varied_world(description["lesson"], description["seed"])
     return recordings.stored_form(world)[0]
 
 
@@ -48,19 +48,24 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
     if _simulation is not None:
         _simulation.close()
         _simulation = None
-    where = fields["world"]
+    description = fields["world"]
     try:
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
                       fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
         if fields.get("plays"):
-            assert _opened is not None, "no run was opened"
-            beside = None if _opened.recording.is_virtual else _world(where)
-            _simulation = playing.PlayedRun(_opened, beside, marks)
-        elif "until_ms" in where:
-            judged = (fields["robot"], where["lesson"], where["seed"], where["until_ms"])
-            _simulation = _lessons().JudgedRun(*judged, data, marks)
+            assert _opened_run is not None, "no run was opened"
+            beside_world = None if _opened_run.recording.is_virtual else _world(description)
+            _simulation = playing.PlayedRun(_opened_run, beside_world, marks)
+        elif "until_ms" in description:
+            run_arguments = (
+                fields["robot"],
+                description["lesson"],
+                description["seed"],
+                description["until_ms"],
+            )
+            _simulation = _lessons().JudgedRun(*run_arguments, data, marks)
         else:
-            _simulation = Simulation(fields["robot"], _world(where), data, marks)
+            _simulation = Simulation(fields["robot"], _world(description), data, marks)
     except WorldRefused as refused:
         return {"refused": describe(refused, fields["language"])}
     assert _simulation is not None
@@ -68,9 +73,9 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
 
 
 def _driving_request(
-    drive: Callable[[Simulation, Answer], object],
+    act: Callable[[Simulation, Answer], object],
 ) -> Callable[[Answer, bytes], Answer]:
-    """Return what does `drive` with the virtual robot, and answers how it stands then.
+    """Return what does `act` with the virtual robot, and answers how it stands then.
 
     `held` is what somebody holds of a remote control meanwhile."""
 
@@ -78,7 +83,7 @@ def _driving_request(
         assert _simulation is not None, "nothing is switched on"
         if "held" in fields:
             _simulation.press(*fields["held"])
-        drive(_simulation, fields)
+        act(_simulation, fields)
         return _simulation.state()
 
     return answer
@@ -107,22 +112,31 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
 
 def _open_run(fields: Answer, data: bytes) -> Answer:
     """Return what the page needs to play the file of a run, `data`, or why it cannot be played."""
-    global _opened
+    global _opened_run
     try:
-        _opened = playing.ready(recordings.decode(data))
-    except recordings.BadRecording as bad:
-        return {"what": bad.reason, "line": bad.line}
-    recording = _opened.recording
+        _opened_run = playing.prepare(recordings.decode(data))
+    except recordings.BadRecording as error:
+        return {"what": error.reason, "line": error.line}
+    recording = _opened_run.recording
     world: Any = None
-    shapes = None
+    world_shapes = None
     if recording.world is not None:
-        shapes = form_of(recording.world)
-        world = recording.world.name if recording.world.name in worlds.names() else {"form": shapes}
+        world_shapes = form_of(recording.world)
+        world = (
+            recording.world.name
+            if recording.world.name in worlds.names()
+            else {"form": world_shapes}
+        )
     return {
-        "of": recording.of, "text": recording.text, "robot": recording.robot, "world": world,
-        "shapes": shapes, "rows": [row.cells for row in recording.rows],
-        "end_ms": recording.end_ms, "is_by_button": recording.is_by_button,
-    }  # fmt: skip
+        "of": recording.robot_kind,
+        "text": recording.text,
+        "robot": recording.robot,
+        "world": world,
+        "shapes": world_shapes,
+        "rows": [row.cells for row in recording.rows],
+        "end_ms": recording.end_ms,
+        "is_by_button": recording.is_by_button,
+    }
 
 
 def _write_run(fields: Answer, data: bytes) -> Answer:
@@ -135,12 +149,12 @@ def _write_run(fields: Answer, data: bytes) -> Answer:
         else None
     )
     is_by_button = fields.get("is_by_button", False)
-    first = recordings.head(fields["of"], fields["text"], robot, int(fields["program"], 16),
+    header = recordings.header_line(fields["of"], fields["text"], robot, int(fields["program"], 16),
                             world=world, is_by_button=is_by_button)  # fmt: skip
-    return {"file": recordings.encode(first, rows, fields["end_ms"])}
+    return {"file": recordings.encode(header, rows, fields["end_ms"])}
 
 
-_check_of_lesson: Any = None  # the one that goes on
+_lesson_check_now: Any = None  # the one that goes on
 
 
 def _lessons() -> Any:
@@ -150,17 +164,17 @@ def _lessons() -> Any:
 
 
 def _lesson_world(fields: Answer, data: bytes) -> Answer:
-    which = (fields["number"], fields["seed"])
-    return {"world": _lessons().world_form(*which), "goals": _lessons().goals(*which)}
+    arguments = (fields["number"], fields["seed"])
+    return {"world": _lessons().world_form(*arguments), "goals": _lessons().goal_shapes(*arguments)}
 
 
 def _lesson_check(fields: Answer, data: bytes) -> Answer:
-    global _check_of_lesson
-    _check_of_lesson = _lessons().Check(fields["number"], data, fields["language"])
+    global _lesson_check_now
+    _lesson_check_now = _lessons().LessonCheck(fields["number"], data, fields["language"])
     return {}
 
 
-ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
     "power_on": _power_on,
     "go": _driving_request(lambda robot, fields: robot.go(fields["duration_ms"])),
     "step": _driving_request(lambda robot, fields: robot.step(fields["limit_ms"])),
@@ -178,12 +192,12 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "lesson_steps": lambda fields, data: {
         "steps": _lessons().steps(fields["number"], fields["language"]),
         "block_steps": _lessons().steps(fields["number"], fields["language"], "blocks"),
-        "offered": _lessons().offered(fields["number"], fields["language"]),
-        "needed": _lessons().needed(fields["number"], fields["language"]),
-        "new": _lessons().new(fields["number"], fields["language"]),
-        "spoken": _lessons().spoken(fields["number"], fields["language"]),
+        "offered": _lessons().offered_kinds(fields["number"], fields["language"]),
+        "needed": _lessons().needed_kinds(fields["number"], fields["language"]),
+        "new": _lessons().new_pieces(fields["number"], fields["language"]),
+        "spoken": _lessons().spoken_blocks(fields["number"], fields["language"]),
     },
     "lesson_world": _lesson_world,
     "lesson_check": _lesson_check,
-    "lesson_go": lambda fields, data: _check_of_lesson.go(fields["most_ms"]),
+    "lesson_go": lambda fields, data: _lesson_check_now.go(fields["most_ms"]),
 }

@@ -17,9 +17,9 @@ from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.named_robot import rename_robot
 from tiniscript.studio import checking
-from tiniscript.studio.block_form import beginning, data_of, from_data, in_order, size_of
+from tiniscript.studio.block_form import data_of, first_blocks, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import LOOSE, read
+from tiniscript.studio.block_reading import LOOSE_PREFIX, read_blocks
 
 Answer = dict[str, Any]
 TOGETHER = "tiniscript.studio.page_together"
@@ -49,8 +49,8 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "start": result.start,
         "robot": result.robot,
         "names_robot": result.names_robot,
-        "remote": result.remote,
-        "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
+        "remote": result.remote_words,
+        "loose": _loose(fields, data) if LOOSE_PREFIX.encode() in data else 0,
     }
 
 
@@ -62,7 +62,7 @@ def _repair(fields: Answer, data: bytes) -> Answer:
 
 def _loose(fields: Answer, data: bytes) -> int:
     """Return how many instructions and values of a program hang on nothing."""
-    stacks = read(data.decode(), checking.profile_for(data, fields["robot"]).kit).loose
+    stacks = read_blocks(data.decode(), checking.profile_for(data, fields["robot"]).kit).loose
     return sum(len(in_order(stack.body)) or 1 for stack in stacks)
 
 
@@ -71,7 +71,7 @@ def _open(fields: Answer, data: bytes) -> Answer:
 
 
 def _line(fields: Answer, data: bytes) -> Answer:
-    return _post_answer(checking.line(data, fields["robot"], fields["language"]))
+    return _post_answer(checking.line_for_robot(data, fields["robot"], fields["language"]))
 
 
 def _post_answer(message: str | Message) -> Answer:
@@ -82,9 +82,9 @@ def _post_answer(message: str | Message) -> Answer:
 
 def _blocks(fields: Answer, data: bytes) -> Answer:
     """Return the blocks of a text, or the `first` of them; of too many only their number."""
-    form = read(data.decode(), checking.profile_for(data, fields["robot"]).kit)
+    form = read_blocks(data.decode(), checking.profile_for(data, fields["robot"]).kit)
     if "first" in fields:
-        form = beginning(form, fields["first"])
+        form = first_blocks(form, fields["first"])
     size = size_of(form)
     return {"size": size} if size > MOST_BLOCKS else {"size": size, **data_of(form)}
 
@@ -110,22 +110,24 @@ def _learn(fields: Answer, data: bytes) -> Answer:
     return {}
 
 
-_ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+_HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
     "learn": _learn, "check": _check, "repair": _repair, "open": _open, "line": _line,
     "blocks": _blocks, "text": _text, "rename": _rename,
 }  # fmt: skip
 
 
-def _request_handler(do: str) -> Callable[[Answer, bytes], Answer]:
+def _request_handler(action: str) -> Callable[[Answer, bytes], Answer]:
     """Return what answers a request. A page begins without its robots: they load when asked for."""
-    if do in _ASKED:
-        return _ASKED[do]
-    if do.startswith("group_"):  # which the page has fetched meanwhile; its first archive lacks it
+    if action in _HANDLERS:
+        return _HANDLERS[action]
+    if action.startswith(
+        "group_"
+    ):  # which the page has fetched meanwhile; its first archive lacks it
         sys.path_importer_cache.clear()
-        asked: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).ASKED
-        return asked[do]
-    if do in ("connect", "link", "import_keys"):
-        from tiniscript.studio.page_line import ASKED
+        handlers: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).ASKED
+        return handlers[action]
+    if action in ("connect", "link", "import_keys"):
+        from tiniscript.studio.page_line import HANDLERS
     else:
-        from tiniscript.studio.virtual_requests import ASKED
-    return ASKED[do]
+        from tiniscript.studio.virtual_requests import HANDLERS
+    return HANDLERS[action]

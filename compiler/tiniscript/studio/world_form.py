@@ -71,7 +71,9 @@ def toml_of(form: Form) -> str:
         by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
         labels = {
             **by_language,
-            **{value: name for value, name in labels.items() if name != by_language[value]},
+            **{
+                language: name for language, name in labels.items() if name != by_language[language]
+            },
         }
     tables = [
         _table("[floor]", floor),
@@ -92,14 +94,14 @@ def _box(corners: tuple[Point, ...]) -> Form:
     """Return middle, size and heading of a box; its first two corners lie along its heading."""
     front, back, other, _ = corners
     along, across = (front.x - back.x, front.y - back.y), (back.x - other.x, back.y - other.y)
-    found = {
+    values = {
         "x_cm": (front.x + other.x) / 2,
         "y_cm": (front.y + other.y) / 2,
         "length_cm": math.hypot(*along),
         "width_cm": math.hypot(*across),
         "heading": math.degrees(math.atan2(along[1], along[0])),
     }
-    return {key: round(value, DECIMALS) for key, value in found.items()}
+    return {key: round(value, DECIMALS) for key, value in values.items()}
 
 
 def _table(head: str, values: Form) -> str:

@@ -110,7 +110,7 @@ def _class_keeper() -> class_keeping.Keeper:
 def _resume_class(class_: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
     saved_class = class_.keeper.read()
-    pupils = class_.room.go_on(*saved_class) if saved_class is not None else 0
+    pupils = class_.room.resume(*saved_class) if saved_class is not None else 0
     class_.room.tidy()
     return pupils
 

@@ -130,7 +130,7 @@ def _upload(
         simulator = connection.simulator
         robot_ms = None if simulator is None else simulator.event_ms
         text, robot = options.recorded_text, connection.profile
-        head = recordings.head(recordings.REAL, text, robot, receipt_reply.program)
+        head = recordings.header_line(recordings.REAL, text, robot, receipt_reply.program)
         recorder = Recorder(options.record, head, sent_s, robot_ms, robot.kit)
         printer.add_row = recorder.add
         printer.readings = recorder.add_reading if tells_readings else None

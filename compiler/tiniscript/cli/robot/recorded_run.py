@@ -17,7 +17,14 @@ from tiniscript.cli.robot.simulator_options import convert_refusal, world_of
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import SAME, STEP_MS, Parting, PlayedRun, Ready, ready
+from tiniscript.studio.playing import (
+    SAME_OUTCOMES,
+    STEP_MS,
+    Divergence,
+    PlayableRecording,
+    PlayedRun,
+    prepare,
+)
 from tiniscript.studio.recordings import MOST_MS, VIRTUAL, BadRecording, Row
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual.robot import Settings
@@ -78,8 +85,8 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     end_ms = rows[-1].ms if run.is_full and rows else run.robot.now_ms
     run.close()
     _print(rows, started_ms)
-    head = recordings.head(
-        VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
+    head = recordings.header_line(
+        VIRTUAL, source, robot, image.checksum, world=form, seed=seed, given_readings=message
     )
     recording = recordings.encode(head, rows, end_ms)
     outputs.write(Path(options.record), recording.encode(), "unwritable_more --record")
@@ -106,16 +113,16 @@ def play(program_input: Input, options: Namespace, language: str) -> int:
     _print(played.rows(), started_ms)
     played.close()
     sys.stdout.flush()
-    parting = played.parting or Parting("empty")
+    parting = played.divergence or Divergence("empty")
     print(
         sentence(parting, started_ms if run.recording.is_virtual else 0, language), file=sys.stderr
     )
-    return int(parting.what not in SAME)
+    return int(parting.what not in SAME_OUTCOMES)
 
 
-def _read(program_input: Input) -> Ready:
+def _read(program_input: Input) -> PlayableRecording:
     try:
-        return ready(recordings.decode(program_input.data))
+        return prepare(recordings.decode(program_input.data))
     except BadRecording as bad:
         values = {"file": inputs.printable_name(program_input.name), "line": str(bad.line)}
         raise CommandError(2, f"recording_{bad.reason}", **values) from None
@@ -126,7 +133,7 @@ def _print(rows: list[Row], started_ms: int) -> None:
         sys.stdout.write(f"{row.ms - started_ms} {row.event}\n")
 
 
-def sentence(parting: Parting, started_ms: int, language: str) -> str:
+def sentence(parting: Divergence, started_ms: int, language: str) -> str:
     """Return what a person reads of a comparison; the rows count from `started_ms`."""
     place = text("replay_line" if parting.line else "replay_end", language)
     return text(f"replay_{parting.what}", language).format(

@@ -91,7 +91,7 @@ class Recorder:
         self._began_s = began_s
         self._robot_ms = robot_ms
         self._kept = recordings.Rows()
-        self._readings = recordings.ToldReadings(kit or Kit((), ()))
+        self._readings = recordings.ReadingRows(kit or Kit((), ()))
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
@@ -105,7 +105,7 @@ class Recorder:
         row = Row(self._ms(event), event)
         is_row_kept = self._kept.add(row)
         if is_row_kept:
-            self._rows.line(recordings.line(row))
+            self._rows.line(recordings.encode_row(row))
         if not is_row_kept or name in ENDING_EVENTS:
             self._end(row.ms)
 
@@ -116,21 +116,21 @@ class Recorder:
         since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
         for row in self._readings.rows(event, round(since_s * 1000)):
             if self._kept.add(row):
-                self._rows.line(recordings.line(row))
+                self._rows.line(recordings.encode_row(row))
             elif self._kept.is_full:
                 return self._end(row.ms)
 
     @property
     def untold(self) -> list[str]:
         """The sensors of which the robot could not tell all readings."""
-        return self._readings.untold
+        return self._readings.incomplete_names
 
     def end(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
             row = Row(self._ms(event), event)
             if self._kept.add(row):
-                self._rows.line(recordings.line(row))
+                self._rows.line(recordings.encode_row(row))
             self._end(row.ms)
 
     def close(self) -> None:
@@ -147,4 +147,4 @@ class Recorder:
 
     def _end(self, ms: int) -> None:
         self._is_over = True
-        self._rows.line(recordings.line(Row(min(ms, MOST_MS), END)))
+        self._rows.line(recordings.encode_row(Row(min(ms, MOST_MS), END)))
