@@ -65,7 +65,7 @@ def trace_with(text: str, robot: TracedRobot, senses: Senses, budget: int) -> li
     assert isinstance(machine, TaskMachine)
     while True:
         status = machine.tick(robot.now_ms, budget)
-        if not machine.in_turn:
+        if not machine.is_in_turn:
             assert not machine.task.stack
         if status in (DONE, FAULT):
             robot.record(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")

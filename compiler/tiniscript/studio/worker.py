@@ -124,7 +124,7 @@ def _request_handler(action: str) -> Callable[[Answer, bytes], Answer]:
         "group_"
     ):  # which the page has fetched meanwhile; its first archive lacks it
         sys.path_importer_cache.clear()
-        handlers: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).ASKED
+        handlers: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).HANDLERS
         return handlers[action]
     if action in ("connect", "link", "import_keys"):
         from tiniscript.studio.page_line import HANDLERS

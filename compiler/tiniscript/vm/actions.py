@@ -6,75 +6,77 @@ from tiniscript.base.fixed_point import ONE, clamp, whole
 from tiniscript.bytecode.opcodes import time8_ms
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import FOREVER, PAUSE, Execution, Powers
-from tiniscript.vm.values import COMPARE, Compare
+from tiniscript.vm.values import COMPARISONS, Compare
 
 
-def _duration(time: int) -> int:
+def _duration(time_milli: int) -> int:
     """Return milliseconds: a time in thousandths of a second, not below 0."""
-    return max(time, 0)
+    return max(time_milli, 0)
 
 
-def _percent(power: int, low: int) -> int:
-    return clamp(whole(power), low, 100)
+def _percent(power: int, least: int) -> int:
+    return clamp(whole(power), least, 100)
 
 
 @handles("SHOW")
-def _show(m: Execution, after: int) -> Step:
-    return lambda: m.show(m.task.stack[-1], False, after)
+def _show(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.show(machine.task.stack[-1], False, next_pc)
 
 
 @handles("SHOW_YES_NO")
-def _show_yes_no(m: Execution, after: int) -> Step:
-    return lambda: m.show(1 if m.task.stack[-1] else 0, True, after)
+def _show_yes_no(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.show(1 if machine.task.stack[-1] else 0, True, next_pc)
 
 
 @handles("SET")
-def _set(m: Execution, after: int, a: int) -> Step:
+def _set(machine: Execution, next_pc: int, actuator: int) -> Step:
     def step() -> int:
-        m.robot.set(a, m.task.stack.pop())
-        return after
+        machine.robot.set(actuator, machine.task.stack.pop())
+        return next_pc
 
     return step
 
 
-def _moves(direction: str, left: int, right: int) -> None:
+def _add_move_handlers(direction: str, left: int, right: int) -> None:
     """Make the handlers of the four instructions that drive in one direction."""
 
     def powers(power: int) -> Powers:
         return left * power, right * power
 
-    def popped_powers(m: Execution) -> Powers:
-        return powers(_percent(m.task.stack.pop(), 0))
+    def popped_powers(machine: Execution) -> Powers:
+        return powers(_percent(machine.task.stack.pop(), 0))
 
-    def move8(m: Execution, after: int, time: int, power: int) -> Step:
-        return lambda: m.drive(time8_ms(time), powers(power), after)
+    def move8(machine: Execution, next_pc: int, time: int, power: int) -> Step:
+        return lambda: machine.drive(time8_ms(time), powers(power), next_pc)
 
-    def move(m: Execution, after: int) -> Step:
+    def move(machine: Execution, next_pc: int) -> Step:
         def step() -> int:
-            move_powers = popped_powers(m)
-            return m.drive(_duration(m.task.stack.pop()), move_powers, after)
+            move_powers = popped_powers(machine)
+            return machine.drive(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
-    def watch(m: Execution, after: int) -> Step:
+    def watch(machine: Execution, next_pc: int) -> Step:
         def step() -> int:
-            move_powers = popped_powers(m)
-            return m.watch(_duration(m.task.stack.pop()), move_powers, after)
+            move_powers = popped_powers(machine)
+            return machine.watch(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
-    def watch_forever(m: Execution, after: int) -> Step:
-        return lambda: m.watch(FOREVER, popped_powers(m), after)
+    def watch_forever(machine: Execution, next_pc: int) -> Step:
+        return lambda: machine.watch(FOREVER, popped_powers(machine), next_pc)
 
-    def extent_move(m: Execution) -> tuple[int, Powers]:
-        power = _percent(m.task.stack.pop(), 0)
-        return m.robot.go_ms(m.task.stack.pop(), power, left != right), powers(power)
+    def extent_move(machine: Execution) -> tuple[int, Powers]:
+        percent = _percent(machine.task.stack.pop(), 0)
+        return machine.robot.go_ms(machine.task.stack.pop(), percent, left != right), powers(
+            percent
+        )
 
-    def go(m: Execution, after: int) -> Step:
-        return lambda: m.drive(*extent_move(m), after)
+    def go(machine: Execution, next_pc: int) -> Step:
+        return lambda: machine.drive(*extent_move(machine), next_pc)
 
-    def watch_go(m: Execution, after: int) -> Step:
-        return lambda: m.watch(*extent_move(m), after)
+    def watch_go(machine: Execution, next_pc: int) -> Step:
+        return lambda: machine.watch(*extent_move(machine), next_pc)
 
     HANDLERS[f"GO_{direction}"] = go
     HANDLERS[f"WATCH_GO_{direction}"] = watch_go
@@ -84,90 +86,90 @@ def _moves(direction: str, left: int, right: int) -> None:
     HANDLERS[f"WATCH_FOREVER_{direction}"] = watch_forever
 
 
-_moves("F", 1, 1)
-_moves("B", -1, -1)
-_moves("L", -1, 1)
-_moves("R", 1, -1)
+_add_move_handlers("F", 1, 1)
+_add_move_handlers("B", -1, -1)
+_add_move_handlers("L", -1, 1)
+_add_move_handlers("R", 1, -1)
 
 
 @handles("WAIT")
-def _wait(m: Execution, after: int) -> Step:
-    return lambda: m.wait(_duration(m.task.stack.pop()), PAUSE, after)
+def _wait(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.wait(_duration(machine.task.stack.pop()), PAUSE, next_pc)
 
 
 @handles("WAIT8")
-def _wait8(m: Execution, after: int, time: int) -> Step:
-    return lambda: m.wait(time8_ms(time), PAUSE, after)
+def _wait8(machine: Execution, next_pc: int, time: int) -> Step:
+    return lambda: machine.wait(time8_ms(time), PAUSE, next_pc)
 
 
 @handles("WATCH_WAIT")
-def _watch_wait(m: Execution, after: int) -> Step:
-    return lambda: m.watch(_duration(m.task.stack.pop()), None, after)
+def _watch_wait(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.watch(_duration(machine.task.stack.pop()), None, next_pc)
 
 
 @handles("WATCH_FOREVER_WAIT")
-def _watch_forever_wait(m: Execution, after: int) -> Step:
-    return lambda: m.watch(FOREVER, None, after)
+def _watch_forever_wait(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.watch(FOREVER, None, next_pc)
 
 
 @handles("UNTIL")
-def _until(m: Execution, after: int) -> Step:
-    return lambda: m.until(bool(m.task.stack.pop()), after)
+def _until(machine: Execution, next_pc: int) -> Step:
+    return lambda: machine.until(bool(machine.task.stack.pop()), next_pc)
 
 
 def _until_comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int, n: int) -> Step:
-        return lambda: m.until(compare(m.task.stack.pop(), n * ONE), after)
+    def handler(machine: Execution, next_pc: int, number: int) -> Step:
+        return lambda: machine.until(compare(machine.task.stack.pop(), number * ONE), next_pc)
 
     return handler
 
 
-for _name, _compare in COMPARE.items():
+for _name, _compare in COMPARISONS.items():
     HANDLERS[f"UNTIL8_{_name}"] = HANDLERS[f"UNTIL16_{_name}"] = _until_comparison_handler(_compare)
 
 
 @handles("STOP")
-def _stop(m: Execution, after: int) -> Step:
+def _stop(machine: Execution, next_pc: int) -> Step:
     def step() -> int:
-        m.stop_motors()
-        return after
+        machine.stop_motors()
+        return next_pc
 
     return step
 
 
 @handles("MOTORS")
-def _motors(m: Execution, after: int) -> Step:
+def _motors(machine: Execution, next_pc: int) -> Step:
     def step() -> int:
-        right, left = m.task.stack.pop(), m.task.stack.pop()
-        m.motors(_percent(left, -100), _percent(right, -100))
-        return after
+        right, left = machine.task.stack.pop(), machine.task.stack.pop()
+        machine.motors(_percent(left, -100), _percent(right, -100))
+        return next_pc
 
     return step
 
 
 @handles("MOTORS8")
-def _motors8(m: Execution, after: int, left: int, right: int) -> Step:
+def _motors8(machine: Execution, next_pc: int, left: int, right: int) -> Step:
     def step() -> int:
-        m.motors(left, right)
-        return after
+        machine.motors(left, right)
+        return next_pc
 
     return step
 
 
 @handles("BEEP")
-def _beep(m: Execution, after: int) -> Step:
+def _beep(machine: Execution, next_pc: int) -> Step:
     def step() -> int:
-        hertz, time = m.task.stack.pop(), m.task.stack.pop()
-        return _sound(m, after, whole(hertz), _duration(time))
+        hertz, time = machine.task.stack.pop(), machine.task.stack.pop()
+        return _sound(machine, next_pc, whole(hertz), _duration(time))
 
     return step
 
 
 @handles("BEEP8")
-def _beep8(m: Execution, after: int, time: int, hertz: int) -> Step:
-    return lambda: _sound(m, after, hertz, time8_ms(time))
+def _beep8(machine: Execution, next_pc: int, time: int, hertz: int) -> Step:
+    return lambda: _sound(machine, next_pc, hertz, time8_ms(time))
 
 
-def _sound(m: Execution, after: int, hertz: int, duration_ms: int) -> int:
-    m.robot.beep(clamp(hertz, 31, 20_000), duration_ms)
-    return m.wait(duration_ms, PAUSE, after)
+def _sound(machine: Execution, next_pc: int, hertz: int, duration_ms: int) -> int:
+    machine.robot.beep(clamp(hertz, 31, 20_000), duration_ms)
+    return machine.wait(duration_ms, PAUSE, next_pc)

@@ -5,37 +5,37 @@ from __future__ import annotations
 from tiniscript.base.fixed_point import ONE, whole
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import Execution
-from tiniscript.vm.values import COMPARE, Compare
+from tiniscript.vm.values import COMPARISONS, Compare
 
 
 @handles("IF", "IF_FAR")
-def _if(m: Execution, after: int, to: int) -> Step:
-    pop = m.task.stack.pop
-    return lambda: after if pop() else to
+def _if(machine: Execution, next_pc: int, target: int) -> Step:
+    pop = machine.task.stack.pop
+    return lambda: next_pc if pop() else target
 
 
 @handles("IF_NOT", "IF_NOT_FAR")
-def _if_not(m: Execution, after: int, to: int) -> Step:
-    return _if(m, to, after)
+def _if_not(machine: Execution, next_pc: int, target: int) -> Step:
+    return _if(machine, target, next_pc)
 
 
 def _if_comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int, n: int, to: int) -> Step:
-        pop, constant = m.task.stack.pop, n * ONE
-        return lambda: after if compare(pop(), constant) else to
+    def handler(machine: Execution, next_pc: int, number: int, target: int) -> Step:
+        pop, constant = machine.task.stack.pop, number * ONE
+        return lambda: next_pc if compare(pop(), constant) else target
 
     return handler
 
 
 def _if_var_comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int, v: int, n: int, to: int) -> Step:
-        variables, constant = m.task.variables, n * ONE
-        return lambda: after if compare(variables[v], constant) else to
+    def handler(machine: Execution, next_pc: int, variable: int, number: int, target: int) -> Step:
+        variables, constant = machine.task.variables, number * ONE
+        return lambda: next_pc if compare(variables[variable], constant) else target
 
     return handler
 
 
-for _name, _compare in COMPARE.items():
+for _name, _compare in COMPARISONS.items():
     HANDLERS[f"IF8_{_name}"] = HANDLERS[f"IF16_{_name}"] = _if_comparison_handler(_compare)
     HANDLERS[f"IF_VAR8_{_name}"] = HANDLERS[f"IF_VAR16_{_name}"] = _if_var_comparison_handler(
         _compare
@@ -43,81 +43,81 @@ for _name, _compare in COMPARE.items():
 
 
 @handles("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
-def go(m: Execution, after: int, to: int) -> Step:
-    return lambda: to
+def jump(machine: Execution, next_pc: int, target: int) -> Step:
+    return lambda: target
 
 
 @handles("AGAIN", "AGAIN_FAR")
-def _again(m: Execution, after: int, to: int) -> Step:
-    return m.go_back(to)
+def _again(machine: Execution, next_pc: int, target: int) -> Step:
+    return machine.go_back(target)
 
 
 @handles("FOREVER", "WHILE", "WHILE_FAR")
-def _mark(m: Execution, after: int, to: int = 0) -> Step:
-    return lambda: after
+def _do_nothing(machine: Execution, next_pc: int, target: int = 0) -> Step:
+    return lambda: next_pc
 
 
 @handles("LOOP8")
-def _loop8(m: Execution, after: int, n: int) -> Step:
+def _loop8(machine: Execution, next_pc: int, times: int) -> Step:
     def step() -> int:
-        m.task.counters.append(n)
-        return after
+        machine.task.counters.append(times)
+        return next_pc
 
     return step
 
 
 @handles("LOOP", "LOOP_FAR")
-def _loop(m: Execution, after: int, to: int) -> Step:
+def _loop(machine: Execution, next_pc: int, target: int) -> Step:
     def step() -> int:
-        n = whole(m.task.stack.pop())
-        if n < 1:
-            return to
-        m.task.counters.append(n)
-        return after
+        times = whole(machine.task.stack.pop())
+        if times < 1:
+            return target
+        machine.task.counters.append(times)
+        return next_pc
 
     return step
 
 
 @handles("NEXT", "NEXT_FAR")
-def _next(m: Execution, after: int, to: int) -> Step:
-    counters, back = m.task.counters, m.go_back(to)
+def _next(machine: Execution, next_pc: int, target: int) -> Step:
+    counters, go_back = machine.task.counters, machine.go_back(target)
 
     def step() -> int:
-        left = counters[-1] - 1
-        if left:
-            counters[-1] = left
-            return back()
+        times_left = counters[-1] - 1
+        if times_left:
+            counters[-1] = times_left
+            return go_back()
         counters.pop()
-        return after
+        return next_pc
 
     return step
 
 
 @handles("BREAK_LOOP", "BREAK_LOOP_FAR")
-def _break_loop(m: Execution, after: int, to: int) -> Step:
+def _break_loop(machine: Execution, next_pc: int, target: int) -> Step:
     def step() -> int:
-        m.task.counters.pop()
-        return to
+        machine.task.counters.pop()
+        return target
 
     return step
 
 
 @handles("CALL", "CALL_FAR")
-def _call(m: Execution, after: int, to: int) -> Step:
-    calls = m.task.calls
+def _call(machine: Execution, next_pc: int, target: int) -> Step:
+    calls = machine.task.calls
 
     def step() -> int:
-        calls.append(after)
-        return to
+        calls.append(next_pc)
+        return target
 
     return step
 
 
 @handles("RETURN")
-def _return(m: Execution, after: int) -> Step:
-    return m.task.calls.pop
+def _return(machine: Execution, next_pc: int) -> Step:
+    return machine.task.calls.pop
 
 
 @handles("END")
-def _end(m: Execution, after: int) -> Step:
-    return m.end
+def _end(machine: Execution, next_pc: int) -> Step:
+    return machine.end

@@ -17,9 +17,9 @@ STAY = -(2**31)  # stop for now, and run this instruction again
 HANDLERS: dict[str, Handler] = {}
 
 
-def mark_stop(at: int) -> int:
-    """Mark an offset: the machine stops for now and goes on at `at`. Applied twice it is undone."""
-    return ~at
+def mark_stop(pc: int) -> int:
+    """Mark an offset: the machine stops for now and goes on at `pc`. Applied twice it is undone."""
+    return ~pc
 
 
 def handles(*names: str) -> Callable[[Handler], Handler]:

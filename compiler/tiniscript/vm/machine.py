@@ -29,23 +29,23 @@ _ops_without_handler = [
 assert not _ops_without_handler, f"no handler for {_ops_without_handler}"
 
 
-def bind_steps(m: Execution, code: bytes) -> list[Step]:
+def bind_steps(machine: Execution, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
     After the code stands END.
     """
-    steps = [HANDLERS["END"](m, 0)] * (len(code) + 1)
+    steps = [HANDLERS["END"](machine, 0)] * (len(code) + 1)
     offset = 0
     while offset < len(code):
-        op, after = instruction_at(code, offset)
+        op, next_pc = instruction_at(code, offset)
         operands = read_operands(op, code, offset) if op.implied is None else (op.implied.value,)
-        kind = op.operands[-1].kind.name if op.operands else ""
-        if kind.startswith("fwd"):
-            operands = (*operands[:-1], after + operands[-1])
-        elif kind.startswith("back"):
-            operands = (*operands[:-1], after - operands[-1])
-        steps[offset] = HANDLERS[op.name](m, after, *operands)
-        offset = after
+        operand_kind = op.operands[-1].kind.name if op.operands else ""
+        if operand_kind.startswith("fwd"):
+            operands = (*operands[:-1], next_pc + operands[-1])
+        elif operand_kind.startswith("back"):
+            operands = (*operands[:-1], next_pc - operands[-1])
+        steps[offset] = HANDLERS[op.name](machine, next_pc, *operands)
+        offset = next_pc
     return steps
 
 
@@ -85,9 +85,9 @@ class Machine(Execution):
         self.status = RUNNING
         steps = self._steps
         at, pc = self.at, task.pc
-        left = budget
+        steps_left = budget
         try:
-            for left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for after the loop
+            for steps_left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for after the loop
                 at = pc
                 pc = steps[at]()
                 if pc < 0:
@@ -98,5 +98,5 @@ class Machine(Execution):
             self.status, self.fault = FAULT, fault.name
             pc = instruction_at(self._code, at)[1]
         self.at, task.pc = at, pc
-        self.steps += budget - left
+        self.steps += budget - steps_left
         return self.status

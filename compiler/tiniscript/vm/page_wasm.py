@@ -21,10 +21,10 @@ class Instance:
         module = _load_module(path)
         self._proxies = []
         table: dict[str, dict[str, Any]] = {}
-        for imported in js.WebAssembly.Module.imports(module):
-            proxy = create_proxy(imports[imported.name])
+        for descriptor in js.WebAssembly.Module.imports(module):
+            proxy = create_proxy(imports[descriptor.name])
             self._proxies.append(proxy)
-            table.setdefault(imported.module, {})[imported.name] = proxy
+            table.setdefault(descriptor.module, {})[descriptor.name] = proxy
         import_object = to_js(table, dict_converter=js.Object.fromEntries)
         exports = js.WebAssembly.Instance.new(module, import_object).exports
         names = [export.name for export in js.WebAssembly.Module.exports(module)]

@@ -42,7 +42,7 @@ MachineOf = Callable[[bytes, Robot, int, int], AnyMachine]  # code, robot, senso
 def run(
     code: bytes,
     kit: Kit,
-    senses: Callable[[int], int],
+    read_sensor: Callable[[int], int],
     max_ms: int = 60_000,
     max_steps: int = MAX_STEPS,
     seed: int = 1,
@@ -53,7 +53,7 @@ def run(
     `max_ms` cuts a wait that would pass it. `max_steps` limits the instructions that run without
     time passing: it ends loops that take no time.
     """
-    robot = TracedRobot(kit, senses)
+    robot = TracedRobot(kit, read_sensor)
     machine = machine_of(code, robot, len(kit.readings), seed)
     steps_before = 0  # instructions that ran before the clock last moved
     while True:

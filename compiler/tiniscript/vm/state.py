@@ -61,9 +61,9 @@ class Robot(Protocol):
 class Task:
     """The whole state of a running program: one small record."""
 
-    __slots__ = ("calls", "check", "clock_ms", "counters", "is_watching", "move_ms", "pc",
-                 "powers", "random", "readings", "stack", "started_ms", "variables", "wait",
-                 "wake_ms")  # fmt: skip
+    __slots__ = ("calls", "check_pc", "clock_ms", "counters", "is_watching", "move_ms", "pc",
+                 "powers", "random_state", "readings", "stack", "started_ms", "variables",
+                 "wait", "wake_ms")  # fmt: skip
 
     def __init__(self, seed: int, sensors: int, now_ms: int) -> None:
         self.pc = 0
@@ -72,7 +72,7 @@ class Task:
         self.calls: list[int] = []
         self.variables = [0] * VARIABLES
         self.readings = [0] * sensors
-        self.random = seed
+        self.random_state = seed
         self.started_ms = now_ms
         self.clock_ms = now_ms  # the program's own clock: where its last wait ended
         self.wait = NOTHING
@@ -80,7 +80,7 @@ class Task:
         # the move that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last from the clock on, or FOREVER
-        self.check = 0  # where its check begins
+        self.check_pc = 0  # where its check begins
         self.is_watching = False  # it has begun
 
 
@@ -106,29 +106,29 @@ class Execution:
     def stop_motors(self) -> None:
         self.robot.motors(0, 0)
 
-    def drive(self, move_ms: int, powers: Powers, after: int) -> int:
+    def drive(self, move_ms: int, powers: Powers, next_pc: int) -> int:
         """Begin a move, and return where the program goes on, like a step."""
         self.robot.motors(*powers)
-        return self.wait(move_ms, MOVE, after)
+        return self.wait(move_ms, MOVE, next_pc)
 
-    def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
-        """Keep the move or the wait that an UNTIL watches; its check begins at `after`."""
+    def watch(self, move_ms: int, powers: Powers | None, next_pc: int) -> int:
+        """Keep the move or the wait that an UNTIL watches; its check begins at `next_pc`."""
         task = self.task
         task.move_ms, task.powers, task.is_watching = move_ms, powers, False
-        task.check = after
-        return after
+        task.check_pc = next_pc
+        return next_pc
 
-    def show(self, value: int, is_yes_no: bool, after: int) -> int:
+    def show(self, value: int, is_yes_no: bool, next_pc: int) -> int:
         """Send the value that is on the stack."""
-        self.shown_at = after - SHOW_BYTES
+        self.shown_at = next_pc - SHOW_BYTES
         if not self.robot.show(value, is_yes_no):
             return STAY
         self.task.stack.pop()
-        return after
+        return next_pc
 
-    def go_back(self, to: int) -> Step:
+    def go_back(self, target: int) -> Step:
         """Return the step that goes back to the start of a loop."""
-        return lambda: to
+        return lambda: target
 
     def end(self) -> int:
         """Finish the program."""
@@ -136,7 +136,7 @@ class Execution:
         self.status = DONE
         return STAY
 
-    def wait(self, duration_ms: int, what: str, after: int) -> int:
+    def wait(self, duration_ms: int, wait_kind: str, next_pc: int) -> int:
         """Begin a wait at the end of the previous one, or now if that is too long ago.
 
         Like a step, this and `until` return where the program goes on.
@@ -145,24 +145,24 @@ class Execution:
         self.begin()
         task.clock_ms += duration_ms
         task.wake_ms = task.clock_ms
-        task.wait = what
+        task.wait = wait_kind
         self.status = WAITING
-        return mark_stop(after)
+        return mark_stop(next_pc)
 
     def begin(self) -> None:
         """Set the program's clock to the start time of the next wait or move."""
         if (self.now_ms - self.task.clock_ms) % CLOCK_MS > LATE_MS:
             self.task.clock_ms = self.now_ms
 
-    def until(self, stop: bool, after: int) -> int:
+    def until(self, is_met: bool, next_pc: int) -> int:
         """End the watched move or go on with it, and check again."""
         task = self.task
-        if stop:
+        if is_met:
             if task.is_watching:
                 task.clock_ms = self.now_ms
                 if task.powers is not None:
                     self.robot.motors(0, 0)
-            return after
+            return next_pc
         if not task.is_watching:
             task.is_watching = True
             self.begin()
@@ -178,4 +178,4 @@ class Execution:
         task.wake_ms = task.clock_ms
         task.wait = MOVE if is_last and task.powers is not None else PAUSE
         self.status = WAITING
-        return mark_stop(after if is_last else task.check)
+        return mark_stop(next_pc if is_last else task.check_pc)

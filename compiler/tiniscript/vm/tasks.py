@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import Fault
 from tiniscript.base.limits import CHECK_MS
-from tiniscript.vm.control import go
+from tiniscript.vm.control import jump
 from tiniscript.vm.handlers import STAY, Step, handles, mark_stop
 from tiniscript.vm.machine import Machine, instruction_at
 from tiniscript.vm.state import (
@@ -40,13 +40,13 @@ class TaskRecord:
     since a higher task has taken them.
     """
 
-    __slots__ = ("after", "calls", "check", "clock_ms", "counters", "drives", "has_begun",
-                 "has_ended", "has_set", "has_waited", "is_blocked", "is_moving", "is_when",
-                 "keeps", "move_ms", "pc", "powers", "rank", "set_to", "start", "to_its_end",
-                 "unsent")  # fmt: skip
+    __slots__ = ("calls", "check_pc", "clock_ms", "counters", "drives", "ends_at_clock",
+                 "has_begun", "has_ended", "has_own_powers", "has_waited", "is_blocked",
+                 "is_moving", "is_when", "keeps_motors", "move_ms", "own_powers", "pc",
+                 "pc_after_move", "powers", "rank", "start_pc", "unsent_value")  # fmt: skip
 
     def __init__(self, pc: int, is_when: bool, rank: int, now_ms: int) -> None:
-        self.start = pc  # where it begins; a WHEN with its check
+        self.start_pc = pc  # where it begins; a WHEN with its check
         self.pc = pc  # where its next turn begins
         self.is_when = is_when
         self.rank = rank  # 0 is the highest
@@ -55,31 +55,31 @@ class TaskRecord:
         self.clock_ms = now_ms  # its own clock; its next turn is due then
         self.has_ended = False
         self.has_waited = False  # since it last went back to the start of a loop
-        self.unsent: tuple[int, bool] | None = None  # the value of a SHOW that found no room
+        self.unsent_value: tuple[int, bool] | None = None  # the value of a SHOW that found no room
         # its move, or the wait that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last from its clock on, or FOREVER
         self.has_begun = True  # it drives, or waits, or is over
-        self.check = 0  # where that of its UNTIL begins, or where it goes on after it
-        self.after = 0  # after the move
+        self.check_pc = 0  # where that of its UNTIL begins, or where it goes on after it
+        self.pc_after_move = 0  # after the move
         self.is_moving = False  # its move drives or is blocked
         self.is_blocked = False
         self.drives = False
-        self.to_its_end = False  # the clock is the end of the move
+        self.ends_at_clock = False  # the clock is the end of the move
         # what it has of the motors beside its move
-        self.set_to = MOTORS_OFF  # by its M,
-        self.has_set = False  # which is in force
-        self.keeps = False  # a WHEN has wanted the motors, and has not found FALSE since
+        self.own_powers = MOTORS_OFF  # by its M,
+        self.has_own_powers = False  # which is in force
+        self.keeps_motors = False  # a WHEN has wanted the motors, and has not found FALSE since
 
     @property
     def wants_motors(self) -> bool:
-        return self.is_moving or self.has_set or self.keeps
+        return self.is_moving or self.has_own_powers or self.keeps_motors
 
     def leave_move(self) -> None:
         """Its move is over, and so is its M. It goes on after the move."""
-        self.is_moving = self.is_blocked = self.drives = self.to_its_end = False
+        self.is_moving = self.is_blocked = self.drives = self.ends_at_clock = False
         self.forget_set()
-        self.pc = self.after
+        self.pc = self.pc_after_move
 
     def stand_still(self, now_ms: int) -> None:
         """Its move that drives loses the motors."""
@@ -90,11 +90,11 @@ class TaskRecord:
                 return
             self.move_ms = left_ms
         self.is_blocked = True
-        self.drives = self.has_begun = self.to_its_end = False
-        self.pc = self.check
+        self.drives = self.has_begun = self.ends_at_clock = False
+        self.pc = self.check_pc
 
     def forget_set(self) -> None:
-        self.set_to, self.has_set = MOTORS_OFF, False
+        self.own_powers, self.has_own_powers = MOTORS_OFF, False
 
 
 class TaskMachine(Machine):
@@ -108,9 +108,9 @@ class TaskMachine(Machine):
         starts = [*sorted(find_tasks(code), key=lambda task: not task.is_when), Start(0, False)]
         # in the order of rank, the main task last
         self.tasks = [TaskRecord(*start, rank, now_ms) for rank, start in enumerate(starts)]
-        self.me = self.tasks[-1]  # whose turn it is, or was last
-        self.in_turn = True  # a turn has begun and is not over
-        self.is_first = True  # it is the first one of the main task, before all others
+        self.current_task = self.tasks[-1]  # whose turn it is, or was last
+        self.is_in_turn = True  # a turn has begun and is not over
+        self.is_first_turn = True  # it is the first one of the main task, before all others
         self.is_first_round = True  # the main task has had its turn in it
         self.next_rank = 0  # in this round
         self.holder: TaskRecord | None = None  # who has the motors
@@ -121,8 +121,8 @@ class TaskMachine(Machine):
     @property
     def wake_ms(self) -> int:
         """Return when the next task is due: it may be at once, or was."""
-        waiting = (task.clock_ms for task in self.tasks if self._waits_for_clock(task))
-        return min(waiting, default=self.now_ms + NEVER_MS)
+        due_times_ms = (task.clock_ms for task in self.tasks if self._waits_for_clock(task))
+        return min(due_times_ms, default=self.now_ms + NEVER_MS)
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions of one round of turns; return the status."""
@@ -130,34 +130,34 @@ class TaskMachine(Machine):
             return self.status
         self.now_ms = now_ms
         self.status = RUNNING
-        at, left = self.at, budget
+        at, steps_left = self.at, budget
         try:
-            while left and self._finds_turn():
-                run, pc = self._steps, self.me.pc
-                while left:
-                    left -= 1
+            while steps_left and self._finds_turn():
+                steps, pc = self._steps, self.current_task.pc
+                while steps_left:
+                    steps_left -= 1
                     at = pc
-                    pc = run[at]()
+                    pc = steps[at]()
                     if pc < 0:
                         break
-                self.me.pc = at if pc == STAY else mark_stop(pc) if pc < 0 else pc
+                self.current_task.pc = at if pc == STAY else mark_stop(pc) if pc < 0 else pc
                 if self.status == DONE:
                     break
-                if pc < 0 and not (pc == STAY and self.is_first):
+                if pc < 0 and not (pc == STAY and self.is_first_turn):
                     self._end_turn()
                 elif pc < 0:  # before all others it waits for a reading, too
                     break
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
-            self.me.pc = instruction_at(self._code, at)[1]
+            self.current_task.pc = instruction_at(self._code, at)[1]
         self.at = at
-        self.steps += budget - left
+        self.steps += budget - steps_left
         return self.status
 
     def _finds_turn(self) -> bool:
         """Go on with a turn, or begin the next one of the round; FALSE: the round is over."""
-        while not self.in_turn:
+        while not self.is_in_turn:
             if self.next_rank == len(self.tasks):
                 self.next_rank = 0
                 self.is_first_round = False
@@ -176,189 +176,190 @@ class TaskMachine(Machine):
         return self._waits_for_clock(task) and task.clock_ms <= self.now_ms
 
     def _begin_turn(self, task: TaskRecord) -> None:
-        self.me, self.in_turn = task, True
+        self.current_task, self.is_in_turn = task, True
         self.task.counters[:], self.task.calls[:] = task.counters, task.calls
-        if task.unsent is not None:
+        if task.unsent_value is not None:
             self.shown_at = task.pc - SHOW_BYTES
-            if not self.robot.show(*task.unsent):
+            if not self.robot.show(*task.unsent_value):
                 self._end_turn()
                 return
-            task.unsent = None
+            task.unsent_value = None
         if task.is_blocked:
             task.is_blocked = False
             task.clock_ms = self.now_ms
-            if task.check == task.after:
+            if task.check_pc == task.pc_after_move:
                 self._go_to(self._begin_move())
-        elif task.to_its_end:
+        elif task.ends_at_clock:
             self._end_move()
         elif not task.has_begun and self._blocks():
-            self._go_to(mark_stop(task.check))  # they have been taken since its check began
+            self._go_to(mark_stop(task.check_pc))  # they have been taken since its check began
 
     def _go_to(self, pc: int) -> None:
         """Go on where a step says."""
-        self.me.pc = mark_stop(pc) if pc < 0 else pc
+        self.current_task.pc = mark_stop(pc) if pc < 0 else pc
         if pc < 0:
             self._end_turn()
 
     def _end_turn(self) -> None:
-        me, self.in_turn = self.me, False
-        me.counters[:], me.calls[:] = self.task.counters, self.task.calls
-        if self.is_first:
-            self.is_first = False
+        current_task, self.is_in_turn = self.current_task, False
+        current_task.counters[:] = self.task.counters
+        current_task.calls[:] = self.task.calls
+        if self.is_first_turn:
+            self.is_first_turn = False
             for task in self.tasks[:-1]:
                 task.clock_ms = self.now_ms
         self._pass_on()
 
     def end(self) -> int:
         """Finish this task, and the program with the last one."""
-        return super().end() if self._end_task() else mark_stop(self.me.pc)
+        return super().end() if self._end_task() else mark_stop(self.current_task.pc)
 
     def _end_task(self) -> bool:
         """Finish this task; return whether it was the last one."""
-        self.me.has_ended = True
-        self.me.forget_set()
+        self.current_task.has_ended = True
+        self.current_task.forget_set()
         return all(task.has_ended for task in self.tasks)
 
     # -- time ---------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        if self.now_ms - self.me.clock_ms > LATE_MS:
-            self.me.clock_ms = self.now_ms
+        if self.now_ms - self.current_task.clock_ms > LATE_MS:
+            self.current_task.clock_ms = self.now_ms
 
-    def wait(self, duration_ms: int, what: str, after: int) -> int:
+    def wait(self, duration_ms: int, wait_kind: str, next_pc: int) -> int:
         self.begin()
-        self.me.clock_ms += duration_ms
+        self.current_task.clock_ms += duration_ms
         if not duration_ms:
-            return after
-        self.me.has_waited = True
-        return mark_stop(after)
+            return next_pc
+        self.current_task.has_waited = True
+        return mark_stop(next_pc)
 
-    def go_back(self, to: int) -> Step:
+    def go_back(self, target: int) -> Step:
         def step() -> int:
-            me = self.me
-            if not me.has_waited:
+            task = self.current_task
+            if not task.has_waited:
                 self.begin()
-                me.clock_ms += 1
-                return mark_stop(to)
-            me.has_waited = False
-            return to
+                task.clock_ms += 1
+                return mark_stop(target)
+            task.has_waited = False
+            return target
 
         return step
 
-    def look(self, is_true: bool, after: int) -> int:
+    def look(self, is_true: bool, next_pc: int) -> int:
         """Go on in a WHEN, or look once more."""
         if is_true:
-            return after
-        self.me.keeps = False
-        self.me.forget_set()
+            return next_pc
+        self.current_task.keeps_motors = False
+        self.current_task.forget_set()
         return self.look_again()
 
     def look_again(self) -> int:
-        return self.wait(CHECK_MS, PAUSE, self.me.start)
+        return self.wait(CHECK_MS, PAUSE, self.current_task.start_pc)
 
-    def show(self, value: int, is_yes_no: bool, after: int) -> int:
-        if self.is_first:  # before all others it waits for room
-            return super().show(value, is_yes_no, after)
+    def show(self, value: int, is_yes_no: bool, next_pc: int) -> int:
+        if self.is_first_turn:  # before all others it waits for room
+            return super().show(value, is_yes_no, next_pc)
         self.task.stack.pop()
-        self.shown_at = after - SHOW_BYTES
+        self.shown_at = next_pc - SHOW_BYTES
         if self.robot.show(value, is_yes_no):
-            return after
-        self.me.unsent = value, is_yes_no
-        return mark_stop(after)
+            return next_pc
+        self.current_task.unsent_value = value, is_yes_no
+        return mark_stop(next_pc)
 
     # -- moves --------------------------------------------------------------------------------
 
-    def drive(self, move_ms: int, powers: Powers, after: int) -> int:
-        self._keep_move(move_ms, powers, after)
-        self.me.after = after
-        return mark_stop(after) if self._blocks() else self._begin_move()
+    def drive(self, move_ms: int, powers: Powers, next_pc: int) -> int:
+        self._keep_move(move_ms, powers, next_pc)
+        self.current_task.pc_after_move = next_pc
+        return mark_stop(next_pc) if self._blocks() else self._begin_move()
 
-    def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
-        self._keep_move(move_ms, powers, after)
-        self.me.after = -1  # after its UNTIL
-        return mark_stop(after) if self._blocks() else after
+    def watch(self, move_ms: int, powers: Powers | None, next_pc: int) -> int:
+        self._keep_move(move_ms, powers, next_pc)
+        self.current_task.pc_after_move = -1  # after its UNTIL
+        return mark_stop(next_pc) if self._blocks() else next_pc
 
-    def _keep_move(self, move_ms: int, powers: Powers | None, check: int) -> None:
-        me = self.me
-        me.move_ms, me.powers, me.check, me.has_begun = move_ms, powers, check, False
+    def _keep_move(self, move_ms: int, powers: Powers | None, check_pc: int) -> None:
+        task = self.current_task
+        task.move_ms, task.powers, task.check_pc, task.has_begun = move_ms, powers, check_pc, False
 
-    def until(self, stop: bool, after: int) -> int:
-        me = self.me
-        me.after = after
-        if stop:
-            if me.has_begun:
-                me.clock_ms = self.now_ms
-            if me.drives:
+    def until(self, is_met: bool, next_pc: int) -> int:
+        task = self.current_task
+        task.pc_after_move = next_pc
+        if is_met:
+            if task.has_begun:
+                task.clock_ms = self.now_ms
+            if task.drives:
                 self._end_move()
-            elif me.is_moving:  # it waited for the motors, or stood still
-                me.leave_move()
-            me.has_begun = True
-            return after
-        if not me.has_begun:
+            elif task.is_moving:  # it waited for the motors, or stood still
+                task.leave_move()
+            task.has_begun = True
+            return next_pc
+        if not task.has_begun:
             self._begin_watched()
-        late_ms = (self.now_ms - me.clock_ms) % CLOCK_MS
+        late_ms = (self.now_ms - task.clock_ms) % CLOCK_MS
         next_ms = (late_ms // CHECK_MS + 1) * CHECK_MS
-        if me.move_ms == FOREVER or next_ms < me.move_ms:
-            return self._drive_on(me.check, next_ms, False)
-        return self._drive_on(after, me.move_ms, True)
+        if task.move_ms == FOREVER or next_ms < task.move_ms:
+            return self._drive_on(task.check_pc, next_ms, False)
+        return self._drive_on(next_pc, task.move_ms, True)
 
     def _begin_move(self) -> int:
         """Begin a move that no UNTIL watches."""
         self._begin_watched()
-        return self._drive_on(self.me.after, self.me.move_ms, True)
+        return self._drive_on(self.current_task.pc_after_move, self.current_task.move_ms, True)
 
     def _begin_watched(self) -> None:
-        me = self.me
-        if me.powers is not None:
+        task = self.current_task
+        if task.powers is not None:
             self._take_motors()
-            me.forget_set()
-            me.is_moving = me.drives = True
-            self._set_motors(me.powers)
-        me.has_begun = True
+            task.forget_set()
+            task.is_moving = task.drives = True
+            self._set_motors(task.powers)
+        task.has_begun = True
         self.begin()
 
     def _drive_on(self, pc: int, due_ms: int, is_last: bool) -> int:
         """Wait so long, and go on at `pc`; `is_last`: that is the end of the move."""
-        me = self.me
-        me.to_its_end = is_last and me.drives
+        task = self.current_task
+        task.ends_at_clock = is_last and task.drives
         if due_ms == 0:
-            if me.drives:
+            if task.drives:
                 self._end_move()
             return pc
-        if me.move_ms != FOREVER:
-            me.move_ms -= due_ms
-        me.clock_ms += due_ms
-        me.has_waited = True
+        if task.move_ms != FOREVER:
+            task.move_ms -= due_ms
+        task.clock_ms += due_ms
+        task.has_waited = True
         return mark_stop(pc)
 
     def _end_move(self) -> None:
-        self.me.leave_move()
+        self.current_task.leave_move()
         self._set_motors(MOTORS_OFF)
 
     def _blocks(self) -> bool:
         """Wait for the motors where its move needs them and a higher task has them."""
-        me = self.me
-        if me.powers is None or not self._is_below():
+        task = self.current_task
+        if task.powers is None or not self._is_below():
             return False
-        me.forget_set()
-        me.is_moving = me.is_blocked = me.has_waited = True
-        me.drives = False
-        me.keeps = me.is_when
+        task.forget_set()
+        task.is_moving = task.is_blocked = task.has_waited = True
+        task.drives = False
+        task.keeps_motors = task.is_when
         return True
 
     # -- the motors ---------------------------------------------------------------------------
 
     def motors(self, left: int, right: int) -> None:
-        me = self.me
-        me.set_to, me.has_set, me.keeps = (left, right), True, me.is_when
+        task = self.current_task
+        task.own_powers, task.has_own_powers, task.keeps_motors = (left, right), True, task.is_when
         if not self._is_below():
             self._take_motors()
-            self._set_motors(me.set_to)
+            self._set_motors(task.own_powers)
 
     def stop_motors(self) -> None:
-        me, holder = self.me, self.holder
-        me.forget_set()
-        me.keeps = me.is_when
+        task, holder = self.current_task, self.holder
+        task.forget_set()
+        task.keeps_motors = task.is_when
         if self._is_below():
             return
         self._set_motors(MOTORS_OFF)
@@ -370,23 +371,23 @@ class TaskMachine(Machine):
 
     def _is_below(self) -> bool:
         """Whether a higher task has the motors."""
-        return self.holder is not None and self.holder.rank < self.me.rank
+        return self.holder is not None and self.holder.rank < self.current_task.rank
 
     def _take_motors(self) -> None:
         """Give the motors to the task whose turn it is; no higher one has them."""
-        if self.holder is not None and self.holder is not self.me and self.holder.drives:
+        if self.holder is not None and self.holder is not self.current_task and self.holder.drives:
             self.holder.stand_still(self.now_ms)
-        self.holder = self.me
-        self.me.keeps = self.me.is_when
+        self.holder = self.current_task
+        self.current_task.keeps_motors = self.current_task.is_when
 
     def _pass_on(self) -> None:
         """After a turn: give the motors to the highest task that wants them, if it is another."""
-        highest = next((task for task in self.tasks if task.wants_motors), None)
-        if highest is not self.holder:
-            self.holder = highest
-            if highest is not None and highest.is_blocked:
-                highest.clock_ms = self.now_ms + self.is_first_round
-            powers = MOTORS_OFF if highest is None else highest.set_to
+        highest_task = next((task for task in self.tasks if task.wants_motors), None)
+        if highest_task is not self.holder:
+            self.holder = highest_task
+            if highest_task is not None and highest_task.is_blocked:
+                highest_task.clock_ms = self.now_ms + self.is_first_round
+            powers = MOTORS_OFF if highest_task is None else highest_task.own_powers
             if powers != self.powers:
                 self._set_motors(powers)
 
@@ -399,8 +400,8 @@ def machine_of(
     code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
 ) -> Machine:
     """Return the machine for `code`, which is verified: one with a scheduler where it has tasks."""
-    machine = TaskMachine if find_tasks(code) else Machine
-    return machine(code, robot, sensors, seed, now_ms)
+    machine_class = TaskMachine if find_tasks(code) else Machine
+    return machine_class(code, robot, sensors, seed, now_ms)
 
 
 # -- the code ------------------------------------------------------------------------------------
@@ -424,19 +425,19 @@ def find_tasks(code: bytes) -> list[Start]:
     return tasks
 
 
-handles("TASK", "WHEN")(go)
+handles("TASK", "WHEN")(jump)
 
 
 @handles("END_TASK")
-def _end_task(m: TaskMachine, after: int) -> Step:
-    return m.end
+def _end_task(machine: TaskMachine, next_pc: int) -> Step:
+    return machine.end
 
 
 @handles("LOOK")
-def _look(m: TaskMachine, after: int) -> Step:
-    return lambda: m.look(bool(m.task.stack.pop()), after)
+def _look(machine: TaskMachine, next_pc: int) -> Step:
+    return lambda: machine.look(bool(machine.task.stack.pop()), next_pc)
 
 
 @handles("END_WHEN")
-def _end_when(m: TaskMachine, after: int) -> Step:
-    return m.look_again
+def _end_when(machine: TaskMachine, next_pc: int) -> Step:
+    return machine.look_again

@@ -18,28 +18,28 @@ Compare = Callable[[int, int], bool]
 
 
 @handles("PUSH_MILLI", "PUSH32")
-def _push(m: Execution, after: int, n: int) -> Step:
-    push = m.task.stack.append
+def _push(machine: Execution, next_pc: int, value: int) -> Step:
+    push = machine.task.stack.append
 
     def step() -> int:
-        push(n)
-        return after
+        push(value)
+        return next_pc
 
     return step
 
 
 @handles("PUSH8", "PUSH16")
-def _push_whole(m: Execution, after: int, n: int) -> Step:
-    return _push(m, after, n * ONE)
+def _push_whole(machine: Execution, next_pc: int, number: int) -> Step:
+    return _push(machine, next_pc, number * ONE)
 
 
 @handles("PUSH_TENTHS")
-def _push_tenths(m: Execution, after: int, n: int) -> Step:
-    return _push(m, after, n * 100)
+def _push_tenths(machine: Execution, next_pc: int, tenths: int) -> Step:
+    return _push(machine, next_pc, tenths * 100)
 
 
-def _push_handler(n: int) -> Handler:
-    return lambda m, after: _push(m, after, n)
+def _push_handler(value: int) -> Handler:
+    return lambda machine, next_pc: _push(machine, next_pc, value)
 
 
 HANDLERS["PUSH_FALSE"] = _push_handler(0)
@@ -48,43 +48,43 @@ for _number in PUSHED_NUMBERS:
     HANDLERS[f"PUSH_NUM_{_number}"] = _push_handler(_number * ONE)
 
 
-def _push_of(m: Execution, after: int, values: list[int], number: int) -> Step:
-    push = m.task.stack.append
+def _push_element(machine: Execution, next_pc: int, values: list[int], number: int) -> Step:
+    push = machine.task.stack.append
 
     def step() -> int:
         push(values[number])
-        return after
+        return next_pc
 
     return step
 
 
 @handles("PUSH_VAR")
-def _push_var(m: Execution, after: int, v: int) -> Step:
-    return _push_of(m, after, m.task.variables, v)
+def _push_var(machine: Execution, next_pc: int, variable: int) -> Step:
+    return _push_element(machine, next_pc, machine.task.variables, variable)
 
 
 @handles("PUSH_SENSOR")
-def _push_sensor(m: Execution, after: int, s: int) -> Step:
-    return _push_of(m, after, m.task.readings, s)
+def _push_sensor(machine: Execution, next_pc: int, sensor: int) -> Step:
+    return _push_element(machine, next_pc, machine.task.readings, sensor)
 
 
 @handles("READ")
-def _read(m: Execution, after: int, s: int) -> Step:
-    readings = m.task.readings
+def _read(machine: Execution, next_pc: int, sensor: int) -> Step:
+    readings = machine.task.readings
 
     def step() -> int:
-        reading = m.robot.read(s)
+        reading = machine.robot.read(sensor)
         if reading is None:
             return STAY
-        readings[s] = reading
-        return after
+        readings[sensor] = reading
+        return next_pc
 
     return step
 
 
 @handles("PUSH_READ")
-def _push_read(m: Execution, after: int, s: int) -> Step:
-    read, push = _read(m, after, s), _push_sensor(m, after, s)
+def _push_read(machine: Execution, next_pc: int, sensor: int) -> Step:
+    read, push = _read(machine, next_pc, sensor), _push_sensor(machine, next_pc, sensor)
 
     def step() -> int:
         return STAY if read() == STAY else push()
@@ -93,37 +93,37 @@ def _push_read(m: Execution, after: int, s: int) -> Step:
 
 
 @handles("TIME")
-def _time(m: Execution, after: int) -> Step:
-    task = m.task
+def _time(machine: Execution, next_pc: int) -> Step:
+    task = machine.task
 
     def step() -> int:
-        task.stack.append(in_range(m.now_ms - task.started_ms))
-        return after
+        task.stack.append(in_range(machine.now_ms - task.started_ms))
+        return next_pc
 
     return step
 
 
 @handles("RANDOM")
-def _random(m: Execution, after: int) -> Step:
-    task = m.task
+def _random(machine: Execution, next_pc: int) -> Step:
+    task = machine.task
 
     def step() -> int:
         high, low = task.stack.pop(), task.stack.pop()
-        task.random = next_random(task.random)
-        task.stack.append(random_between(low, high, task.random))
-        return after
+        task.random_state = next_random(task.random_state)
+        task.stack.append(random_between(low, high, task.random_state))
+        return next_pc
 
     return step
 
 
-def _binary(calculate: Callable[[int, int], int]) -> Handler:
-    def handler(m: Execution, after: int) -> Step:
-        stack = m.task.stack
+def _binary_handler(calculate: Callable[[int, int], int]) -> Handler:
+    def handler(machine: Execution, next_pc: int) -> Step:
+        stack = machine.task.stack
 
         def step() -> int:
             right = stack.pop()
             stack[-1] = calculate(stack[-1], right)
-            return after
+            return next_pc
 
         return step
 
@@ -131,69 +131,69 @@ def _binary(calculate: Callable[[int, int], int]) -> Handler:
 
 
 def _comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int) -> Step:
-        stack = m.task.stack
+    def handler(machine: Execution, next_pc: int) -> Step:
+        stack = machine.task.stack
 
         def step() -> int:
             right = stack.pop()
             stack[-1] = 1 if compare(stack[-1], right) else 0
-            return after
+            return next_pc
 
         return step
 
     return handler
 
 
-def _unary(calculate: Callable[[int], int]) -> Handler:
-    def handler(m: Execution, after: int) -> Step:
-        stack = m.task.stack
+def _unary_handler(calculate: Callable[[int], int]) -> Handler:
+    def handler(machine: Execution, next_pc: int) -> Step:
+        stack = machine.task.stack
 
         def step() -> int:
             stack[-1] = calculate(stack[-1])
-            return after
+            return next_pc
 
         return step
 
     return handler
 
 
-COMPARE: dict[str, Compare] = {name: getattr(operator, name.lower()) for name, _ in COMPARATORS}
-_CALCULATE: dict[str, Callable[[int, int], int]] = {
+COMPARISONS: dict[str, Compare] = {name: getattr(operator, name.lower()) for name, _ in COMPARATORS}
+_CALCULATIONS: dict[str, Callable[[int, int], int]] = {
     "ADD": fixed_point.add, "SUB": fixed_point.subtract, "MUL": fixed_point.multiply,
     "DIV": fixed_point.divide, "MOD": fixed_point.modulo, "MIN": min, "MAX": max,
     "ROUND": fixed_point.round_to,
     "AND": lambda a, b: 1 if a and b else 0,
     "OR": lambda a, b: 1 if a or b else 0,
 }  # fmt: skip
-HANDLERS.update((name, _binary(calculate)) for name, calculate in _CALCULATE.items())
-HANDLERS.update((name, _comparison_handler(compare)) for name, compare in COMPARE.items())
-HANDLERS["NEG"] = _unary(fixed_point.negate)
-HANDLERS["ABS"] = _unary(fixed_point.absolute)
-HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)
+HANDLERS.update((name, _binary_handler(calculate)) for name, calculate in _CALCULATIONS.items())
+HANDLERS.update((name, _comparison_handler(compare)) for name, compare in COMPARISONS.items())
+HANDLERS["NEG"] = _unary_handler(fixed_point.negate)
+HANDLERS["ABS"] = _unary_handler(fixed_point.absolute)
+HANDLERS["NOT"] = _unary_handler(lambda a: 0 if a else 1)
 
 
 @handles("AND_THEN", "AND_THEN_FAR")
-def _and_then(m: Execution, after: int, to: int) -> Step:
-    stack = m.task.stack
+def _and_then(machine: Execution, next_pc: int, target: int) -> Step:
+    stack = machine.task.stack
 
     def step() -> int:
         if not stack[-1]:
-            return to
+            return target
         stack.pop()
-        return after
+        return next_pc
 
     return step
 
 
 @handles("OR_ELSE", "OR_ELSE_FAR")
-def _or_else(m: Execution, after: int, to: int) -> Step:
-    stack = m.task.stack
+def _or_else(machine: Execution, next_pc: int, target: int) -> Step:
+    stack = machine.task.stack
 
     def step() -> int:
         if stack[-1]:
-            return to
+            return target
         stack.pop()
-        return after
+        return next_pc
 
     return step
 
@@ -202,54 +202,54 @@ def _or_else(m: Execution, after: int, to: int) -> Step:
 
 
 @handles("SET_VAR")
-def _set_var(m: Execution, after: int, v: int) -> Step:
-    variables, pop = m.task.variables, m.task.stack.pop
+def _set_var(machine: Execution, next_pc: int, variable: int) -> Step:
+    variables, pop = machine.task.variables, machine.task.stack.pop
 
     def step() -> int:
-        variables[v] = pop()
-        return after
+        variables[variable] = pop()
+        return next_pc
 
     return step
 
 
 @handles("SET_VAR8")
-def _set_var8(m: Execution, after: int, v: int, n: int) -> Step:
-    variables, value = m.task.variables, n * ONE
+def _set_var8(machine: Execution, next_pc: int, variable: int, number: int) -> Step:
+    variables, value = machine.task.variables, number * ONE
 
     def step() -> int:
-        variables[v] = value
-        return after
+        variables[variable] = value
+        return next_pc
 
     return step
 
 
 @handles("ADD_VAR8")
-def _add_var8(m: Execution, after: int, v: int, n: int) -> Step:
-    variables, value = m.task.variables, n * ONE
+def _add_var8(machine: Execution, next_pc: int, variable: int, number: int) -> Step:
+    variables, value = machine.task.variables, number * ONE
 
     def step() -> int:
-        variables[v] = in_range(variables[v] + value)
-        return after
+        variables[variable] = in_range(variables[variable] + value)
+        return next_pc
 
     return step
 
 
 @handles("INC_VAR")
-def _inc_var(m: Execution, after: int, v: int) -> Step:
-    return _add_var8(m, after, v, 1)
+def _inc_var(machine: Execution, next_pc: int, variable: int) -> Step:
+    return _add_var8(machine, next_pc, variable, 1)
 
 
 @handles("DEC_VAR")
-def _dec_var(m: Execution, after: int, v: int) -> Step:
-    return _add_var8(m, after, v, -1)
+def _dec_var(machine: Execution, next_pc: int, variable: int) -> Step:
+    return _add_var8(machine, next_pc, variable, -1)
 
 
 @handles("ADD_VAR")
-def _add_var(m: Execution, after: int, v: int, w: int) -> Step:
-    variables = m.task.variables
+def _add_var(machine: Execution, next_pc: int, variable: int, other_variable: int) -> Step:
+    variables = machine.task.variables
 
     def step() -> int:
-        variables[v] = in_range(variables[v] + variables[w])
-        return after
+        variables[variable] = in_range(variables[variable] + variables[other_variable])
+        return next_pc
 
     return step

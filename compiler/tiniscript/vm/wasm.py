@@ -26,8 +26,8 @@ _FAULT_NAMES = {number: name for number, name, _ in FAULTS} | {0: ""}
 _RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
-_HALF = CLOCK_MS // 2
-_BUDGET = 65_535  # instructions, the most of one tick
+_HALF_CLOCK_MS = CLOCK_MS // 2
+_MOST_BUDGET = 65_535  # instructions, the most of one tick
 
 # Where numbers are in `Exchange` of `main.cpp`
 _NOW_MS, _LEFT, _WAKE_MS, _STATUS, _FIRST, _SECOND, _ANSWER, _IS_ANSWERED = range(8)
@@ -63,15 +63,15 @@ class WasmImage:
         write(data, self.call("room"))
         write(pack(f"<{len(kit.hashes)}H", *kit.hashes), self.call("hashes"))
         write(pack("<II", kit.speed, kit.turn), self.call("speeds"))
-        refusal = self.call("unpack", len(data))
-        if refusal:
-            raise ImageRefused(_REFUSAL_NAMES[refusal])
-        rule = self.call("verify", len(kit.readings), len(kit.actuators))
-        if rule:
-            raise Refused(_RULE_NAMES[rule], self.call("refused_at"))
-        refusal = self.call("compare")
-        if refusal:
-            raise ImageRefused(_REFUSAL_NAMES[refusal])
+        refusal_number = self.call("unpack", len(data))
+        if refusal_number:
+            raise ImageRefused(_REFUSAL_NAMES[refusal_number])
+        rule_number = self.call("verify", len(kit.readings), len(kit.actuators))
+        if rule_number:
+            raise Refused(_RULE_NAMES[rule_number], self.call("refused_at"))
+        refusal_number = self.call("compare")
+        if refusal_number:
+            raise ImageRefused(_REFUSAL_NAMES[refusal_number])
 
     def machine(
         self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
@@ -91,11 +91,11 @@ class WasmImage:
 
     def _robot_functions(self) -> dict[str, Callable[[], None]]:
         """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
-        owner = ref(self)  # no more: else it would live for ever, `wasm_store` says why
+        image_of = ref(self)  # no more: else it would live for ever, `wasm_store` says why
 
         def robot_function(call: Callable[[Robot, memoryview[int]], object]) -> Callable[[], None]:
             def function() -> None:
-                image = owner()
+                image = image_of()
                 assert image is not None and image.robot is not None, "nothing runs yet"
                 call(image.robot, image.exchange)
 
@@ -136,12 +136,14 @@ class WasmMachine:
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
-        budget = min(budget, _BUDGET)
+        budget = min(budget, _MOST_BUDGET)
         numbers = self._image.exchange
-        numbers[_NOW_MS] = (now_ms + _HALF) % CLOCK_MS - _HALF
+        numbers[_NOW_MS] = (now_ms + _HALF_CLOCK_MS) % CLOCK_MS - _HALF_CLOCK_MS
         numbers[_LEFT] = budget
         self._image.tick()
-        self.wake_ms = now_ms + ((numbers[_WAKE_MS] - now_ms + _HALF) % CLOCK_MS - _HALF)
+        self.wake_ms = now_ms + (
+            (numbers[_WAKE_MS] - now_ms + _HALF_CLOCK_MS) % CLOCK_MS - _HALF_CLOCK_MS
+        )
         self.steps += budget - numbers[_LEFT]
         self.status = _STATUSES[numbers[_STATUS]]
         return self.status

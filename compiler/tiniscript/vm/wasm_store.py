@@ -43,10 +43,13 @@ class Instance:
         imported_functions = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
                  for import_type in module.imports]  # fmt: skip
         exports = wasmtime.Instance(self._store, module, imported_functions).exports(self._store)
-        exported = {export.name: exports[export.name] for export in module.exports}
-        self.functions = {name: _bound_function(self._store, func)
-                          for name, func in exported.items() if isinstance(func, Func)}  # fmt: skip
-        memory = exported["memory"]
+        export_by_name = {export.name: exports[export.name] for export in module.exports}
+        self.functions = {
+            name: _bound_function(self._store, func)
+            for name, func in export_by_name.items()
+            if isinstance(func, Func)
+        }
+        memory = export_by_name["memory"]
         assert isinstance(memory, Memory)
         self._memory = memory
         base = addressof(memory.data_ptr(self._store).contents)
@@ -81,16 +84,16 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
     call itself. Where it is built otherwise inside, it is called its way.
     """
     try:
-        from wasmtime import _ffi as c
+        from wasmtime import _ffi as ffi
         from wasmtime._func import enter_wasm
 
-        kind = function.type(store)
-        parameter_count, result_types = len(kind.params), kind.results
-        raw_values = (c.wasmtime_val_raw_t * max(parameter_count, 1))()
+        function_type = function.type(store)
+        parameter_count, result_types = len(function_type.params), function_type.results
+        raw_values = (ffi.wasmtime_val_raw_t * max(parameter_count, 1))()
         unchecked_call, raw_function, trap_type = (
-            c.wasmtime_func_call_unchecked,
+            ffi.wasmtime_func_call_unchecked,
             function._func,
-            c.wasm_trap_t,
+            ffi.wasm_trap_t,
         )
     except (ImportError, AttributeError):
         return partial(function, store)
