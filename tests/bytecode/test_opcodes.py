@@ -61,7 +61,9 @@ def code_with(op: Op, value: int) -> bytes:
 
 def machine_for(op: Op, code: bytes) -> Machine:
     """Return a machine that has the instruction `op`: those of tasks have a scheduler."""
-    return (TaskMachine if op.needs == NEEDS_TASKS else Machine)(code, Nothing(), sensors=SHORTS)
+    return (TaskMachine if op.needs == NEEDS_TASKS else Machine)(
+        code, Nothing(), sensor_count=SHORTS
+    )
 
 
 def left_by(op: Op, value: int) -> tuple[int, str]:

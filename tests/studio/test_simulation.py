@@ -144,7 +144,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
     """Each stop is one, whatever has stopped the robot before."""
     rng = random.Random(seed)
     fresh, simulation = started_run(PUSHED), started_run(PUSHED, is_held=rng.random() < 0.3)
-    parts = simulation.marks.parts
+    parts = simulation.marks.part_offsets
     acts: list[Callable[[], object]] = [
         simulation.push,
         simulation.push,

@@ -179,7 +179,7 @@ def test_no_stop_of_before_confirms_the_newest_one(
         late_ms = chance.choice((0, 40, 1000, float("inf")))
         link.hears(late_ms)
         if end == "part":
-            HostedRobot._part(cast(HostedRobot, hosted), cast(RobotLink, link))
+            HostedRobot._part_from_robot(cast(HostedRobot, hosted), cast(RobotLink, link))
             is_confirmed = not hosted.is_unconfirmed
         else:
             attending.latch()

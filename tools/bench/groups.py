@@ -44,12 +44,12 @@ class Client:
     def __init__(self, address: str, token: str = "") -> None:
         host = address.removeprefix("http://").rstrip("/")
         self._headers = {"Origin": address.rstrip("/"), "Content-Type": "application/json"}
-        self._headers |= {serving.TOKEN: token} if token else {}
+        self._headers |= {serving.TOKEN_HEADER: token} if token else {}
         self._connection = http.client.HTTPConnection(host, timeout=TIMEOUT_S)
 
     def ask(self, do: str, **fields: Any) -> Json:
         body = json.dumps({"do": do, **fields})
-        self._connection.request("POST", serving.ROBOTS, body, self._headers)
+        self._connection.request("POST", serving.ROBOTS_PATH, body, self._headers)
         answer: Json = json.loads(self._connection.getresponse().read())
         return answer
 
@@ -85,7 +85,7 @@ class Pupil:
             time.sleep(self._random_source.uniform(*CHANGE_INTERVAL_S))
             if time.monotonic() > end_s:
                 return
-            rows = [f"W({self._random_source.randint(1, 99)})", *self._page.text[-6:]]
+            rows = [f"W({self._random_source.randint(1, 99)})", *self._page.lines[-6:]]
             self._page.type(rows, 0)
             self._page.leave()
             begin_s = time.monotonic()
@@ -94,7 +94,7 @@ class Pupil:
 
     def _request(self) -> Json:
         page = self._page
-        changes = [data_of_change(change) for change in page.pending]
+        changes = [data_of_change(change) for change in page.pending_changes]
         return {"page": page.name, "since": page.number, "epoch": page.epoch, "saw": 0,
                 "changes": changes}  # fmt: skip
 

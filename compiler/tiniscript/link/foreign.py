@@ -221,7 +221,7 @@ def readable_line(data: bytes) -> str:
     )
     if not text or readable_count < least_share * len(text):
         return ""
-    lines = [row.strip() for row in text.splitlines() if row.strip()]
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
     return _printable(lines[len(lines) // 2]) if lines else ""
 
 

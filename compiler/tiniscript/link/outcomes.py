@@ -123,7 +123,9 @@ Event = (
     | JoinedEvent
     | LeftEvent
 )
-EVENTS: dict[str, type[Event]] = {each._field_defaults["name"]: each for each in get_args(Event)}
+EVENTS: dict[str, type[Event]] = {
+    event_type._field_defaults["name"]: event_type for event_type in get_args(Event)
+}
 
 
 class ConnectionLost(Exception):

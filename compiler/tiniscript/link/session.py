@@ -787,9 +787,9 @@ class Session(Requester):
         except Malformed:
             self.damaged += 1
             return
-        missed = self._state.count_missed(frame.seq)
-        if missed:
-            self._events.append(MissedEvent(missed))
+        missed_count = self._state.count_missed(frame.seq)
+        if missed_count:
+            self._events.append(MissedEvent(missed_count))
         if message.name == ShowEvent._field_defaults["name"]:
             self._take_show(UnresolvedShow(ShowEvent(**values), frame.epoch))
             return

@@ -31,10 +31,10 @@ class Wire:
         data = b""
         limit_ms = wait_ms
         while len(data) < MOST_BYTES:
-            more = self._read(limit_ms)
-            if not more:
+            piece = self._read(limit_ms)
+            if not piece:
                 break
-            data += more
+            data += piece
             limit_ms = quiet_ms
         return data
 
@@ -42,10 +42,10 @@ class Wire:
         try:
             self._port.timeout = wait_ms / 1000
             data = bytes(self._port.read(1))
-            waiting = self._port.in_waiting if data else 0
-            if waiting:
+            waiting_bytes = self._port.in_waiting if data else 0
+            if waiting_bytes:
                 self._port.timeout = 0
-                data += self._port.read(waiting)
+                data += self._port.read(waiting_bytes)
             return data
         except TypeError as error:  # as above
             raise OSError(str(error)) from None

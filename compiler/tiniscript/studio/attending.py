@@ -69,7 +69,9 @@ class Attending:
                     self._requests.append(request)
             if self.is_latched:
                 self._void()
-            self._news = [item for item in self._news if item["number"] > seen_number]
+            self._news = [
+                news_item for news_item in self._news if news_item["number"] > seen_number
+            ]
             return list(self._news)
 
     def connect_again(self) -> None:
@@ -119,8 +121,8 @@ class Attending:
 
     def tell(self, news: list[Json]) -> None:
         with self._lock:
-            for item in news:
-                self._add(item)
+            for news_item in news:
+                self._add(news_item)
         witness = self.witness
         if witness is not None:
             witness(news)
@@ -172,12 +174,12 @@ class Attending:
 
     def _apply_news(self, news: list[Json]) -> None:
         with self._lock:
-            for item in news:
-                stop_count = self._stop_counts.pop(item["id"], 0) if "id" in item else 0
-                if item.get("ok"):
+            for news_item in news:
+                stop_count = self._stop_counts.pop(news_item["id"], 0) if "id" in news_item else 0
+                if news_item.get("ok"):
                     self.stop_count = max(self.stop_count, stop_count)
         if self.last_stop == ASKED and not self._wants_stop:
-            events = [item.get("event") for item in news]
+            events = [news_item.get("event") for news_item in news]
             if "STOPPED" in events:
                 self.last_stop = CONFIRMED
             elif "LOST" in events:
@@ -195,7 +197,12 @@ class Attending:
         self._news.append({**news, "number": self._news_count})
         while len(self._news) > MOST_KEPT_NEWS:
             droppable = next(
-                (item for item in self._news if item.get("event") in _DROPPABLE_EVENTS), None
+                (
+                    news_item
+                    for news_item in self._news
+                    if news_item.get("event") in _DROPPABLE_EVENTS
+                ),
+                None,
             )
             self._news.remove(droppable or self._news[0])
 

@@ -13,8 +13,8 @@ from tiniscript.studio.block_kinds import KIND_OF, KINDS, piece_of
 # A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; else what is done to the parts
 # before, with an empty text. `BRACKETS` stand around a lone number; `NOTHING` is an empty place.
 Value = tuple[tuple[str, str], ...]
-Place = tuple[int, int, int, int]  # line and column, from 1, and those of the end
-NOWHERE: Place = (0, 0, 0, 0)
+TextRange = tuple[int, int, int, int]  # line and column, from 1, and those of the end
+NOWHERE: TextRange = (0, 0, 0, 0)
 
 
 class Block(NamedTuple):
@@ -34,7 +34,7 @@ class Block(NamedTuple):
     bodies: tuple[tuple[Block, ...], ...] = ()
     note: str = ""
     is_apart: bool = False
-    place: Place = NOWHERE
+    place: TextRange = NOWHERE
     said: tuple[str, ...] = ()
     comment: str = ""
     is_behind: bool = False

@@ -10,7 +10,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, FUNCTIONS, WORDS
-from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
+from tiniscript.studio.block_form import Block, Form, Stack, TextRange, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE_PREFIX, LOOSE_VALUE_PREFIX
 from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
@@ -28,7 +28,7 @@ class Printed(NamedTuple):
     their lines is, from 0."""
 
     text: str
-    places: tuple[Place, ...]
+    places: tuple[TextRange, ...]
     lines: tuple[tuple[int, ...], ...]
 
 

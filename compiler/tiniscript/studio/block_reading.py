@@ -10,7 +10,7 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import LINE_END, Source, Span
 from tiniscript.base.words import WORDS
-from tiniscript.studio.block_form import NOWHERE, Block, Form, Place, Stack, Value
+from tiniscript.studio.block_form import NOWHERE, Block, Form, Stack, TextRange, Value
 from tiniscript.studio.block_kinds import KINDS, kind_of
 from tiniscript.syntax.ast import (
     Argument,
@@ -229,7 +229,7 @@ class _Reader:
             return "SENSOR" if part.value in self._sensors else "NAME", str(part.value)
         return part.op, ""
 
-    def _place(self, first_piece: Piece, last_piece: Piece) -> Place:
+    def _place(self, first_piece: Piece, last_piece: Piece) -> TextRange:
         start, end = first_piece.tokens[0].start, last_piece.tokens[-1].end
         return (*self._source.position(start), *self._source.position(end))
 
@@ -265,7 +265,7 @@ def _comment(piece: Piece) -> str:
     return " ".join(piece.comments)
 
 
-def _comment_behind(piece: Piece, place: Place = NOWHERE) -> tuple[Block, ...]:
+def _comment_behind(piece: Piece, place: TextRange = NOWHERE) -> tuple[Block, ...]:
     """Return what stands behind an arm or an end."""
     comment = _comment(piece)
     block = Block("comment", _note(piece), place=place, comment=comment, is_behind=True)

@@ -101,7 +101,9 @@ def check(data: bytes, robot: str, language: str) -> CheckResult:
 
 def _remote_words(compilation: Compilation, kit: Kit) -> tuple[str, ...]:
     used_devices = compilation.verdict.uses if compilation.verdict is not None else ()
-    read_numbers = {number - len(kit.sensors) for what, number in used_devices if what == "sensor"}
+    read_numbers = {
+        number - len(kit.sensors) for device_kind, number in used_devices if device_kind == "sensor"
+    }
     return tuple(device.name for k, device in enumerate(REMOTE) if k in read_numbers)
 
 

@@ -82,13 +82,13 @@ class RunRequest:
 
     def add(self, request: Json) -> None:
         """Take the next part. Raises BadRequest."""
-        part, is_last = request.get("part"), request.get("is_last")
-        if not isinstance(part, str) or not isinstance(is_last, bool):
+        text, is_last = request.get("part"), request.get("is_last")
+        if not isinstance(text, str) or not isinstance(is_last, bool):
             raise BadRequest
         whole_number(request, "from", len(self.file_text), len(self.file_text))
-        if self.is_whole or len(self.file_text) + len(part) > recordings.MOST_BYTES:
+        if self.is_whole or len(self.file_text) + len(text) > recordings.MOST_BYTES:
             raise BadRequest
-        self.file_text += part
+        self.file_text += text
         self.is_whole = is_last
 
 
@@ -368,12 +368,14 @@ class Classroom:
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
         self._hear_work(pupil, request)
-        wants, hand_wish = request.get("wants"), request.get("hand")
+        robot_wish, hand_wish = request.get("wants"), request.get("hand")
         mates = self._mates(pupil)
-        if wants is False:
+        if robot_wish is False:
             for mate in mates:
                 mate.queue_number = None
-        elif wants is True and not any(mate.queue_number or self._turn(mate) for mate in mates):
+        elif robot_wish is True and not any(
+            mate.queue_number or self._turn(mate) for mate in mates
+        ):
             pupil.queue_number = next(self._numbers)
         if hand_wish is False:
             pupil.hand_number = None
@@ -481,7 +483,9 @@ class Classroom:
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
         requests = request.get("asked", [])
-        if not isinstance(requests, list) or not all(_is_allowed(item) for item in requests):
+        if not isinstance(requests, list) or not all(
+            _is_allowed(robot_request) for robot_request in requests
+        ):
             raise BadRequest
         return self._hosting.answer(_own_request(pupil, request))
 
@@ -713,7 +717,10 @@ class Classroom:
         work_name = plain_name(name) if isinstance(name, str) else ""
         if not work_name or work is None:
             raise BadRequest
-        if any((item.name, item.work) == (work_name, work) for item in self._kept_works.values()):
+        if any(
+            (kept_work.name, kept_work.work) == (work_name, work)
+            for kept_work in self._kept_works.values()
+        ):
             return
         if self._work_count() >= MOST_WORKS:
             raise BadRequest
@@ -879,7 +886,7 @@ class Classroom:
                 {
                     "key": group.key,
                     "name": group.name,
-                    "pupils": [self._pupil_number(each.token) for each in group.pupils],
+                    "pupils": [self._pupil_number(member.token) for member in group.pupils],
                     "version": group.program.number,
                 }
                 for group in self._groups.all()
@@ -927,7 +934,7 @@ def _requested_robot(request: Json) -> ClassRobot:
 
 def _rows(state: Json, name: str) -> list[Json]:
     rows = state.get(name)
-    return [item for item in rows if isinstance(item, dict)] if isinstance(rows, list) else []
+    return [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
 
 
 def _work_of_row(row: Json, work: Work | None) -> KeptWork | None:

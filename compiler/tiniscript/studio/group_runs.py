@@ -47,8 +47,8 @@ class GroupRuns:
     def tell(self, driver: str, news: list[Json]) -> None:
         """The robot that a pupil drives has told this."""
         with self._lock:
-            for item in news:
-                for event in self._events_of(item):
+            for news_item in news:
+                for event in self._events_of(news_item):
                     self._add(driver, event)
 
     def news_after(self, position: object, token: str) -> tuple[int, list[Json]]:
@@ -63,27 +63,27 @@ class GroupRuns:
             rows = [row for row in self._rows if row.driver != token]
             return self._news_count, [row.news for row in rows if row.news["number"] > number]
 
-    def _events_of(self, item: Json) -> Iterator[Json]:
+    def _events_of(self, news_item: Json) -> Iterator[Json]:
         """Yield what is told of an event of the link, each once in the order of the runs."""
-        event, program = item.get("event"), str(item.get("program", ""))
-        if "connected" in item:
-            yield {"event": "ROBOT", "robot": item["connected"]["robot"]}
-        elif "over" in item:
+        event, program = news_item.get("event"), str(news_item.get("program", ""))
+        if "connected" in news_item:
+            yield {"event": "ROBOT", "robot": news_item["connected"]["robot"]}
+        elif "over" in news_item:
             self._is_driver_alone = False
             yield from self._end({"event": "OVER"})
-        elif event == "STARTED" and item["is_program"]:
+        elif event == "STARTED" and news_item["is_program"]:
             yield self._begin(program)
         elif event == "STARTED":
             self._is_driver_alone = True
             yield from self._end({"event": "OVER"})
         elif event in _ENDING_EVENTS:
             self._is_driver_alone = False
-            yield from self._end(item)
+            yield from self._end(news_item)
         elif event in _EVENTS_OF_RUN and not self._is_driver_alone:
-            if item.get("at", -1) >= 0 and program != self._program_checksum:
+            if news_item.get("at", -1) >= 0 and program != self._program_checksum:
                 yield self._begin(program)  # by the robot's button: nothing has told of that
             if self._program_checksum:
-                yield item
+                yield news_item
 
     def _begin(self, program: str) -> Json:
         self._program_checksum, self._is_driver_alone, self._value_count = program, False, 0

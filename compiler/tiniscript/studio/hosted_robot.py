@@ -106,7 +106,7 @@ class HostedRobot:
             if self._meet(client):
                 while not self.was_left:
                     self.attending.attend(link)
-                self._part(link)
+                self._part_from_robot(link)
                 self._end(self._leave_reason if self._is_leaving else "unheard")
                 self.is_holding_port = client.holds_for_others
                 with suppress(RobotError):  # the port is gone, and the page is told already
@@ -162,7 +162,7 @@ class HostedRobot:
         self.attending.tell([{"connected": robot_data(robot), "held_by": connection.holder_verb}])
         return True
 
-    def _part(self, link: RobotLink) -> None:
+    def _part_from_robot(self, link: RobotLink) -> None:
         """Stop what the page has started, and tell it of that before it hears that it is over."""
         if not link.has_run:
             return
@@ -174,7 +174,7 @@ class HostedRobot:
         while monotonic() < end_s and "LOST" not in events:
             news = link.news(LOOK_S)
             self.attending.tell(news)
-            events = [item.get("event") for item in news]
+            events = [news_item.get("event") for news_item in news]
             if "STOPPED" in events:
                 self.is_unconfirmed = False
                 return

@@ -21,12 +21,12 @@ _UNSEEN = re.compile("[\u034f\u17b4\u17b5\u180b-\u180f\ufe00-\ufe0f\U000e0100-\U
 _SHOWS_NOTHING = frozenset("CMZ")  # controls, marks without a letter, and spaces
 
 
-def plain_name(found: str) -> str:
+def plain_name(typed_name: str) -> str:
     """Return a pupil's name as one line that hides nothing; empty if nothing of it is seen."""
-    whole = " ".join(_BLANK.sub(" ", normalize("NFC", found)).split())
-    if all(category(item)[0] in _SHOWS_NOTHING for item in whole):
+    line = " ".join(_BLANK.sub(" ", normalize("NFC", typed_name)).split())
+    if all(category(letter)[0] in _SHOWS_NOTHING for letter in line):
         return ""
-    return printable(whole, NAME_CHARACTERS)
+    return printable(line, NAME_CHARACTERS)
 
 
 def are_alike(one: str, other: str) -> bool:
@@ -34,13 +34,13 @@ def are_alike(one: str, other: str) -> bool:
     return not _looks(one).isdisjoint(_looks(other))
 
 
-def free_name(wanted: str, taken: Iterable[str]) -> str:
+def free_name(wanted_name: str, taken_names: Iterable[str]) -> str:
     """Return a name that looks like none of those that are taken: `Ana`, or else `Ana (2)`."""
-    looks = {look for item in taken for look in _looks(item)}
-    name, k = wanted, 1
+    looks = {look for taken_name in taken_names for look in _looks(taken_name)}
+    name, k = wanted_name, 1
     while not looks.isdisjoint(_looks(name)):
         k += 1
-        name = f"{wanted} ({k})"
+        name = f"{wanted_name} ({k})"
     return name
 
 

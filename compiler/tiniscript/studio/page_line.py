@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
@@ -132,12 +132,10 @@ class PageRobot:
         return answer
 
 
-Answer = dict[str, Any]
-
 _robot: PageRobot | None = None  # a page has one
 
 
-def _connect(fields: Answer, data: bytes) -> Answer:
+def _connect(fields: Json, data: bytes) -> Json:
     """Begin a session over what the page has opened; `data` is the file of its keys, or nothing."""
     global _robot
     try:
@@ -148,13 +146,13 @@ def _connect(fields: Answer, data: bytes) -> Answer:
     return {}
 
 
-def _link(fields: Answer, data: bytes) -> Answer:
+def _link(fields: Json, data: bytes) -> Json:
     """Go on with the session; `data` has arrived."""
     assert _robot is not None, "no robot is connected"
     return _robot.go(data, fields["now_ms"], fields["asked"])
 
 
-def _import_keys(fields: Answer, data: bytes) -> Answer:
+def _import_keys(fields: Json, data: bytes) -> Json:
     """Add the keys of a file, `data`, to those of the page, whose file is `kept`."""
     try:
         keys = PageKeys(fields["kept"].encode()) if _robot is None else _robot.keys
@@ -164,6 +162,6 @@ def _import_keys(fields: Answer, data: bytes) -> Answer:
     return {"count": count, "keys": keys.file()}
 
 
-HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
+HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     "connect": _connect, "link": _link, "import_keys": _import_keys,
 }  # fmt: skip

@@ -18,7 +18,7 @@ from tiniscript.together.form import Refused, data_of_change
 from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, NOTE, Tree, first_word
 
-Answer = dict[str, Any]
+Json = dict[str, Any]
 MOST_CHANGES = 50  # of a request to the class
 
 
@@ -43,7 +43,7 @@ _newest: State | None = None
 _previous: State | None = None
 
 
-def begin(fields: Answer, data: bytes) -> Answer:
+def begin(fields: Json, data: bytes) -> Json:
     """Begin with what the class has answered to a page that joins a group, and with what the page
     has kept of before it was loaded again."""
     global _newest, _previous
@@ -58,7 +58,7 @@ def begin(fields: Answer, data: bytes) -> Answer:
     return _answer(_newest, data.decode(), None)
 
 
-def step(fields: Answer, data: bytes) -> Answer:
+def step(fields: Json, data: bytes) -> Json:
     """Take the editor's text and news; return what the editor has to change of that text.
 
     `hot`: a key was pressed in the line of the caret, which has not left it. `blocks`: what the
@@ -92,7 +92,7 @@ def step(fields: Answer, data: bytes) -> Answer:
     return answer
 
 
-def show_blocks(fields: Answer, data: bytes) -> Answer:
+def show_blocks(fields: Json, data: bytes) -> Json:
     """The blocks show an answer from now on: `lines` says of each of them in which line it is."""
     global _newest, _previous
     assert _newest is not None
@@ -176,7 +176,7 @@ def _text(state: State) -> str:
     return "".join(f"{row}\n" for row in rows)
 
 
-def _answer(state: State, text: str, caret: int | None) -> Answer:
+def _answer(state: State, text: str, caret: int | None) -> Json:
     page = state.page
     new_text = _text(state)
     is_open = caret is not None and not text.endswith("\n")
@@ -196,13 +196,15 @@ def _answer(state: State, text: str, caret: int | None) -> Answer:
     }
 
 
-def changes(old: str, new: str, caret: tuple[int, int] | None = None) -> list[tuple[int, int, str]]:
+def changes(
+    old_text: str, new_text: str, caret: tuple[int, int] | None = None
+) -> list[tuple[int, int, str]]:
     """Return what makes the new text of the old: from, to and what is put in, in units of UTF-16.
 
     A line that has changed keeps what is the same in it, where its caret and its undo are. `caret`:
     the line that the caret is in, in both; where that is the same, it is not touched.
     """
-    old_rows, new_rows = _with_ends(old), _with_ends(new)
+    old_rows, new_rows = _with_ends(old_text), _with_ends(new_text)
     if caret is None or old_rows[caret[0] : caret[0] + 1] != new_rows[caret[1] : caret[1] + 1]:
         return _line_changes(old_rows, new_rows, 0)
     i, j = caret

@@ -12,22 +12,22 @@ class Rate:
     def __init__(self, burst: float, per_s: float) -> None:
         self._burst = burst
         self._per_s = per_s
-        self._left: dict[str, tuple[float, float]] = {}  # what was left, and when
+        self._amounts_left: dict[str, tuple[float, float]] = {}  # what was left, and when
 
     def has(self, name: str, now_s: float, cost: float = 1) -> bool:
         """Return whether so much is left."""
-        return self._now(name, now_s) >= cost
+        return self._amount_left(name, now_s) >= cost
 
     def take(self, name: str, now_s: float, cost: float = 1) -> bool:
         """Take so much, where it is left; return whether it was."""
-        left = self._now(name, now_s)
-        is_left = left >= cost
-        self._left.pop(name, None)
-        if len(self._left) >= MOST_NAMES:
-            del self._left[next(iter(self._left))]
-        self._left[name] = (left - cost if is_left else left, now_s)
+        amount = self._amount_left(name, now_s)
+        is_left = amount >= cost
+        self._amounts_left.pop(name, None)
+        if len(self._amounts_left) >= MOST_NAMES:
+            del self._amounts_left[next(iter(self._amounts_left))]
+        self._amounts_left[name] = (amount - cost if is_left else amount, now_s)
         return is_left
 
-    def _now(self, name: str, now_s: float) -> float:
-        left, when_s = self._left.get(name, (self._burst, now_s))
-        return min(self._burst, left + (now_s - when_s) * self._per_s)
+    def _amount_left(self, name: str, now_s: float) -> float:
+        amount, when_s = self._amounts_left.get(name, (self._burst, now_s))
+        return min(self._burst, amount + (now_s - when_s) * self._per_s)

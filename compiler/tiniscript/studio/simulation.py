@@ -33,13 +33,13 @@ REPEAT_GAP_MS = HOLD_MS // 10  # what is held already is said no sooner again
 class Marks(NamedTuple):
     """Where a program may be held, and what is looked at.
 
-    `parts` are the offsets at which parts of its text begin, `variables` how many it has;
+    `part_offsets` are where parts of its text begin, `variable_count` how many variables it has;
     `is_held`: in front of the first part, too.
     """
 
-    parts: tuple[int, ...]
+    part_offsets: tuple[int, ...]
     breakpoints: tuple[int, ...] = ()
-    variables: int = 0
+    variable_count: int = 0
     is_held: bool = False
 
 
@@ -115,7 +115,7 @@ class Simulation:
 
     def _mark_code(self) -> None:
         marks = bytearray(MOST_CODE)
-        for offsets, bit in ((self.marks.parts, PART), (self.marks.breakpoints, BREAKPOINT)):
+        for offsets, bit in ((self.marks.part_offsets, PART), (self.marks.breakpoints, BREAKPOINT)):
             for offset in offsets:
                 if 0 <= offset < MOST_CODE:
                     marks[offset] |= bit
@@ -247,20 +247,26 @@ class Simulation:
             "touches": touch_point and list(touch_point),
             "score": self._score.state(),
             "rivals": [list(pose) for pose in robot.driving.rivals],
-            "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
-                          for k in range(len(kit.actuators))],
+            "actuators": [
+                None if (value := robot.actuators.get(k)) is None else value / ONE
+                for k in range(len(kit.actuators))
+            ],
             "turned": dict(robot.sensing.turn_of_actuator),
             "at": robot.offset if self.held_at is None else self.held_at,
             "places": robot.task_offsets,
             "driver": robot.driving_task_offset,
             "is_held": self.held_at is not None,
-            "variables": [value / ONE for value in robot.firmware.variables(self.marks.variables)],
-            "readings": [{"value": value / ONE, "text": device.text(value)}
-                         for device, value in zip(kit.sensors, readings, strict=True)],
+            "variables": [
+                value / ONE for value in robot.firmware.variables(self.marks.variable_count)
+            ],
+            "readings": [
+                {"value": value / ONE, "text": device.text(value)}
+                for device, value in zip(kit.sensors, readings, strict=True)
+            ],
             "events": [[event.time_ms, event.text, event.offset] for event in self.take_events()],
             "rows": [row.cells for row in self.rows()],
             "is_full": self.is_full,
-        }  # fmt: skip
+        }
 
     def _until(self, is_over: Callable[[], bool]) -> None:
         """Let time go on, also for a program that is held."""

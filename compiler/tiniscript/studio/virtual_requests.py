@@ -18,7 +18,7 @@ from tiniscript.virtual.bout import driving_in
 from tiniscript.virtual.world import World, WorldRefused
 from tiniscript.virtual.worlds import read as read_world
 
-Answer = dict[str, Any]
+Json = dict[str, Any]
 
 _simulation: Simulation | None = None  # a page has one robot
 _opened_run: playing.PlayableRecording | None = None  # the recorded run that was opened last
@@ -38,7 +38,7 @@ def _world(description: Any) -> World:
     return recordings.stored_form(world)[0]
 
 
-def _power_on(fields: Answer, data: bytes) -> Answer:
+def _power_on(fields: Json, data: bytes) -> Json:
     """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
     With `is_held` it stands in front of the program's first part. A world of a lesson with an
@@ -73,13 +73,13 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
 
 
 def _driving_request(
-    act: Callable[[Simulation, Answer], object],
-) -> Callable[[Answer, bytes], Answer]:
+    act: Callable[[Simulation, Json], object],
+) -> Callable[[Json, bytes], Json]:
     """Return what does `act` with the virtual robot, and answers how it stands then.
 
     `held` is what somebody holds of a remote control meanwhile."""
 
-    def answer(fields: Answer, data: bytes) -> Answer:
+    def answer(fields: Json, data: bytes) -> Json:
         assert _simulation is not None, "nothing is switched on"
         if "held" in fields:
             _simulation.press(*fields["held"])
@@ -89,7 +89,7 @@ def _driving_request(
     return answer
 
 
-def _open_world(fields: Answer, data: bytes) -> Answer:
+def _open_world(fields: Json, data: bytes) -> Json:
     """Return the form of a world's file, `data`, or why it is none."""
     name = fields["name"]
     try:
@@ -99,7 +99,7 @@ def _open_world(fields: Answer, data: bytes) -> Answer:
         return {"refused": describe(WorldRefused(*refused.reasons), fields["language"])}
 
 
-def _write_world(fields: Answer, data: bytes) -> Answer:
+def _write_world(fields: Json, data: bytes) -> Json:
     """Return the text of a form, and whether the robot fits at its start, or why it is no world."""
     text = toml_of(fields["form"])
     try:
@@ -110,7 +110,7 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
     return {"text": text, "is_blocked": driving_in(body, world).is_blocked()}
 
 
-def _open_run(fields: Answer, data: bytes) -> Answer:
+def _open_run(fields: Json, data: bytes) -> Json:
     """Return what the page needs to play the file of a run, `data`, or why it cannot be played."""
     global _opened_run
     try:
@@ -139,7 +139,7 @@ def _open_run(fields: Answer, data: bytes) -> Answer:
     }
 
 
-def _write_run(fields: Answer, data: bytes) -> Answer:
+def _write_run(fields: Json, data: bytes) -> Json:
     """Return the file of a run that the page has kept."""
     robot = checking.profile_of(fields["robot"])
     rows = recordings.from_rows(fields["rows"])
@@ -163,18 +163,18 @@ def _lessons() -> Any:
     return import_module("tiniscript.studio.page_lessons")
 
 
-def _lesson_world(fields: Answer, data: bytes) -> Answer:
+def _lesson_world(fields: Json, data: bytes) -> Json:
     arguments = (fields["number"], fields["seed"])
     return {"world": _lessons().world_form(*arguments), "goals": _lessons().goal_shapes(*arguments)}
 
 
-def _lesson_check(fields: Answer, data: bytes) -> Answer:
+def _lesson_check(fields: Json, data: bytes) -> Json:
     global _lesson_check_now
     _lesson_check_now = _lessons().LessonCheck(fields["number"], data, fields["language"])
     return {}
 
 
-HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
+HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     "power_on": _power_on,
     "go": _driving_request(lambda robot, fields: robot.go(fields["duration_ms"])),
     "step": _driving_request(lambda robot, fields: robot.step(fields["limit_ms"])),

@@ -21,7 +21,7 @@ from tiniscript.studio.block_form import data_of, first_blocks, from_data, in_or
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import LOOSE_PREFIX, read_blocks
 
-Answer = dict[str, Any]
+Json = dict[str, Any]
 TOGETHER = "tiniscript.studio.page_together"
 MOST_BLOCKS = 1500  # that a page can move about
 
@@ -32,7 +32,7 @@ def answer(request: str, data: bytes = b"") -> str:
     return json.dumps(_request_handler(fields["do"])(fields, data), ensure_ascii=False)
 
 
-def _check(fields: Answer, data: bytes) -> Answer:
+def _check(fields: Json, data: bytes) -> Json:
     result = checking.check(data, fields["robot"], fields["language"])
     return {
         "image": result.image.hex(),
@@ -54,33 +54,33 @@ def _check(fields: Answer, data: bytes) -> Answer:
     }
 
 
-def _repair(fields: Answer, data: bytes) -> Answer:
+def _repair(fields: Json, data: bytes) -> Json:
     """Return what the button of the finding `which` does; nothing is no button."""
     changes = checking.repair(data, fields["robot"], fields["which"])
     return {"changes": [change._asdict() for change in changes]}
 
 
-def _loose(fields: Answer, data: bytes) -> int:
+def _loose(fields: Json, data: bytes) -> int:
     """Return how many instructions and values of a program hang on nothing."""
     stacks = read_blocks(data.decode(), checking.profile_for(data, fields["robot"]).kit).loose
     return sum(len(in_order(stack.body)) or 1 for stack in stacks)
 
 
-def _open(fields: Answer, data: bytes) -> Answer:
+def _open(fields: Json, data: bytes) -> Json:
     return _post_answer(checking.open_text(data, fields["robot"], fields["language"]))
 
 
-def _line(fields: Answer, data: bytes) -> Answer:
+def _line(fields: Json, data: bytes) -> Json:
     return _post_answer(checking.line_for_robot(data, fields["robot"], fields["language"]))
 
 
-def _post_answer(message: str | Message) -> Answer:
+def _post_answer(message: str | Message) -> Json:
     if isinstance(message, Message):
         return {"message": message.message, "fix": message.fix}
     return {"text": message}
 
 
-def _blocks(fields: Answer, data: bytes) -> Answer:
+def _blocks(fields: Json, data: bytes) -> Json:
     """Return the blocks of a text, or the `first` of them; of too many only their number."""
     form = read_blocks(data.decode(), checking.profile_for(data, fields["robot"]).kit)
     if "first" in fields:
@@ -89,16 +89,16 @@ def _blocks(fields: Answer, data: bytes) -> Answer:
     return {"size": size} if size > MOST_BLOCKS else {"size": size, **data_of(form)}
 
 
-def _text(fields: Answer, data: bytes) -> Answer:
+def _text(fields: Json, data: bytes) -> Json:
     return print_blocks(from_data(fields["form"]))._asdict()
 
 
-def _rename(fields: Answer, data: bytes) -> Answer:
+def _rename(fields: Json, data: bytes) -> Json:
     """Return a program that names its robot with the robot that somebody has chosen in the page."""
     return {"text": rename_robot(data.decode(), fields["robot"])}
 
 
-def _learn(fields: Answer, data: bytes) -> Answer:
+def _learn(fields: Json, data: bytes) -> Json:
     """Take the messages of a language, by catalogue and key; a page fetches what it needs."""
     folder = languages.FOLDER / fields["language"]
     folder.mkdir(exist_ok=True)
@@ -110,13 +110,13 @@ def _learn(fields: Answer, data: bytes) -> Answer:
     return {}
 
 
-_HANDLERS: dict[str, Callable[[Answer, bytes], Answer]] = {
+_HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     "learn": _learn, "check": _check, "repair": _repair, "open": _open, "line": _line,
     "blocks": _blocks, "text": _text, "rename": _rename,
 }  # fmt: skip
 
 
-def _request_handler(action: str) -> Callable[[Answer, bytes], Answer]:
+def _request_handler(action: str) -> Callable[[Json, bytes], Json]:
     """Return what answers a request. A page begins without its robots: they load when asked for."""
     if action in _HANDLERS:
         return _HANDLERS[action]
@@ -124,7 +124,7 @@ def _request_handler(action: str) -> Callable[[Answer, bytes], Answer]:
         "group_"
     ):  # which the page has fetched meanwhile; its first archive lacks it
         sys.path_importer_cache.clear()
-        handlers: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).HANDLERS
+        handlers: dict[str, Callable[[Json, bytes], Json]] = import_module(TOGETHER).HANDLERS
         return handlers[action]
     if action in ("connect", "link", "import_keys"):
         from tiniscript.studio.page_line import HANDLERS

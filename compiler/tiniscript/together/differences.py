@@ -109,31 +109,31 @@ def similarity(node: Node, other: Node) -> float:
     return FEW_WORDS if ratio >= 0.6 else NO_WORDS
 
 
-def match_nodes(old: Tree, new: Tree) -> dict[str, str]:
+def match_nodes(old_tree: Tree, new_tree: Tree) -> dict[str, str]:
     """Return the old id of each new one that has one."""
-    old_ids = [id for id in old.subtree_ids()[1:] if id != START]
-    new_ids = [id for id in new.subtree_ids()[1:] if id != START]
+    old_ids = [id for id in old_tree.subtree_ids()[1:] if id != START]
+    new_ids = [id for id in new_tree.subtree_ids()[1:] if id != START]
     matches = {ROOT: ROOT, START: START}
     shorter = min(len(old_ids), len(new_ids))
     prefix_length = 0
     while prefix_length < shorter and _are_equal(
-        old[old_ids[prefix_length]], new[new_ids[prefix_length]]
+        old_tree[old_ids[prefix_length]], new_tree[new_ids[prefix_length]]
     ):
         matches[new_ids[prefix_length]] = old_ids[prefix_length]
         prefix_length += 1
     suffix_length = 0
     while suffix_length < shorter - prefix_length and _are_equal(
-        old[old_ids[-1 - suffix_length]], new[new_ids[-1 - suffix_length]]
+        old_tree[old_ids[-1 - suffix_length]], new_tree[new_ids[-1 - suffix_length]]
     ):
         matches[new_ids[-1 - suffix_length]] = old_ids[-1 - suffix_length]
         suffix_length += 1
     old_middle = old_ids[prefix_length : len(old_ids) - suffix_length]
     new_middle = new_ids[prefix_length : len(new_ids) - suffix_length]
-    matches.update((y, x) for x, y in _align(old, new, old_middle, new_middle))
+    matches.update((y, x) for x, y in _align(old_tree, new_tree, old_middle, new_middle))
     matched_ids = set(matches.values())
     _add_moved(
-        old,
-        new,
+        old_tree,
+        new_tree,
         [x for x in old_middle if x not in matched_ids],
         [y for y in new_middle if y not in matches],
         matches,
@@ -145,20 +145,24 @@ def _are_equal(node: Node, other: Node) -> bool:
     return similarity(node, other) == EQUAL
 
 
-def _align(old: Tree, new: Tree, old_ids: list[str], new_ids: list[str]) -> list[tuple[str, str]]:
+def _align(
+    old_tree: Tree, new_tree: Tree, old_ids: list[str], new_ids: list[str]
+) -> list[tuple[str, str]]:
     """Return pairs in the order of both, which together are as alike as possible."""
     if len(old_ids) * len(new_ids) > MOST_PAIRS:
-        rows = [old[x].text for x in old_ids], [new[y].text for y in new_ids]
+        rows = [old_tree[x].text for x in old_ids], [new_tree[y].text for y in new_ids]
         blocks = SequenceMatcher(None, *rows, autojunk=False).get_matching_blocks()
         return [(old_ids[i + k], new_ids[j + k]) for i, j, size in blocks for k in range(size)]
     best_scores = [[0.0] * (len(new_ids) + 1) for _ in range(len(old_ids) + 1)]
     scores: dict[tuple[int, int], float] = {}
     for i in range(len(old_ids) - 1, -1, -1):
-        row, below = best_scores[i], best_scores[i + 1]
-        old_node = old[old_ids[i]]
+        scores_here, scores_below = best_scores[i], best_scores[i + 1]
+        old_node = old_tree[old_ids[i]]
         for j in range(len(new_ids) - 1, -1, -1):
-            scores[i, j] = score = similarity(old_node, new[new_ids[j]])
-            row[j] = max(below[j], row[j + 1], below[j + 1] + score if score else 0.0)
+            scores[i, j] = score = similarity(old_node, new_tree[new_ids[j]])
+            scores_here[j] = max(
+                scores_below[j], scores_here[j + 1], scores_below[j + 1] + score if score else 0.0
+            )
     pairs = []
     i = j = 0
     while i < len(old_ids) and j < len(new_ids):
@@ -171,34 +175,34 @@ def _align(old: Tree, new: Tree, old_ids: list[str], new_ids: list[str]) -> list
         else:
             j += 1
     # Two that differ, and one of which has an equal one elsewhere, are none: one was moved.
-    texts, new_texts = {old[x].text for x in old_ids}, {new[y].text for y in new_ids}
-    unmatched_texts = texts - {old[x].text for x, _ in pairs}
-    unmatched_new_texts = new_texts - {new[y].text for _, y in pairs}
+    texts, new_texts = {old_tree[x].text for x in old_ids}, {new_tree[y].text for y in new_ids}
+    unmatched_texts = texts - {old_tree[x].text for x, _ in pairs}
+    unmatched_new_texts = new_texts - {new_tree[y].text for _, y in pairs}
     return [
         (x, y) for x, y in pairs
-        if old[x].text == new[y].text
-        or not (new[y].text in unmatched_texts or old[x].text in unmatched_new_texts)
+        if old_tree[x].text == new_tree[y].text
+        or not (new_tree[y].text in unmatched_texts or old_tree[x].text in unmatched_new_texts)
     ]  # fmt: skip
 
 
 def _add_moved(
-    old: Tree, new: Tree, old_ids: list[str], new_ids: list[str], matches: dict[str, str]
+    old_tree: Tree, new_tree: Tree, old_ids: list[str], new_ids: list[str], matches: dict[str, str]
 ) -> None:
     """Add equal rows out of order: the longest runs first; then blocks by what is in them."""
     while old_ids and new_ids:
-        rows = [old[x].text for x in old_ids], [new[y].text for y in new_ids]
+        rows = [old_tree[x].text for x in old_ids], [new_tree[y].text for y in new_ids]
         i, j, size = SequenceMatcher(None, *rows, autojunk=False).find_longest_match()
         if not size:
             break
         matches.update(zip(new_ids[j : j + size], old_ids[i : i + size], strict=True))
         del old_ids[i : i + size], new_ids[j : j + size]
     for y in list(new_ids):  # a block that was moved, and whose head was changed
-        if new[y].kind != BLOCK:
+        if new_tree[y].kind != BLOCK:
             continue
-        inner_ids = [matches[z] for z in new.subtree_ids(y)[1:] if z in matches]
-        parents = [old[x].parent for x in inner_ids if x in old]
+        inner_ids = [matches[z] for z in new_tree.subtree_ids(y)[1:] if z in matches]
+        parents = [old_tree[x].parent for x in inner_ids if x in old_tree]
         x = max(parents, key=parents.count) if parents else ""
-        if x in old_ids and similarity(old[x], new[y]) > 0:
+        if x in old_ids and similarity(old_tree[x], new_tree[y]) > 0:
             matches[y] = x
             old_ids.remove(x)
             new_ids.remove(y)
@@ -212,14 +216,14 @@ class _Script:
 
     def __init__(
         self,
-        old: Tree,
-        new: Tree,
+        old_tree: Tree,
+        new_tree: Tree,
         matches: dict[str, str],
         make_id: Callable[[], str],
         clipboard: Clipboard,
     ) -> None:
-        self._old, self._new = old, new
-        self._work = old.copy()
+        self._old_tree, self._new_tree = old_tree, new_tree
+        self._work = old_tree.copy()
         self._work_ids = dict(matches)  # in the tree that is made, by the id in the new one
         self._make_id = make_id
         self._clipboard = clipboard
@@ -239,16 +243,18 @@ class _Script:
 
     def _delete_removed(self) -> None:
         """Whole blocks and runs; of a block with something that stays, only the block."""
-        old, kept_ids = self._old, set(self._work_ids.values())
-        removed_ids = [id for id in old.subtree_ids() if id not in kept_ids]
-        whole_ids = {id for id in removed_ids if kept_ids.isdisjoint(old.subtree_ids(id))}
-        top_ids = [id for id in removed_ids if id in whole_ids and old[id].parent not in whole_ids]
+        old_tree, kept_ids = self._old_tree, set(self._work_ids.values())
+        removed_ids = [id for id in old_tree.subtree_ids() if id not in kept_ids]
+        whole_ids = {id for id in removed_ids if kept_ids.isdisjoint(old_tree.subtree_ids(id))}
+        top_ids = [
+            id for id in removed_ids if id in whole_ids and old_tree[id].parent not in whole_ids
+        ]
         if top_ids:
-            arms = [id for id in top_ids if old[id].kind == ARM and old.ids_of_arm(id)
-                    and whole_ids.issuperset(old.ids_of_arm(id))]  # fmt: skip
+            arms = [id for id in top_ids if old_tree[id].kind == ARM and old_tree.ids_of_arm(id)
+                    and whole_ids.issuperset(old_tree.ids_of_arm(id))]  # fmt: skip
             self._apply(
                 Delete(
-                    tuple(inner_id for id in top_ids for inner_id in old.subtree_ids(id)),
+                    tuple(inner_id for id in top_ids for inner_id in old_tree.subtree_ids(id)),
                     tuple(arms),
                 )
             )
@@ -259,7 +265,7 @@ class _Script:
 
     def _choose_id(self, new_id: str) -> str:
         """Return an id for a new row: the one it had, if this page has cut it out lately."""
-        for id in self._clipboard.ids_by_text.get(self._new[new_id].text, ()):
+        for id in self._clipboard.ids_by_text.get(self._new_tree[new_id].text, ()):
             if (
                 id in self._clipboard.restored_ids
                 and id in self._work
@@ -273,7 +279,7 @@ class _Script:
         return self._make_id()
 
     def _make_subtree(self, new_id: str, is_whole: bool = True, is_wrap: bool = False) -> Subtree:
-        node = self._new[new_id]
+        node = self._new_tree[new_id]
         self._work_ids[new_id] = self._choose_id(new_id)
         if is_wrap and self._work_ids[new_id] in self._work:
             self._work_ids[new_id] = self._make_id()
@@ -284,12 +290,12 @@ class _Script:
         return new_id not in self._work_ids
 
     def _are_all_new(self, new_id: str) -> bool:
-        return all(map(self._is_new, self._new.subtree_ids(new_id)))
+        return all(map(self._is_new, self._new_tree.subtree_ids(new_id)))
 
     def _arrange(self, new_id: str) -> None:
         """Give a block what is in it, in its order; then each block in it."""
         container = self._work_ids[new_id]
-        wanted_ids = self._new[new_id].children
+        wanted_ids = self._new_tree[new_id].children
         index_of_id = {id: k for k, id in enumerate(self._work[container].children)}
         staying_ids = _longest_increasing(
             [child for child in wanted_ids if self._work_ids.get(child) in index_of_id],
@@ -324,7 +330,7 @@ class _Script:
                 previous = run[-1]
             k += 1
         for child in wanted_ids:
-            if self._new[child].kind == BLOCK:
+            if self._new_tree[child].kind == BLOCK:
                 self._arrange(child)
 
     def _wrap_or_insert(self, new_id: str, place: Place, wanted_ids: list[str]) -> None:
@@ -332,7 +338,7 @@ class _Script:
         siblings = self._work[place.container].children
         inner_ids = {
             self._work_ids[child]
-            for child in self._new.subtree_ids(new_id)
+            for child in self._new_tree.subtree_ids(new_id)
             if not self._is_new(child)
         }
         wanted_work_ids = {self._work_ids.get(child) for child in wanted_ids}
@@ -358,11 +364,11 @@ class _Script:
 
     def _replace_fields(self) -> None:
         spaced_ids = ids_after_empty_lines(self._work)
-        new_spaced_ids = ids_after_empty_lines(self._new)
+        new_spaced_ids = ids_after_empty_lines(self._new_tree)
         for new_id, id in self._work_ids.items():
             if id == ROOT or id not in self._work:
                 continue
-            node, new_node = self._work[id], self._new[new_id]
+            node, new_node = self._work[id], self._new_tree[new_id]
             fields = [(name, getattr(new_node, name)) for name in (TEXT, COMMENT, END)
                       if getattr(node, name) != getattr(new_node, name)]  # fmt: skip
             if (id in spaced_ids) != (new_id in new_spaced_ids):

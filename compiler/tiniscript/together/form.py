@@ -137,7 +137,7 @@ def page_and_count(uid: str) -> tuple[str, int]:
 def data_of(operation: Operation) -> Json:
     if isinstance(operation, Insert):
         return {"do": "insert", "at": list(operation.place),
-                "nodes": [each.data() for each in operation.nodes]}  # fmt: skip
+                "nodes": [node.data() for node in operation.nodes]}  # fmt: skip
     if isinstance(operation, Delete):
         arms: Json = {"arms": list(operation.arms)} if operation.arms else {}
         return {"do": "delete", "ids": list(operation.ids), **arms}
@@ -152,9 +152,9 @@ def data_of(operation: Operation) -> Json:
 
 
 def data_of_change(change: Change) -> Json:
-    data: Json = {"uid": change.uid, "ops": [data_of(each) for each in change.operations]}
+    data: Json = {"uid": change.uid, "ops": [data_of(operation) for operation in change.operations]}
     if change.conditions:
-        data["if"] = [list(each) for each in change.conditions]
+        data["if"] = [list(condition) for condition in change.conditions]
     if change.seen_number:
         data["since"] = change.seen_number
     return data

@@ -252,14 +252,14 @@ def _delete(tree: Tree, operation: Delete) -> _Effect:
     ]
     for run in runs:
         for id in run:
-            below = tree.subtree_ids(id)
+            ids_below = tree.subtree_ids(id)
             former_places = [
                 FormerPlace(tree[child].parent, tree.previous_sibling(child), True)
-                for child in below
+                for child in ids_below
             ]
             tree[tree[id].parent].children.remove(id)
             for child, former_place in zip(
-                below[1:] + below[:1], former_places[1:] + former_places[:1], strict=True
+                ids_below[1:] + ids_below[:1], former_places[1:] + former_places[:1], strict=True
             ):
                 tree.forget(child, former_place)
     return [Delete(tuple(present_ids))], inverse

@@ -396,17 +396,21 @@ class Page:
         k = self.caret
         if not self.is_line_edited or not j1 <= k < j2:
             return [(i1, i2, j1, j2)]
-        first = min(i2, i1 + k - j1)
-        last = max(first, i2 - (j2 - k - 1))
+        edited_start = min(i2, i1 + k - j1)
+        edited_end = max(edited_start, i2 - (j2 - k - 1))
         visible_lines = self._visible_lines()
-        for i in (first, last):
+        for i in (edited_start, edited_end):
             if (
                 i1 < i < i2
                 and visible_lines[i].draft
                 and visible_lines[i].draft is visible_lines[i - 1].draft
             ):
                 return [(i1, i2, j1, j2)]
-        parts = [(i1, first, j1, k), (first, last, k, k + 1), (last, i2, k + 1, j2)]
+        parts = [
+            (i1, edited_start, j1, k),
+            (edited_start, edited_end, k, k + 1),
+            (edited_end, i2, k + 1, j2),
+        ]
         return [part for part in parts if part[0] < part[1] or part[2] < part[3]]
 
     def _shown_lines_between(self, first: int, last: int) -> list[ShownLine]:

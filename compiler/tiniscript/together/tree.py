@@ -69,7 +69,7 @@ class Subtree(NamedTuple):
             if getattr(self, name):
                 data[name] = getattr(self, name)
         if self.children:
-            data["in"] = [each.data() for each in self.children]
+            data["in"] = [child.data() for child in self.children]
         if self.creator_uid:
             data["born"] = self.creator_uid
         if self.marks:
@@ -207,7 +207,7 @@ class Tree:
     def subtree(self, id: str, is_whole: bool = True) -> Subtree:
         """Return a node, with its marks and what is in it if it `is_whole`."""
         node = self.nodes[id]
-        children = tuple(self.subtree(each) for each in node.children) if is_whole else ()
+        children = tuple(self.subtree(child_id) for child_id in node.children) if is_whole else ()
         marks = tuple(node.marks.items())
         return Subtree(
             id, node.text, node.note, node.apart, node.end, children, node.creator_uid, marks

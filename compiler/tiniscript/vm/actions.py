@@ -46,8 +46,8 @@ def _add_move_handlers(direction: str, left: int, right: int) -> None:
     def popped_powers(machine: Execution) -> Powers:
         return powers(_percent(machine.task.stack.pop(), 0))
 
-    def move8(machine: Execution, next_pc: int, time: int, power: int) -> Step:
-        return lambda: machine.drive(time8_ms(time), powers(power), next_pc)
+    def move8(machine: Execution, next_pc: int, time8: int, power: int) -> Step:
+        return lambda: machine.drive(time8_ms(time8), powers(power), next_pc)
 
     def move(machine: Execution, next_pc: int) -> Step:
         def step() -> int:
@@ -98,8 +98,8 @@ def _wait(machine: Execution, next_pc: int) -> Step:
 
 
 @handles("WAIT8")
-def _wait8(machine: Execution, next_pc: int, time: int) -> Step:
-    return lambda: machine.wait(time8_ms(time), PAUSE, next_pc)
+def _wait8(machine: Execution, next_pc: int, time8: int) -> Step:
+    return lambda: machine.wait(time8_ms(time8), PAUSE, next_pc)
 
 
 @handles("WATCH_WAIT")
@@ -159,15 +159,15 @@ def _motors8(machine: Execution, next_pc: int, left: int, right: int) -> Step:
 @handles("BEEP")
 def _beep(machine: Execution, next_pc: int) -> Step:
     def step() -> int:
-        hertz, time = machine.task.stack.pop(), machine.task.stack.pop()
-        return _sound(machine, next_pc, whole(hertz), _duration(time))
+        hertz, time_milli = machine.task.stack.pop(), machine.task.stack.pop()
+        return _sound(machine, next_pc, whole(hertz), _duration(time_milli))
 
     return step
 
 
 @handles("BEEP8")
-def _beep8(machine: Execution, next_pc: int, time: int, hertz: int) -> Step:
-    return lambda: _sound(machine, next_pc, hertz, time8_ms(time))
+def _beep8(machine: Execution, next_pc: int, time8: int, hertz: int) -> Step:
+    return lambda: _sound(machine, next_pc, hertz, time8_ms(time8))
 
 
 def _sound(machine: Execution, next_pc: int, hertz: int, duration_ms: int) -> int:

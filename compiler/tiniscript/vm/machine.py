@@ -60,10 +60,10 @@ class Machine(Execution):
     """Runs the code of one image on one robot. It has no tasks."""
 
     def __init__(
-        self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+        self, code: bytes, robot: Robot, sensor_count: int = 0, seed: int = 1, now_ms: int = 0
     ) -> None:
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
-        super().__init__(robot, Task(seed, sensors, now_ms), now_ms)
+        super().__init__(robot, Task(seed, sensor_count, now_ms), now_ms)
         self.fault = ""
         self.at = 0  # where the instruction that runs, or has faulted, begins
         self.steps = 0  # instructions that have run

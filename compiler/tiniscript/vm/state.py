@@ -65,13 +65,13 @@ class Task:
                  "powers", "random_state", "readings", "stack", "started_ms", "variables",
                  "wait", "wake_ms")  # fmt: skip
 
-    def __init__(self, seed: int, sensors: int, now_ms: int) -> None:
+    def __init__(self, seed: int, sensor_count: int, now_ms: int) -> None:
         self.pc = 0
         self.stack: list[int] = []
         self.counters: list[int] = []
         self.calls: list[int] = []
         self.variables = [0] * VARIABLES
-        self.readings = [0] * sensors
+        self.readings = [0] * sensor_count
         self.random_state = seed
         self.started_ms = now_ms
         self.clock_ms = now_ms  # the program's own clock: where its last wait ended

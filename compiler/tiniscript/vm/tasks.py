@@ -101,10 +101,10 @@ class TaskMachine(Machine):
     """Runs the code of one image with tasks on one robot."""
 
     def __init__(
-        self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+        self, code: bytes, robot: Robot, sensor_count: int = 0, seed: int = 1, now_ms: int = 0
     ) -> None:
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
-        super().__init__(code, robot, sensors, seed, now_ms)
+        super().__init__(code, robot, sensor_count, seed, now_ms)
         starts = [*sorted(find_tasks(code), key=lambda task: not task.is_when), Start(0, False)]
         # in the order of rank, the main task last
         self.tasks = [TaskRecord(*start, rank, now_ms) for rank, start in enumerate(starts)]
@@ -397,11 +397,11 @@ class TaskMachine(Machine):
 
 
 def machine_of(
-    code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+    code: bytes, robot: Robot, sensor_count: int = 0, seed: int = 1, now_ms: int = 0
 ) -> Machine:
     """Return the machine for `code`, which is verified: one with a scheduler where it has tasks."""
     machine_class = TaskMachine if find_tasks(code) else Machine
-    return machine_class(code, robot, sensors, seed, now_ms)
+    return machine_class(code, robot, sensor_count, seed, now_ms)
 
 
 # -- the code ------------------------------------------------------------------------------------

@@ -74,14 +74,14 @@ class WasmImage:
             raise ImageRefused(_REFUSAL_NAMES[refusal_number])
 
     def machine(
-        self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+        self, code: bytes, robot: Robot, sensor_count: int = 0, seed: int = 1, now_ms: int = 0
     ) -> WasmMachine:
         """Return the machine, at the beginning of the program. The image already holds `code`.
 
         An image has one machine: a new one ends the previous one.
         """
         self.robot = robot
-        self.call("start", sensors, seed, now_ms % CLOCK_MS)
+        self.call("start", sensor_count, seed, now_ms % CLOCK_MS)
         return WasmMachine(self, now_ms)
 
     def close(self) -> None:

@@ -92,10 +92,10 @@ def value_of(answer: str) -> str:
     for line in answer.splitlines():
         for prefix in ("OK+Get:", "OK+NAME:", "OK+PASS:", "+"):
             if line.startswith(prefix) and not line.startswith("+DISC"):
-                rest = line.removeprefix(prefix)
+                value = line.removeprefix(prefix)
                 if prefix == "+":
-                    _, colon, rest = rest.replace("=", ":", 1).partition(":")
+                    _, colon, value = value.replace("=", ":", 1).partition(":")
                     if not colon:
                         continue
-                return rest.strip()
+                return value.strip()
     return ""

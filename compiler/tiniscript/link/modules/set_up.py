@@ -52,9 +52,9 @@ def name_for(robot_id: int) -> str:
     return f"{NAME_START}{robot_id & 0xFFFF:04X}"
 
 
-def unsupported_setting(wanted: WantedSettings, dialect: Dialect) -> str:
+def unsupported_setting(settings: WantedSettings, dialect: Dialect) -> str:
     """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
-    name, pin, baud = wanted
+    name, pin, baud = settings
     if name is not None and (
         not name.strip() or name != name.strip() or set(name) - NAME_LETTERS
         or len(name) > dialect.name_bytes
@@ -66,9 +66,9 @@ def unsupported_setting(wanted: WantedSettings, dialect: Dialect) -> str:
     return BAUD if baud is not None and baud not in dialect.baud_codes else ""
 
 
-def plan_steps(wanted: WantedSettings, dialect: Dialect) -> list[Step]:
+def plan_steps(settings: WantedSettings, dialect: Dialect) -> list[Step]:
     """Return what is to be sent, in this order. Nothing is sent here."""
-    name, pin, baud = wanted
+    name, pin, baud = settings
     plan = (
         (NAME, name, dialect.name_commands, name),
         (PIN, pin, dialect.pin_commands, pin),

@@ -76,12 +76,12 @@ class MessageReader:
 
     def __init__(self, limit_bytes: int) -> None:
         self.limit_bytes = limit_bytes
-        self._rest = b""
+        self._incomplete_line = b""
 
     def put(self, data: bytes) -> list[JsonMessage]:
         """Return the messages that are now complete. Raises BadMessage."""
-        *lines, self._rest = (self._rest + data).split(b"\n")
-        if any(len(line) > self.limit_bytes for line in (*lines, self._rest)):
+        *lines, self._incomplete_line = (self._incomplete_line + data).split(b"\n")
+        if any(len(line) > self.limit_bytes for line in (*lines, self._incomplete_line)):
             raise BadMessage
         return [message_of(line) for line in lines]
 

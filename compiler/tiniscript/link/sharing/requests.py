@@ -124,10 +124,10 @@ def _bounded_number(message: JsonMessage, name: str, limit: int, default: int | 
     return number
 
 
-def _bytes(message: JsonMessage, name: str, least: int, most: int) -> bytes:
+def _bytes(message: JsonMessage, name: str, least_bytes: int, most_bytes: int) -> bytes:
     """Return so many bytes. Raises BadMessage."""
     data = protocol.read_bytes(message, name)
-    if not least <= len(data) <= most:
+    if not least_bytes <= len(data) <= most_bytes:
         raise BadMessage
     return data
 
