@@ -62,6 +62,8 @@ export class Blocks {
   #isTouched = false; // by somebody, who may have scrolled
   /** @type {import('./form.js').Stood} */
   #stood = new Map();
+  /** Where the next blocks stand, whatever is known of those before. @type {import('./form.js').Stood | null} */
+  #next = null;
   /** @type {Blockly.icons.WarningIcon | null} */
   #opening = null;
   #closed = ''; // the message that somebody has put away
@@ -371,6 +373,7 @@ export class Blocks {
   begin() {
     this.#isTouched = false;
     this.#stood.clear();
+    this.#next = null;
   }
 
   /**
@@ -378,7 +381,8 @@ export class Blocks {
    * @param {Form} form
    * @param {import('./form.js').Stood} known
    */
-  show(form, known = knownPlaces(this.#workspace, this.#stood)) {
+  show(form, known = this.#next ?? knownPlaces(this.#workspace, this.#stood)) {
+    this.#next = null;
     const workspace = this.#workspace;
     const { scrollX, scrollY } = workspace;
     const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
@@ -419,6 +423,21 @@ export class Blocks {
     this.#use(found.form);
     this.#greyLoose();
     return found;
+  }
+
+  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').Stand} */
+  get stand() {
+    /** @type {import('./form.js').Stood} */
+    const stood = new Map();
+    keepPlaces(this.#workspace, stood);
+    return JSON.stringify([...stood].sort(([a], [b]) => (a < b ? -1 : 1)));
+  }
+
+  /** Has the next blocks stand there again. @param {import('../writing/editor.js').Stand} stand */
+  set stand(stand) {
+    /** @type {[string, {x: number, y: number}[]][]} */
+    const stood = JSON.parse(stand);
+    this.#next = new Map(stood.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
   }
 
   /** What is not joined to the program looks it, and is found where it is now. */
