@@ -13,6 +13,7 @@ import { pictureOf } from './picture.js';
 import { Search } from './search.js';
 import { look } from './styles.js';
 import { found, levelOf, toolbox } from './toolbox.js';
+import { Sight } from './sight.js';
 import { zoomOf } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
@@ -78,6 +79,8 @@ export class Blocks {
   #findings = [];
   /** @type {SVGElement[]} */
   #mates = [];
+  /** Has what runs be seen. @type {Sight | null} */
+  #sight = null;
 
   /**
    * @param {HTMLElement} place
@@ -101,7 +104,10 @@ export class Blocks {
     setActuators(robot);
     this.#workspace = this.#begin();
     for (const kind of ['pointerdown', 'wheel', 'keydown']) {
-      place.addEventListener(kind, () => { this.#isTouched = true; }, { capture: true, passive: true });
+      place.addEventListener(kind, () => {
+        this.#isTouched = true;
+        this.#sight?.leave();
+      }, { capture: true, passive: true });
     }
   }
 
@@ -222,6 +228,7 @@ export class Blocks {
       this.#zoom?.remove();
       this.#zoom = zoomOf(workspace, SCALE);
       this.#place.append(this.#zoom);
+      this.#sight = new Sight(workspace);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
@@ -356,6 +363,7 @@ export class Blocks {
     this.#search?.fit();
     if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#seeBeginning();
+    this.#sight?.keep();
     for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
 
@@ -555,7 +563,9 @@ export class Blocks {
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
   showRunning(ranges) {
-    this.#mark('running', ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+    const ids = ranges.map(({ line, column }) => this.#blockAt(line, column) ?? '');
+    this.#mark('running', ids);
+    this.#sight?.see(ids);
   }
 
   /** Gives a look to these blocks, and to no others. @param {string} look @param {string[]} ids */

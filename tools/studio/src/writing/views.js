@@ -88,6 +88,7 @@ export class Views {
       if (this.#isOn) this.#refresh(true);
     });
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
+    new MutationObserver(() => this.#blocks?.resize()).observe(document.documentElement, { attributeFilter: ['data-big'] }); // its groups are narrower then
     pageState.language.subscribe(() => this.#showWords());
     pageState.areWordsShown.subscribe(() => this.#showWords());
     pageState.robotName.subscribe(() => this.#setRobot());
