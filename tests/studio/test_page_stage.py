@@ -235,7 +235,7 @@ def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
             )
             assert page.locator("#writing").is_visible() != is_full
             assert page.locator("#stop").is_visible() and page.locator("#run").is_visible()
-            assert not is_full or page.evaluate(AREA) > 1366 * 768 / 2
+            assert not is_full or page.evaluate(AREA) > 0.8 * 1366 * 768
             assert page.locator("#full").get_attribute("aria-pressed") == str(is_full).lower()
     page.click("#full")
     page.click("#run")
@@ -305,6 +305,12 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
     hears(page, lambda: page.evaluate(AREA) > small, "more of the robot")
+    page.click("#run")
+    in_phase(page, "running")
+    shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"
+    assert page.locator("body > header button").evaluate_all(shown_buttons) in ([], ["stop"])
+    assert page.evaluate(AREA) > 0.6 * size[0] * size[1]
+    page.click("#stop")
     page.click("#full")
     turn(page, "program")
     write(page, FOREVER)

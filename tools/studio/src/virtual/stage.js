@@ -62,7 +62,11 @@ export class Stage {
       this.#fill(false);
       this.#shrink();
     });
-    pageState.side.subscribe(() => this.#fill(false));
+    let seen = pageState.side.value;
+    pageState.side.subscribe((side) => {
+      if (side !== seen) this.#fill(false); // a phone's Run shows the side that is seen
+      seen = side;
+    });
     pageState.language.subscribe(() => this.#show());
     this.#show();
   }
