@@ -23,9 +23,10 @@ STACKS = """all => {
   return boxes.map(([said, { x, y }]) => [[...said].sort().join(''), x - own.x, y - own.y])
     .map(([said, x, y]) => [said, Math.round(x), Math.round(y)]).sort();
 }"""
+# One hat at most: those that nobody has moved are lined up anew whenever a text is typed.
 PROGRAMS = (
     "SI|F(2, 80);\nS;\n",
-    "SI|F(2, 80);\nTASK;\n  W(1);\nEND_TASK;\nWHEN(DISTANCE < 20);\n  B(1, 60);\nEND_WHEN;\n",
+    "SI|F(2, 80);\nWHEN(DISTANCE < 20);\n  B(1, 60);\nEND_WHEN;\n",
     "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n\n/// W(2)\n",
 )
 Seen = tuple[str, list[Any]]
