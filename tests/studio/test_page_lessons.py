@@ -146,7 +146,7 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
         assert page.locator("#lesson_end").is_hidden()
 
 
-RUNNING = ".blocklyBlockCanvas .running, .cm-content .running"
+RUNNING = ".blocklyBlockCanvas .running, .cm-running"
 
 
 def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:

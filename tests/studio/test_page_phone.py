@@ -103,7 +103,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) ->
     turn(phone, "robot")
     phone.click("#side_lessons")
     phone.click("#run")
-    assert phone.locator("#arena").is_visible() and phone.locator("#lesson_page").is_visible()
+    assert phone.locator("#arena").is_visible() and phone.locator("#lesson_steps").is_visible()
     phone.keyboard.press("Escape")
     turn(phone, "program")
     write(phone, "SI|F(9, 80)")

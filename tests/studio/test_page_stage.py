@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.support.studio import Pages, axe, hears, in_phase, speak, turn, write
+from tests.support.studio import Pages, axe, hears, in_phase, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -87,6 +88,106 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     hears(page, lambda: page.evaluate(AREA) == small, "as before")
 
 
+@pytest.mark.sampled("size")
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
+def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
+    page: Page, size: tuple[int, int]
+) -> None:
+    """The step comes back by the lesson's own buttons, the check is in reach all the time."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    turn(page, "program")
+    write(page, FOREVER)
+    turn(page, "robot")
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    page.select_option("#lesson", "3")
+    page.locator("#lesson_page[data-lesson='3']").wait_for()
+    page.locator("#lesson_steps button").last.click()
+    small = page.evaluate(AREA)
+    large = size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
+    for is_ended in (False, True):
+        page.click("#run")
+        in_phase(page, "running")
+        hears(page, lambda: page.evaluate(AREA) >= large, "a large part of the page")
+        hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+        assert not page.locator("#lesson_page").is_visible()
+        assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
+        if is_ended:
+            page.keyboard.press("Escape")
+            in_phase(page, "ended")
+            assert page.evaluate(AREA) > small
+        page.locator("#lesson_steps button").last.click()
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) == small
+    page.click("#run")
+    in_phase(page, "running")
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict]").wait_for()
+    assert page.evaluate(AREA) <= small and page.locator("#lesson_page").is_visible()
+    page.click("#side_virtual")
+    turn(page, "program")
+
+
+# Of the blocks that run, those that are cut off by the edges of the program.
+UNSEEN = """() => {
+  const seen = document.querySelector('#blocks .blocklySvg').getBoundingClientRect();
+  const left = document.querySelector('#blocks .blocklyToolbox').getBoundingClientRect().right;
+  return [...document.querySelectorAll('#blocks .running')].filter((each) => {
+    const box = each.querySelector(':scope > .blocklyPath').getBoundingClientRect();
+    return box.left < left || box.right > seen.right || box.top < seen.top || box.top + 24 > seen.bottom;
+  }).map((each) => each.textContent);
+}"""  # noqa: E501
+HATS = """SI|LOOP(FOREVER);
+  F(1, 60);
+END_LOOP;
+TASK;
+  LOOP(FOREVER);
+    BEEP(0.1, 440);
+    W(1);
+  END_LOOP;
+END_TASK;
+WHEN(DISTANCE < 5);
+  B(1, 60);
+END_WHEN;
+"""
+
+
+@pytest.mark.sampled("size")
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600)], ids=str)
+def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None:
+    """However narrow a large robot leaves the program, and wherever somebody has put a hat; then
+    all is as it was."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.select_option("#world", "free")
+    write(page, HATS)
+    page.click("#view_blocks")
+    shown(page)
+    canvas = page.locator("#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas")
+    if size[0] == 1366:  # else it is below the others, out of sight
+        hat = canvas.locator("> .blocklyDraggable", has_text="each time")
+        box = hat.locator("> .blocklyPath").first.bounding_box()
+        assert box
+        page.mouse.move(box["x"] + 10, box["y"] + 20)
+        page.mouse.down()
+        page.mouse.move(640, 330, steps=8)
+        page.mouse.up()
+        shown(page)
+
+    def place() -> list[int]:
+        transform = canvas.get_attribute("transform") or ""
+        return [round(100 * float(each)) for each in re.findall(r"[-\d.e]+(?=[,)])", transform)]
+
+    whole = place()
+    page.click("#run")
+    in_phase(page, "running")
+    hears(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
+    hears(page, lambda: not page.evaluate(UNSEEN), "all are seen")
+    page.click("#stop")
+    in_phase(page, "ended")
+    page.hover("#blocks")
+    hears(page, lambda: place() == whole, "as before")
+    page.click("#view_text")
+
+
 def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
     """As a lesson's is, whose goal would be out of sight."""
     write(page, "SI|F(0.1, 20);\n")
@@ -134,7 +235,7 @@ def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
             )
             assert page.locator("#writing").is_visible() != is_full
             assert page.locator("#stop").is_visible() and page.locator("#run").is_visible()
-            assert not is_full or page.evaluate(AREA) > 1366 * 768 / 2
+            assert not is_full or page.evaluate(AREA) > 0.8 * 1366 * 768
             assert page.locator("#full").get_attribute("aria-pressed") == str(is_full).lower()
     page.click("#full")
     page.click("#run")
@@ -204,5 +305,19 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
     hears(page, lambda: page.evaluate(AREA) > small, "more of the robot")
+    page.click("#run")
+    in_phase(page, "running")
+    shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"
+    assert page.locator("body > header button").evaluate_all(shown_buttons) in ([], ["stop"])
+    assert page.evaluate(AREA) > 0.6 * size[0] * size[1]
+    page.click("#stop")
     page.click("#full")
+    turn(page, "program")
+    write(page, FOREVER)
+    turn(page, "robot")
+    choose(page, "above")  # as it is where nobody has chosen
+    page.click("#run")
+    in_phase(page, "running")
+    hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+    page.keyboard.press("Escape")
     turn(page, "program")

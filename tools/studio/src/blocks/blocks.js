@@ -13,6 +13,7 @@ import { pictureOf } from './picture.js';
 import { Search } from './search.js';
 import { look } from './styles.js';
 import { found, levelOf, toolbox } from './toolbox.js';
+import { Sight } from './sight.js';
 import { zoomOf } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
@@ -62,6 +63,8 @@ export class Blocks {
   #isTouched = false; // by somebody, who may have scrolled
   /** @type {import('./form.js').Stood} */
   #stood = new Map();
+  /** Where the next blocks stand, whatever is known of those before. @type {import('./form.js').Stood | null} */
+  #next = null;
   /** @type {Blockly.icons.WarningIcon | null} */
   #opening = null;
   #closed = ''; // the message that somebody has put away
@@ -76,6 +79,8 @@ export class Blocks {
   #findings = [];
   /** @type {SVGElement[]} */
   #mates = [];
+  /** Has what runs be seen. @type {Sight | null} */
+  #sight = null;
 
   /**
    * @param {HTMLElement} place
@@ -99,7 +104,10 @@ export class Blocks {
     setActuators(robot);
     this.#workspace = this.#begin();
     for (const kind of ['pointerdown', 'wheel', 'keydown']) {
-      place.addEventListener(kind, () => { this.#isTouched = true; }, { capture: true, passive: true });
+      place.addEventListener(kind, () => {
+        this.#isTouched = true;
+        this.#sight?.leave();
+      }, { capture: true, passive: true });
     }
   }
 
@@ -220,6 +228,7 @@ export class Blocks {
       this.#zoom?.remove();
       this.#zoom = zoomOf(workspace, SCALE);
       this.#place.append(this.#zoom);
+      this.#sight = new Sight(workspace);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
@@ -354,6 +363,7 @@ export class Blocks {
     this.#search?.fit();
     if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#seeBeginning();
+    this.#sight?.keep();
     for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
 
@@ -371,6 +381,7 @@ export class Blocks {
   begin() {
     this.#isTouched = false;
     this.#stood.clear();
+    this.#next = null;
   }
 
   /**
@@ -378,7 +389,8 @@ export class Blocks {
    * @param {Form} form
    * @param {import('./form.js').Stood} known
    */
-  show(form, known = knownPlaces(this.#workspace, this.#stood)) {
+  show(form, known = this.#next ?? knownPlaces(this.#workspace, this.#stood)) {
+    this.#next = null;
     const workspace = this.#workspace;
     const { scrollX, scrollY } = workspace;
     const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
@@ -419,6 +431,21 @@ export class Blocks {
     this.#use(found.form);
     this.#greyLoose();
     return found;
+  }
+
+  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').Stand} */
+  get stand() {
+    /** @type {import('./form.js').Stood} */
+    const stood = new Map();
+    keepPlaces(this.#workspace, stood);
+    return JSON.stringify([...stood].sort(([a], [b]) => (a < b ? -1 : 1)));
+  }
+
+  /** Has the next blocks stand there again. @param {import('../writing/editor.js').Stand} stand */
+  set stand(stand) {
+    /** @type {[string, {x: number, y: number}[]][]} */
+    const stood = JSON.parse(stand);
+    this.#next = new Map(stood.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
   }
 
   /** What is not joined to the program looks it, and is found where it is now. */
@@ -536,7 +563,9 @@ export class Blocks {
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
   showRunning(ranges) {
-    this.#mark('running', ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+    const ids = ranges.map(({ line, column }) => this.#blockAt(line, column) ?? '');
+    this.#mark('running', ids);
+    this.#sight?.see(ids);
   }
 
   /** Gives a look to these blocks, and to no others. @param {string} look @param {string[]} ids */

@@ -15,7 +15,8 @@ import { drawWorld, lightTile } from '../world/floor.js';
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 
 const MARGIN_CM = 4;
-const LEAST_ROBOT = 72; // pixels of a robot that the camera follows
+const LEAST_ROBOT = 72; // pixels of a robot that the camera follows,
+const MOST_ROBOT = 0.4; // unless that is more of the picture's shorter side
 const BEHIND = 0.78; // of the picture's height is ahead of a robot that is seen from behind
 const NEARER = 1.7; // than from above: what is far is small then
 /** @typedef {'whole' | 'near' | 'behind'} Camera */
@@ -198,7 +199,8 @@ export class Arena {
     const fit = Math.min(width / (whole[0] ?? 1), height / (whole[1] ?? 1));
     const camera = this.#mark ? 'whole' : this.#camera;
     const long = Math.max(...(this.#robot?.outline ?? [[1]]).map(([ahead = 0]) => ahead)) - Math.min(...(this.#robot?.outline ?? [[0]]).map(([ahead = 0]) => ahead));
-    const scale = camera === 'whole' ? fit : Math.max(fit, (LEAST_ROBOT * (camera === 'behind' ? NEARER : 1) * (window.devicePixelRatio || 1)) / long);
+    const large = Math.min(LEAST_ROBOT * (window.devicePixelRatio || 1), MOST_ROBOT * Math.min(width, height));
+    const scale = camera === 'whole' ? fit : Math.max(fit, (large * (camera === 'behind' ? NEARER : 1)) / long);
     if (Math.abs(scale - this.#scale) > 1e-9 || this.#floor.width !== Math.ceil((whole[0] ?? 0) * scale)) {
       this.#scale = scale;
       Object.assign(this.#floor, { width: Math.ceil((whole[0] ?? 0) * scale), height: Math.ceil((whole[1] ?? 0) * scale) });

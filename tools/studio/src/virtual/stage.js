@@ -51,12 +51,22 @@ export class Stage {
     });
     // Whoever goes on writing has the room for it again.
     for (const kind of ['pointerenter', 'focusin']) element('writing', HTMLElement).addEventListener(kind, () => this.#shrink());
+    // Whoever is at a lesson reads on: once a button has been pressed, which else would go from under the finger.
+    const lessons = element('lessons', HTMLElement);
+    lessons.addEventListener('click', () => this.#shrink(true));
+    lessons.addEventListener('focusin', ({ target }) => {
+      if (target instanceof Element && target.matches(':focus-visible')) this.#shrink();
+    });
     pageState.screen.subscribe((screen) => {
       if (screen !== 'start') return;
       this.#fill(false);
       this.#shrink();
     });
-    pageState.side.subscribe(() => this.#fill(false));
+    let seen = pageState.side.value;
+    pageState.side.subscribe((side) => {
+      if (side !== seen) this.#fill(false); // a phone's Run shows the side that is seen
+      seen = side;
+    });
     pageState.language.subscribe(() => this.#show());
     this.#show();
   }
@@ -65,7 +75,7 @@ export class Stage {
     return 'full' in root.dataset;
   }
 
-  /** A run of the whole program begins: it has a third of a large page. */
+  /** A run of the whole program begins: it has a third of a large page, and is followed. */
   begin() {
     root.dataset['big'] = '';
     this.#show();
@@ -76,8 +86,9 @@ export class Stage {
     this.#shrink();
   }
 
-  #shrink() {
-    if (!('big' in root.dataset) || ['running', 'paused'].includes(root.dataset['phase'] ?? '')) return;
+  /** @param {boolean} isAsked also while something runs */
+  #shrink(isAsked = false) {
+    if (!('big' in root.dataset) || (!isAsked && ['running', 'paused'].includes(root.dataset['phase'] ?? ''))) return;
     delete root.dataset['big'];
     this.#show();
   }
@@ -103,8 +114,7 @@ export class Stage {
 
   /** @returns {Camera} */
   get #now() {
-    const isLarge = this.isFull || ('big' in root.dataset && matchMedia('(min-width: 1280px)').matches);
-    return this.#chosen || (isLarge ? 'near' : 'whole');
+    return this.#chosen || (this.isFull || 'big' in root.dataset ? 'near' : 'whole');
   }
 
   #show() {

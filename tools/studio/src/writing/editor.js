@@ -4,7 +4,7 @@
 // exception for styles in elements.
 
 import { autocompletion, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { Compartment, EditorState, Prec, StateEffect, StateField } from '@codemirror/state';
@@ -18,6 +18,7 @@ import { text, textsOf } from '../page/texts.js';
 
 /** @import { Finding, Change } from '../python.js' */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
+/** @typedef {string} Stand where blocks stand, as only they read it */
 
 /** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */
 const setRunning = StateEffect.define();
@@ -34,6 +35,11 @@ const running = StateField.define({
   },
   provide: (field) => EditorView.decorations.from(field),
 });
+
+/** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: Stand, after: Stand}>} */
+const setStand = StateEffect.define();
+const undoneStands = invertedEffects.of(({ effects }) => effects.flatMap((each) => (
+  each.is(setStand) ? [setStand.of({ before: each.value.after, after: each.value.before })] : [])));
 
 const theme = EditorView.theme({
   '&': { height: '100%', fontSize: '1rem', backgroundColor: 'var(--card)', color: 'var(--ink)' },
@@ -69,6 +75,8 @@ export class Editor {
   #places = null;
   #marked = ''; // what runs
   #held = -1; // where the program is held, and the editor has been scrolled to
+  /** Hears where blocks stand again. @type {(stand: Stand) => void} */
+  #whenStood = () => {};
 
   /** @param {HTMLElement} parent */
   constructor(parent) {
@@ -84,11 +92,16 @@ export class Editor {
       state: EditorState.create({
         extensions: [
           EditorView.updateListener.of((update) => { // before breakpoints are told: they are of another text
-            if (!update.docChanged) return;
-            this.#places = null;
-            this.#marked = '';
-            pageState.programText.set(this.text);
+            if (update.docChanged) {
+              this.#places = null;
+              this.#marked = '';
+              pageState.programText.set(this.text);
+            }
+            for (const each of update.transactions.filter((one) => one.isUserEvent('undo') || one.isUserEvent('redo'))) {
+              for (const effect of each.effects) if (effect.is(setStand)) this.#whenStood(effect.value.after);
+            }
           }),
+          undoneStands,
           breakpoints(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
           this.#history.of(history()),
@@ -159,10 +172,23 @@ export class Editor {
     this.#view.dispatch({ effects: this.#history.reconfigure(history()) });
   }
 
-  /** Puts in the text of changed blocks, as one step of undo. @param {string} whole */
-  replaceByBlocks(whole) {
+  /** @param {(stand: Stand) => void} act is done where an undo or a redo has blocks stand elsewhere */
+  whenStood(act) {
+    this.#whenStood = act;
+  }
+
+  /**
+   * Puts in the text of changed blocks and where they stand, as one step of undo.
+   * @param {string} whole
+   * @param {{before: Stand, after: Stand}} stands
+   */
+  replaceByBlocks(whole, stands) {
     const before = this.text;
-    if (whole === before) return;
+    const effects = stands.before === stands.after ? [] : [setStand.of(stands)];
+    if (whole === before) {
+      if (effects.length) this.#view.dispatch({ effects, annotations: isolateHistory.of('full'), userEvent: 'move.blocks' });
+      return;
+    }
     let from = 0;
     while (from < Math.min(before.length, whole.length) && before[from] === whole[from]) from += 1;
     let same = 0;
@@ -171,6 +197,7 @@ export class Editor {
     this.#view.dispatch({
       scrollIntoView: true,
       changes: { from, to: before.length - same, insert: whole.slice(from, whole.length - same) },
+      effects,
       annotations: isolateHistory.of('full'),
       userEvent: 'input.blocks',
     });

@@ -42,6 +42,8 @@ export class Views {
   #isWanted = false; // blocks of a text that does not parse, too
   #changes = 0; // of blocks that their text does not have yet
   #form = ''; // what the blocks were when they and the text were the same
+  /** Where they stood then. @type {import('./editor.js').Stand} */
+  #stand = '';
   #typing = 0;
   #sending = 0;
   /** @type {Finding[]} */
@@ -79,7 +81,14 @@ export class Views {
         this.#refresh(true);
       }, { capture: true });
     }
+    editor.whenStood((stand) => {
+      if (!this.#blocks) return;
+      this.#blocks.stand = stand;
+      this.#shown = null; // also where the text is the same
+      if (this.#isOn) this.#refresh(true);
+    });
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
+    new MutationObserver(() => this.#blocks?.resize()).observe(document.documentElement, { attributeFilter: ['data-big'] }); // its groups are narrower then
     pageState.language.subscribe(() => this.#showWords());
     pageState.areWordsShown.subscribe(() => this.#showWords());
     pageState.robotName.subscribe(() => this.#setRobot());
@@ -311,13 +320,19 @@ export class Views {
         this.#changes = 0;
         const { form, ids } = this.#blocks.read();
         const whole = JSON.stringify(form);
-        if (whole === this.#form) break; // a block was only moved about
+        const stands = { before: this.#stand, after: this.#blocks.stand };
+        if (whole === this.#form) { // a block was only moved about
+          this.#stand = stands.after;
+          this.#page.editor.replaceByBlocks(before, stands);
+          break;
+        }
         const answer = await this.#page.python.ask({ do: 'text', form });
         if (this.#changes || this.#page.editor.text !== before) continue;
         this.#shown = answer.text;
         this.#form = whole;
+        this.#stand = stands.after;
         this.#blocks.placed(ids, answer.places);
-        this.#page.editor.replaceByBlocks(answer.text);
+        this.#page.editor.replaceByBlocks(answer.text, stands);
         this.#showBreakpoints();
       }
     } catch (why) {
@@ -336,7 +351,12 @@ export class Views {
       this.#changes = 0;
       const { form, ids } = this.#blocks.read();
       const whole = JSON.stringify(form);
-      if (whole === this.#form) return;
+      const stands = { before: this.#stand, after: this.#blocks.stand };
+      this.#stand = stands.after;
+      if (whole === this.#form) { // which is no change of the group's
+        this.#page.editor.replaceByBlocks(this.#page.editor.text, stands);
+        return;
+      }
       this.#form = whole;
       const answer = await group.write(form, ids);
       if (!answer?.is_shown) return;
@@ -377,6 +397,7 @@ export class Views {
         this.#blocks.setGiven(isGiven(now) ? form : null);
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
+        this.#stand = this.#blocks.stand;
         if (group && !(await group.blocksShown(this.#blocks.lines)).is_known) this.#shown = null;
         this.#showAll();
       }

@@ -1,0 +1,130 @@
+"""One undo for the program's text and the places of its blocks, whichever of them was changed."""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.studio.test_page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
+from tests.support.studio import SETTLED, Pages, hears, shown, speak, write
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from playwright.sync_api import Page
+
+# What each stack says, in any order of its parts, and where it stands, from the program on.
+STACKS = """all => {
+  const boxes = all.map((each) => [each.textContent, each.querySelector('.blocklyPath')
+    .getBoundingClientRect()]);
+  const [, own] = boxes.find(([said]) => /when\\s+it\\s+starts/.test(said));
+  return boxes.map(([said, { x, y }]) => [[...said].sort().join(''), x - own.x, y - own.y])
+    .map(([said, x, y]) => [said, Math.round(x), Math.round(y)]).sort();
+}"""
+# One hat at most: those that nobody has moved are lined up anew whenever a text is typed.
+PROGRAMS = (
+    "SI|F(2, 80);\nS;\n",
+    "SI|F(2, 80);\nWHEN(DISTANCE < 20);\n  B(1, 60);\nEND_WHEN;\n",
+    "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n\n/// W(2)\n",
+)
+Seen = tuple[str, list[Any]]
+
+
+@pytest.fixture
+def page(only_page: tuple[Pages, Page]) -> Any:
+    pages, found = only_page
+    found.bring_to_front()
+    found.set_viewport_size({"width": 1366, "height": 768})
+    speak(found, "en")
+    yield found
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def seen(page: Page) -> Seen:
+    page.evaluate(SETTLED)  # Blockly tells of a change a moment later
+    text = text_of(page)
+    return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
+
+
+def becomes_seen(page: Page, wanted: Seen) -> None:
+    hears(page, lambda: seen(page) == wanted, str(wanted))
+
+
+def move(page: Page, words: str, to: tuple[float, float]) -> None:
+    box = box_of(block(page, words))
+    page.mouse.move(box["x"] + 8, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(*to, steps=6)
+    page.mouse.up()
+    page.locator("#blocks[data-state=shown]").wait_for()
+
+
+def _moves(page: Page, dice: random.Random) -> None:
+    """A hat, or a loose stack, to an empty place at the right."""
+    words = [each for each in ("same time", "each time", "new word", "wait")
+             if block(page, each).count()]  # fmt: skip
+    if words:
+        move(page, dice.choice(words), (dice.randint(480, 560), dice.randint(330, 560)))
+
+
+def _adds(page: Page, dice: random.Random) -> None:
+    drag(page, *dice.choice((("Events", "same time"), ("Events", "each time"), ("Move", "back"))),
+         None)  # fmt: skip
+
+
+def _types(page: Page, dice: random.Random) -> None:
+    text = text_of(page)
+    page.click("#view_text")
+    write(page, text.replace("SI|", f"SI|W({dice.randint(1, 9)});\n"))
+    page.click("#view_blocks")
+
+
+ACTS: tuple[Callable[[Page, random.Random], None], ...] = (_moves, _moves, _adds, _types)
+
+
+@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.parametrize("seed", range(12))
+def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -> None:
+    """And each redo those after: also where only the text or only a place had changed."""
+    dice = random.Random(seed)
+    page.select_option("#robot", "tinibot32")
+    start(page, dice.choice(PROGRAMS), "usual")
+    past = [seen(page)]
+    for act in (_moves, *dice.choices(ACTS, k=5)):
+        act(page, dice)
+        if (now := seen(page)) != past[-1]:
+            past.append(now)
+    for wanted in past[-2::-1]:
+        page.click("#undo")
+        becomes_seen(page, wanted)
+    for wanted in past[1:]:
+        page.click("#redo")
+        becomes_seen(page, wanted)
+
+
+def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
+    """After it was dragged in, or the program was written as text: in the blocks and by the key."""
+    start(page, "SI|F(2, 80);\n")
+    drag(page, "Events", "each time", None)
+    whole = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
+    becomes(page, whole)
+    for begins in ("dragged", "written"):
+        if begins == "written":
+            start(page, whole)
+        before = seen(page)
+        move(page, "each time", (520, 560))
+        after = seen(page)
+        assert after[0] == whole and after != before
+        page.click("#undo")
+        becomes_seen(page, before)
+        page.click("#redo")
+        becomes_seen(page, after)
+        page.click("#view_text")
+        page.locator(".cm-content").focus()
+        page.keyboard.press("Control+z")
+        page.click("#view_blocks")
+        shown(page)
+        assert seen(page) == before
