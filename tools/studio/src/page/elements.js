@@ -1,5 +1,7 @@
 // The elements of `index.html`, by their ids.
 
+const TEXT_NODE = 3; // of `Node.nodeType`
+
 /**
  * @template {HTMLElement} T
  * @param {string} id
@@ -16,7 +18,7 @@ export function element(id, kind) {
 export function say(place, said) {
   const { firstChild } = place;
   if (place.textContent === said) return;
-  if (said && firstChild instanceof Text && !firstChild.nextSibling) firstChild.data = said; // for which less is laid out
+  if (said && firstChild?.nodeType === TEXT_NODE && !firstChild.nextSibling) firstChild.nodeValue = said; // for which less is laid out
   else place.textContent = said;
 }
 
