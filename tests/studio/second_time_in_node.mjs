@@ -129,7 +129,7 @@ const PARTS = {
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
-    const panel = { isFree: true, byHost: () => notes.push('to the robot') };
+    const panel = { isFree: true, byHost: () => notes.push('to the robot'), seeNothing() {} };
     const work = { text: 'F(1)', robot: 'tinibot' };
     const puts = (given) => {
       notes.push(['given', given.text]);
@@ -1420,7 +1420,8 @@ const PARTS = {
     const { Recorder } = await page.load('robot/recorder.js');
     const { Runs } = await page.load('virtual/runs.js');
     const runs = new Runs();
-    const recorder = new Recorder({ runs, see() {} });
+    page.byId('record_play').hidden = true; // as in index.html
+    const recorder = new Recorder({ runs, play() {} });
     recorder.sends({ program: 'aa', places: [], shows: [], variables: [] });
     let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
