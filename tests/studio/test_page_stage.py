@@ -66,6 +66,7 @@ def choose(page: Page, camera: str) -> None:
 @pytest.mark.sampled("world")
 @pytest.mark.parametrize("world", ["obstacles", "light", "delivery", "free"])
 def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -> None:
+    page.reload()  # whoever has chosen a camera keeps it
     page.select_option("#world", world)
     write(page, FOREVER)
     small = page.evaluate(AREA)
