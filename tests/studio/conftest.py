@@ -84,10 +84,9 @@ def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Pa
 
 @pytest.fixture
 def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
-    """The page in English, for a tinibot. What it says of errors is looked at after each test."""
+    """The page as `begin_anew` has it. What it says of errors is looked at after each test."""
     pages, found = only_page
-    studio.speak(found, "en")
-    found.select_option("#robot", "tinibot")
+    studio.begin_anew(found)
     yield found
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong

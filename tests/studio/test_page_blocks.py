@@ -46,18 +46,11 @@ KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
 
 
 @pytest.fixture
-def page(only_page: tuple[Pages, Page]) -> Any:
-    """A page in English with blocks of a small program."""
-    pages, found = only_page
-    found.bring_to_front()  # another test's page may have the focus
-    found.set_default_timeout(PATIENCE_MS)
-    found.set_viewport_size({"width": 1366, "height": 768})
-    speak(found, "en")
-    found.select_option("#robot", "tinibot")
-    start(found, "SI|F(2, 80);\nS;\n")
-    yield found
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+def page(page: Page) -> Page:
+    """A page with blocks of a small program."""
+    page.set_default_timeout(PATIENCE_MS)
+    start(page, "SI|F(2, 80);\nS;\n")
+    return page
 
 
 def start(page: Page, text: str, level: str = "few") -> None:
@@ -698,15 +691,16 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     drag(page, "Move", "back", block(page, "stop"))
     kept = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
     becomes(page, kept)  # a hat that nobody moves stays after the block that it stood after
-    hats = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="each time")
-    box, above = box_of(hats.last), box_of(hats.first)
+    upper, last = (
+        page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
+    )
+    box, above = box_of(last), box_of(upper)
     page.mouse.move(box["x"] + 12, box["y"] + 16)
     page.mouse.down()
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
     moved = kept.replace(first + then, then + first)
     becomes(page, moved)
-    last = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="20")
     place = box_of(last)
     assert place["x"] > above["right"] and place["y"] < above["y"]
     page.click("#undo")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -20,6 +20,7 @@ from tests.studio.test_page_blocks import (
     start,
     text_of,
 )
+from tests.studio.test_page_runs import kept
 from tests.support.node import in_node
 from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, speak
 
@@ -33,18 +34,9 @@ GAP = 30  # pixels between a block and its message
 
 
 @pytest.fixture
-def page(only_page: tuple[Pages, Page]) -> Any:
-    pages, found = only_page
-    found.bring_to_front()
-    found.set_viewport_size({"width": 1366, "height": 768})
-    speak(found, "en")
-    found.click("#side_virtual")
-    found.select_option("#robot", "tinibot")
-    found.select_option("#speed", "20")
-    yield found
-    found.keyboard.press("Escape")
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+def page(page: Page) -> Page:
+    page.select_option("#speed", "20")
+    return page
 
 
 def touch(page: Page, words: str) -> None:
@@ -87,6 +79,8 @@ END_DEF;
 
 def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -> None:
     """With the words that it uses, too; a value is shown, and a hat runs what is below it."""
+    runs = kept(page)
+    page.click("#runs_close")
     start(page, WHOLE)
     text = text_of(page)
     for words, sounds, shows in (
@@ -103,8 +97,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     page.mouse.click(box["x"] + 6, box["y"] + 4)
     assert any(each.startswith("SHOW") for each in did(page))
     assert text_of(page) == text
-    page.click("#runs_open")
-    assert page.locator("#runs_list li").count() == 0  # what was tried is no run to keep
+    assert kept(page) == runs  # what was tried is no run to keep
     page.click("#runs_close")
 
 

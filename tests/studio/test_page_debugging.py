@@ -26,13 +26,10 @@ LOOP(3);
 END_LOOP"""
 
 
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    page.set_viewport_size({"width": 1366, "height": 768})
-    page.keyboard.press("Escape")
-    page.click("#view_text")
+@pytest.fixture
+def page(page: Page) -> Page:
     page.select_option("#speed", "20")
-    page.click("#seen_arena")
+    return page
 
 
 def press_margin(page: Page, line: int) -> None:

@@ -36,7 +36,6 @@ PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 
 @pytest.fixture
 def page(page: Page) -> Page:
-    page.set_viewport_size({"width": 1366, "height": 768})
     page.select_option("#speed", "20")
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
@@ -375,7 +374,7 @@ def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
     page.click("#my_programs")
     page.go_back()
     page.click("#start_lessons")
-    page.locator("#lesson_next:enabled").wait_for()
+    page.locator("#lesson:enabled").wait_for()
     assert page.locator("#writing").is_visible()
 
 
@@ -416,6 +415,28 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     names = page.locator("#versions strong").all_inner_texts()
     page.click("#programs_close")
     assert lesson.title("en").replace(":", "") in names
+
+
+@drawn
+def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
+    """What was written in place of a lesson's program is in the list; one's own comes back."""
+    own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
+    write(page, own)
+    choose(page, 1)
+    page.locator("#lesson_steps button").first.click()
+    page.locator("#lesson_page .program button").first.click()
+    noted(page, "It is in the program now. Your own program is in My programs")
+    page.click("#side_virtual")
+    write(page, of_lesson)
+    page.click("#side_lessons")
+    choose(page, 11)
+    noted(page, "The program of the lesson before is in My programs.")
+    page.click("#home")
+    page.click("#start_write")
+    page.locator(".cm-content", has_text=own).wait_for()
+    page.click("#my_programs")
+    page.locator("#versions button", has_text=catalogue.load(FOLDERS[0]).title("en")).click()
+    page.locator(".cm-content", has_text=of_lesson).wait_for()
 
 
 def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:

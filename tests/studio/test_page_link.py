@@ -60,7 +60,8 @@ def first_robot() -> Iterator[PtyRobot]:
 
 @pytest.fixture
 def robot(first_robot: PtyRobot) -> PtyRobot:
-    """A robot that many tests share."""
+    """A robot that many tests share: each has it as new."""
+    first_robot.begin_anew()
     known_ports.remember(first_robot.port, "TINI")  # so that it is listed, and first
     return first_robot
 

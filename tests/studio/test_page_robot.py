@@ -46,13 +46,6 @@ def running(page: Page) -> str:
     return " ".join(page.locator(".cm-running").all_inner_texts())
 
 
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    page.keyboard.press("Escape")
-    page.select_option("#speed", "1")
-    page.select_option("#world", "obstacles")
-
-
 @pytest.mark.sampled("name", "robot", "world")
 @pytest.mark.parametrize(
     ("name", "robot", "world"),

@@ -28,16 +28,10 @@ KEYS = (
 LOOKS = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
 
 
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    page.set_viewport_size({"width": 1366, "height": 768})
-    page.keyboard.press("Escape")
-    if page.locator("#runs").is_visible():
-        page.click("#runs_close")
-    page.click("#view_text")
+@pytest.fixture
+def page(page: Page) -> Page:
     page.select_option("#speed", "20")
-    page.select_option("#world", "obstacles")
-    page.click("#seen_arena")
+    return page
 
 
 def ran(page: Page, text: str, shown: str) -> None:
@@ -150,7 +144,6 @@ def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path
     first = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
         first["robot"], first["world"])  # fmt: skip
-    page.select_option("#robot", "tinibot")
 
 
 @drawn
@@ -162,7 +155,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     told(page, "Both did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
     opened(page, real(*changed), tmp_path / "run.tsr")
-    told(page, "Line 5: the robot reported 6 after 0.5 s, the virtual robot 5 after")
+    told(page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after")
     names = kept(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
     assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]

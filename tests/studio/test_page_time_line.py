@@ -35,15 +35,6 @@ MARKED = """() => {
 COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
 
 
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    page.set_viewport_size({"width": 1366, "height": 768})
-    page.keyboard.press("Escape")
-    page.click("#view_text")
-    page.select_option("#speed", "1")
-    page.click("#seen_arena")
-
-
 def begun(page: Page, text: str) -> None:
     write(page, text)
     page.click("#run")

@@ -71,19 +71,6 @@ def chosen(page: Page) -> str:
     return page.locator("#world_part option:checked").inner_text()
 
 
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    rest(page)
-
-
-def rest(page: Page) -> None:
-    """Leave the drawing, and take a shipped world."""
-    page.set_viewport_size({"width": 1366, "height": 768})
-    if page.locator("#world_done").is_visible():
-        page.click("#world_done")
-    page.select_option("#world", "obstacles")
-
-
 @pytest.fixture
 def floor(page: Page) -> Page:
     """A page on which the shipped obstacles can be changed."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_worlds import drag, on_screen, put, read_start, rest, said, saved
+from tests.studio.test_page_worlds import drag, on_screen, put, read_start, said, saved
 from tests.support.studio import Pages, checked, in_phase, speak, write
 from tiniscript.virtual import worlds
 
@@ -24,11 +24,6 @@ border = false
 x_cm = 118
 y_cm = 78
 """
-
-
-@pytest.fixture(autouse=True)
-def at_rest(page: Page) -> None:
-    rest(page)
 
 
 def draw_wall(page: Page) -> None:

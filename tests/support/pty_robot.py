@@ -39,7 +39,7 @@ class PtyRobot(PtyPort):
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
         self.off_after: int | None = None  # so many bytes more, and its battery is empty
-        self._memory = memory
+        self._new = self._memory = memory
         self._robot: HostFirmware | None = self._made()
         self._flags: list[int] = []  # what happens to the button, for each of the next steps
         self._there, self._back = b"", b""  # bytes on their way
@@ -108,6 +108,13 @@ class PtyRobot(PtyPort):
     def switch_off_and_on(self) -> None:
         self.switch_off()
         self.switch_on()
+
+    def begin_anew(self) -> None:
+        """Switch it off and on; what its memory has kept since it was made is forgotten."""
+        with self._lock:
+            self._take_power()
+            self.off_after, self._memory = None, self._new
+            self._robot = self._made()
 
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""

@@ -283,6 +283,35 @@ def enter(page: Page, address: str) -> None:
         page.click("#start_write")
 
 
+# What somebody presses who wants to begin anew: home ends a lesson, a drawing and what runs.
+_ANEW = """() => {
+  const at = (id) => document.getElementById(id);
+  for (const each of document.querySelectorAll('dialog[open]')) each.close();
+  const pressed = ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new'];
+  for (const id of pressed) at(id).click();
+  for (const id of ['words', 'why']) if (at(id).ariaPressed === 'true') at(id).click();
+  for (const [id, value] of [['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) {
+    if (at(id).value === value) continue;
+    at(id).value = value;
+    at(id).dispatchEvent(new Event('change'));
+  }
+}"""
+
+
+def begin_anew(page: Page) -> None:
+    """Have a page that others have used as `Pages.open` gives it, with an empty program.
+
+    In English, for a tinibot among obstacles; no lesson, no drawing and no run goes on. What the
+    page has kept stays: runs, programs, drawn worlds, which lesson is open, and at which step.
+    """
+    page.bring_to_front()  # another page may have the focus
+    page.set_viewport_size({"width": 1366, "height": 768})
+    if page.input_value("#language") != "en":
+        speak(page, "en")
+    page.evaluate(_ANEW)
+    checked(page)
+
+
 # Once a new size of the screen has been heard of, and drawn.
 SETTLED = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 

@@ -293,8 +293,9 @@ export class Lessons {
     const isForOther = await this.#isForOther(lesson);
     if (asked !== this.#asked) return;
     if (isForOther) {
+      const said = text(this.#isOfLesson ? 'lesson_before' : 'lesson_own');
       this.#page.exchange(this.#lend(lesson, ''));
-      pageState.note.set(text('lesson_own'));
+      pageState.note.set(said);
     }
     await this.#seeWorld(1);
   }
@@ -309,19 +310,24 @@ export class Lessons {
     return await isRight(robot) && !(await isRight(lesson.robot)) && now === pageState.programText.value;
   }
 
+  /** Whether the program in the editor is a lesson's, in place of this person's own one. */
+  get #isOfLesson() {
+    return this.#own !== null && this.#page.work.name === this.#ownName;
+  }
+
   /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} program @returns {Program} */
   #lend(lesson, program) {
     const { text: whole, robot, name } = this.#page.work;
-    if (!this.#own || name !== this.#ownName) this.#own = { text: whole, robot, name };
+    if (!this.#isOfLesson) this.#own = { text: whole, robot, name };
     this.#ownName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
     return { text: program, robot: lesson.robot, name: this.#ownName };
   }
 
   /** The lesson is over: this person's own program comes back, unless another one has been opened since. */
   leave() {
-    const own = this.#own;
+    const own = this.#isOfLesson ? this.#own : null;
     this.#own = null;
-    if (!own || this.#page.work.name !== this.#ownName || pageState.group.value) return;
+    if (!own || pageState.group.value) return;
     this.#page.exchange(own);
     this.#page.driving.leaveLesson();
   }
