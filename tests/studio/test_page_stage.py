@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, axe, hears, in_phase, shown, speak, turn, write
+from tests.support.studio import axe, hears, in_phase, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
