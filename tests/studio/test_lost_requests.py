@@ -255,6 +255,8 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
             first = row["first"]
             assert first["isThere"] and len(row["made"]) == len(first["ends"]), row
             assert bool(first["heard"]) == bool(first["presses"]), row
+        # Nothing is lost: each press of STOP stops.
+        assert len(row["second"]["heard"]) == row["second"]["presses"], row
         assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
 
 
