@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import axe, hears, in_phase, shown, speak, turn, write
+from tests.support.studio import axe, checked, hears, in_phase, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -87,6 +87,8 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     page: Page, size: tuple[int, int]
 ) -> None:
     """The step comes back by the lesson's own buttons, the check is in reach all the time."""
+    page.reload()  # whoever has chosen a camera keeps it
+    checked(page)
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "program")
     write(page, FOREVER)
@@ -290,6 +292,7 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
 def test_cameras_and_the_whole_page_are_there_on_small_screens(
     page: Page, size: tuple[int, int]
 ) -> None:
+    write(page, FOREVER)
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "robot")
     small = page.evaluate(AREA)
@@ -305,9 +308,6 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     assert page.evaluate(AREA) > 0.6 * size[0] * size[1]
     page.click("#stop")
     page.click("#full")
-    turn(page, "program")
-    write(page, FOREVER)
-    turn(page, "robot")
     choose(page, "above")  # as it is where nobody has chosen
     page.click("#run")
     in_phase(page, "running")
