@@ -258,7 +258,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     with socket.create_server(("127.0.0.1", 0)) as gone:
         number = gone.getsockname()[1]
     code = (
-        "from tiniscript.link.sharing import registry; lock = registry.claim('socket://x:1');"
+        "from tiniscript.link.sharing import registry; lock = registry.lock_port('socket://x:1');"
         f"registry.write(registry.Registration('socket://x:1', {number}, 't', 'a', 'link', 1, 2));"
         "print('held', flush=True); input()"
     )

@@ -96,13 +96,13 @@ import sys
 from pathlib import Path
 from tiniscript.base import files
 from tiniscript.link.keys import KeyFile
-files.LOCK_S = 600.0  # others claim without a pause, which people do not
+files.LOCK_WAIT_S = 600.0  # others claim without a pause, which people do not
 ring, first = KeyFile(Path(sys.argv[1])), int(sys.argv[2])
 for robot in range(first, first + 25):
     key = ring.create_pending_key(robot, 0, "R")
     assert key
     ring.settle(key)
-    ring.refuse(key) if robot % 5 == 0 else None
+    ring.mark_stale(key) if robot % 5 == 0 else None
 """
 
 

@@ -190,11 +190,11 @@ from tools.generate import text_tables
 texts = [page_texts(language) for language in ("en", "es")]
 labels = [each["block/HORN"] for each in texts] + [block_kinds.SAYS["CHIME"]]
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tiniscript import robots
-form = read("SI|WIGGLE(X + 2)", robots.load("tinibot").kit)
+form = read_blocks("SI|WIGGLE(X + 2)", robots.load("tinibot").kit)
 blocks = [(each.kind, each.word, each.values) for each in form.body], print_blocks(form).text
-print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test"), blocks]))
+print(json.dumps([block_kinds.table_data(), labels, text_tables.words_tables("a test"), blocks]))
 """
 
 
@@ -236,9 +236,9 @@ from tiniscript import robots
 from tiniscript.robots.text_levels import LEVELS
 from tiniscript.studio import block_kinds
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import read_blocks
 from tools.generate import documents, poster, text_tables
-form = read("SI|LAMP(50)", robots.load("tinibot").kit)
+form = read_blocks("SI|LAMP(50)", robots.load("tinibot").kit)
 lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line)]
 print(json.dumps({
     "lacked": [LAMP.text in level.lacks for level in LEVELS.values()],

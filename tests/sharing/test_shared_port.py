@@ -28,7 +28,7 @@ TRIES = 8  # of a command that is told that another one has left
 # On a busy computer it takes whoever has opened a port a while to share it.
 PATIENT = (
     "import sys; from tiniscript.cli import main; from tiniscript.library import opening; "
-    "opening.BUSY_S = 100; sys.exit(main(sys.argv[1:]))"
+    "opening.BUSY_TIMEOUT_S = 100; sys.exit(main(sys.argv[1:]))"
 )
 
 

@@ -214,11 +214,7 @@ struct tini_packed ToldReading {
 };
 
 // As many bytes a port has taken and still sends: a UART of an AVR that one, and the one after it.
-#ifdef __AVR__
-constexpr uint8_t kPortHolds = 2;
-#else
-constexpr uint8_t kPortHolds = 1;
-#endif
+constexpr uint8_t kPortHolds = kIsAvr ? 2 : 1;
 
 // Whether a session is told of readings from now on, and whether there is one that has not been told.
 // The next one that is to be told, if there is.

@@ -136,7 +136,7 @@ export class Editor {
 
   /** Replaces the text; undo brings the one before back. @param {string} whole */
   replace(whole) {
-    this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: whole } });
+    this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: whole }, annotations: isolateHistory.of('full') });
   }
 
   get hasFocus() {

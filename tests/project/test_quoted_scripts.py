@@ -1,0 +1,47 @@
+"""Scripts that tests and tools have in quotation marks name what is there: no linter sees them."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+
+from tests.support.casefile import ROOT
+from tests.support.rows import go_through
+
+FOLDERS = ("tests", "tools")
+IMPORTED = re.compile(r"from (tiniscript(?:\.\w+)*) import ([\w ]+(?:,[\w ]+)*)")
+ALIAS = re.compile(r"(\w+)(?: as (\w+))?")
+
+
+def scripts() -> Iterator[tuple[str, str]]:
+    """Give each text in quotation marks that imports something of ours, and where it stands."""
+    for folder in FOLDERS:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            if "node_modules" in path.parts or path == Path(__file__):
+                continue
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                    if IMPORTED.search(node.value):
+                        yield f"{path.relative_to(ROOT)}:{node.lineno}", node.value
+
+
+def test_what_a_quoted_script_names_is_there() -> None:
+    rows = list(scripts())
+    assert len(rows) > 20
+
+    def names_what_is_there(row: tuple[str, str]) -> None:
+        for module_name, imported in IMPORTED.findall(row[1]):
+            module = import_module(module_name)
+            for name, alias in ALIAS.findall(imported):
+                if not hasattr(module, name):
+                    import_module(f"{module_name}.{name}")
+                owner = getattr(module, name)
+                if not isinstance(owner, type(module)):
+                    continue
+                for attribute in re.findall(rf"(?<![\w.]){alias or name}\.(\w+)", row[1]):
+                    assert hasattr(owner, attribute), f"{name}.{attribute}"
+
+    go_through(names_what_is_there, rows, lambda row: row[0])
