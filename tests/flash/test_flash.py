@@ -402,7 +402,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
 @pytest.mark.parametrize(("words", "said"), [
     ([], "on which port"),
     (["--port", ""], "--port takes a port's name"),
-    (["--port", "socket://localhost:1"], "is a network or radio port."),
+    (["--port", "socket://localhost:1"], "is a wireless or network port."),
     (["--port", "/dev/none"], "there is no port /dev/none"),
     (["--port", "x", "--chip", "teensy"], "uno, nano, nano-old or mega, not teensy"),
     (["--port", "x", "--robot", "grabber", "--chip", "uno"], "does not fit the board uno"),
