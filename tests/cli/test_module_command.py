@@ -136,7 +136,7 @@ def test_ports_that_are_none(tsc: Tsc) -> None:
     assert "tsc doctor --module --port P" in tsc("doctor", "--module").err
     assert tsc("doctor", "--module", "--port", "").code == 2
     for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):
-        tsc("doctor", "--module", "--port", port).gives(2, "only by wire")
+        tsc("doctor", "--module", "--port", port).gives(2, "only over a cable")
 
 
 @pytest.mark.parametrize("is_locked", [False, True])

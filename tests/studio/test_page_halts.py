@@ -281,7 +281,7 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     offered.wait_for(state="hidden")
     debugging.press_margin(other, 2)
     offered.click()
-    said(other, "In return, the robot no longer reads typed text")
+    said(other, "but the robot no longer reads typed text")
     assert other.locator("html[data-robot=none]").count() == 1
     assert other.locator("#flash_halts").is_checked()
     assert other.input_value("#flash_board") == "uno"

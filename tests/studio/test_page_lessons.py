@@ -430,7 +430,7 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
     write(page, of_lesson)
     page.click("#side_lessons")
     choose(page, 11)
-    noted(page, "The program of the lesson before is in My programs.")
+    noted(page, "The program of the previous lesson is in My programs.")
     page.click("#home")
     page.click("#start_write")
     page.locator(".cm-content", has_text=own).wait_for()
