@@ -55,7 +55,7 @@ def arguments(verb: str, files: dict[str, Path]) -> list[str]:
 def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
     """Whoever adds an option says what it is; what names a file in one verb does in all."""
     kept = {("compile", "map", "program"), ("compile", "output", "program")}
-    assert kept | {("fetch", "output", "robot")} <= set(PAIRS)
+    assert kept | {("show_port", "output", "robot")} <= set(PAIRS)
     for verb, parser in PARSERS.items():
         kinds = {option.name: option.kind for option in options_of(verb)}
         for dest in values_of(parser):
@@ -202,7 +202,7 @@ def test_what_cannot_be_written_is_said_before_anything_is_done(
 ) -> None:
     """No robot drives for a picture that has no place."""
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: pytest.fail("something is done"))
-    files = {"robot": Path("tinibot")} if verb == "board" else {}
+    files = {"robot": Path("tinibot")} if verb == "firmware_board" else {}
     for path in (here, here / "none" / "x", Path("a\0b"), Path("x" * 5000)):
         words = arguments(verb, {**files, output: path})
         tsc(*words).gives(2, paths.WRITE_OPTIONS[output][0])

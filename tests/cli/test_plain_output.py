@@ -22,6 +22,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import MOST_VALUE_CHARACTERS, Sentence, text
+from tiniscript.cli.texts.verbs import command_words
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
@@ -34,14 +35,16 @@ BAD = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u
 PARSERS = parsers()
 ENDS = {  # what keeps a verb from waiting for something
     "robot": ["--for", "0.1", "--hurry", "max"],
-    "hold": ["--port", "/none"], "start": ["--port", "/none"], "trim": ["--port", "/none"],
-    "monitor": ["--port", "/none"], "fetch": ["--port", "/none"], "name": ["X", "--port", "/none"],
+    "monitor_hold": ["--port", "/none"], "start": ["--port", "/none"],
+    "set_trim": ["--port", "/none"],
+    "monitor": ["--port", "/none"], "show_port": ["--port", "/none"],
+    "set_name": ["X", "--port", "/none"],
     "doctor": ["--port", "/none"], "stop": ["--port", "/none"],
     "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
     "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
-    "wifi": ["--port", "/none"], "class": ["--broker", "127.0.0.1:1"],
-    "explain": ["--explain", "TS012"], "board": ["--board", "tinibot"],
-    "completion": ["--completion", "bash"],
+    "set_wifi": ["--port", "/none"], "class": ["--broker", "127.0.0.1:1"],
+    "check_explain": ["--explain", "TS012"], "firmware_board": ["--board", "tinibot"],
+    "help_completion": ["--completion", "bash"],
 }  # fmt: skip
 LANGUAGES = ("en", "es")  # a commit draws one for each row
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
@@ -100,7 +103,7 @@ def spoiled(toml: str) -> list[str]:
     return [toml[:a] + in_toml(EVIL) + toml[b:] for a, b in values + keys]
 
 
-@pytest.mark.parametrize("verb", ["check", "run", "wiring", "board", "robot"])
+@pytest.mark.parametrize("verb", ["check", "run", "firmware_wiring", "firmware_board", "robot"])
 def test_no_string_of_a_profile_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, pytestconfig: pytest.Config
 ) -> None:
@@ -110,10 +113,13 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         if verb in ("run", "robot") and number % 7:
             continue  # they read it as the others do
         Path("evil.toml").write_text(toml, encoding="utf-8")
-        words = ["evil.toml"] if verb == "board" else ["--robot", "evil.toml"]
+        words = [*command_words(verb).split(), *([] if verb == "firmware_board" else ["--robot"])]
+        words.append("evil.toml")
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
         for language in some_of(pytestconfig, f"{verb} {number}", LANGUAGES):
-            done = tsc(verb, *words, *ENDS.get(verb, []), "--lang", language)
+            ends = ENDS["robot"] if verb == "robot" else []
+            done = tsc(*words, *ends, "--lang", language)
+            assert done.code != 2 or "evil.toml" in done.err
             assert_plain(done.out, done.err)
 
 
