@@ -247,7 +247,7 @@ def printed(text: str, is_json: bool) -> tuple[str, str]:
     printer = EventPrinter(
         "en", is_json, add_row=add, print_line=said.append, print_error=said.append
     )
-    printer.tell(5, TextEvent(text.encode("utf-8", "surrogateescape")))
+    printer.print_event(5, TextEvent(text.encode("utf-8", "surrogateescape")))
     return "\n".join(said), rows.getvalue()
 
 

@@ -111,8 +111,8 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
         add_row=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):
-        printer.tell(0, event(text, number))
-    printer.tell(0, event(text, 0, program=1))
+        printer.print_event(0, event(text, number))
+    printer.print_event(0, event(text, 0, program=1))
     assert said == ["-X (line 1) 2", "-X (line 1) 2", "SHOW 2"]
     assert [row[3] for row in table] == ["'-X (line 1:8)", "'-X (line 1:18)", ""]
 

@@ -206,7 +206,7 @@ class LinkLine(LinkConnection):
 
     robot = None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         pass
 
 

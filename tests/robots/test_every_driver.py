@@ -171,7 +171,7 @@ def test_a_driver_without_a_sketch_cannot_be_made() -> None:
         used_by = "sensors number"
         pins = ()
 
-        def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+        def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
             return []
 
     with pytest.raises(TypeError, match=r"Half.*sketch"):

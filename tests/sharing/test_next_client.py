@@ -57,7 +57,7 @@ class SteppedLine:
     def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
 
-    def tell(self, event: Event) -> None:
+    def post_event(self, event: Event) -> None:
         """Of this process alone."""
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:

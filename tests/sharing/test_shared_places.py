@@ -32,7 +32,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     with shared as (pty_robot, _):
         client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
         assert client and other
-        client.tell_places()
+        client.enable_place_events()
         assert client.wait(client.begin(lambda session: session.hello())).status == OK
         request = client.begin(lambda session: session.upload(image, saves=False))
         assert client.wait(request).status == OK

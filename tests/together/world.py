@@ -17,7 +17,7 @@ from typing import Any
 from tests.together.pupils import Pupil
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks as read_blocks
 from tiniscript.syntax.ast import Break, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.formatter import format_source
@@ -214,7 +214,7 @@ class World:
         self._check_instructions(tree, text, parsed.program.body)
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks say the same program.
-        again = print_blocks(read_blocks(text, KIT)).text
+        again = format_blocks(read_blocks(text, KIT)).text
         one, other = compile_text(_whole(text), KIT), compile_text(_whole(again), KIT)
         assert one.image and one.image == other.image, (text, again, one.diagnostics)
         # Nobody's values were mixed; nothing is there twice.

@@ -14,7 +14,7 @@ from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
+from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.messages import (
     KEY_OWNER,
     LARGE_FRAME,
@@ -364,8 +364,8 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
     if status == "OK":
         assert [key.uses_seals for key in keys.stored_keys] == [True]
         robot.power_cycle()
-        assert owner_of(Talk(robot, 6)) == OF_ANOTHER
-        assert owner_of(Talk(robot, 7, keys)) == YOUR_OWN
+        assert owner_of(Talk(robot, 6)) == OWNED_BY_OTHER
+        assert owner_of(Talk(robot, 7, keys)) == OWNED_BY_YOU
 
 
 def test_it_is_seen_and_heard_which_one_it_is() -> None:

@@ -22,7 +22,7 @@ NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
 )
 MOST_PENDING_KEYS = 1  # keys before a new one: each that is shown takes time
 HOLD_PAUSE_MS = 200  # while the button is not held down
-FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
+FREE, OWNED_BY_YOU, OWNED_BY_OTHER = "free", "yours", "other"
 
 
 class RobotKey(NamedTuple):
@@ -116,11 +116,11 @@ class KeyRing:
 
 
 def ownership_of(robot: DeviceInfo) -> str:
-    """Return whether a robot is FREE, YOUR_OWN or OF_ANOTHER."""
+    """Return whether a robot is FREE, OWNED_BY_YOU or OWNED_BY_OTHER."""
     features = robot.values.features
     if not features & OWNED:
         return FREE
-    return YOUR_OWN if features & YOURS else OF_ANOTHER
+    return OWNED_BY_YOU if features & YOURS else OWNED_BY_OTHER
 
 
 def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:

@@ -124,10 +124,10 @@ class PortConnection(LinkConnection):
         with self._session_lock:
             self.session.withdraw(request)
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self._takes_places = self.session.tells_places = True
 
-    def tell(self, event: Event) -> None:
+    def post_event(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
         with self._session_lock:
             self._events.put([(self._now_ms(), event)])

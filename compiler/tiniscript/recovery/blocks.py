@@ -131,8 +131,8 @@ class Matching:
             )
         return True
 
-    def edit_item(self, old_count: int, *new_lexemes: str) -> None:
-        self.edit_tokens(self.item.start, old_count, [make_token(item) for item in new_lexemes])
+    def edit_item(self, old_count: int, *new_texts: str) -> None:
+        self.edit_tokens(self.item.start, old_count, [make_token(text) for text in new_texts])
 
     def edit_tokens(self, start: int, old_count: int, new_lexemes: list[Lexeme]) -> None:
         self.edits.setdefault(self.k, []).append(Edit(start, old_count, new_lexemes))

@@ -51,7 +51,7 @@ _PERCENT_AT_END = re.compile(r"[ \t]*%$")
 _TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
 _UNIT_PATTERN = rf"(?P<unit>{'|'.join(EXTENTS)})"
-_UNIT_BEFORE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
+_UNIT_AND_VALUE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
 _STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(EXTENTS)})")
 
 
@@ -171,7 +171,7 @@ def _unit_diagnostic(call: _Call) -> Diagnostic | None:
     """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
     unit = UNIT_OF.get(call.word.text, "")
     values = [value for value in call.values if value.upper() != unit]
-    unit_match = _UNIT_BEFORE.fullmatch(values[0]) if values else None
+    unit_match = _UNIT_AND_VALUE.fullmatch(values[0]) if values else None
     if unit_match and unit_match["unit"].upper() == unit and len(values) == len(call.values):
         values[0] = unit_match["value"]
     elif len(values) != len(call.values) - 1:
@@ -262,14 +262,14 @@ def likely_word(word: str, text: str) -> str:
     numbers = [number for number in map(_NUMBER.match, values) if number]
     if not values or len(numbers) != len(values):
         return ""
-    is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
+    is_frequency = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     expansions, similar_word = (
         expand_short(word),
         "" if lexicon_concept(word) else heard_as(word) or "",
     )
     if similar_word in CALL_WORDS:
         likely = similar_word
-    elif is_tone:
+    elif is_frequency:
         likely = "BEEP" if word[:1] == "B" or "BEEP" in expansions else ""
     elif len(expansions) == 1:
         likely = expansions[0]

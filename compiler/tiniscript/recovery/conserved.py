@@ -530,7 +530,7 @@ class _Statement:
             )
             return
         word = self._sure_word(token)
-        neighbours = {previous.text, following.text}
+        neighbour_texts = {previous.text, following.text}
         is_name_part = token.text in self._name_ends
         is_times_sign = (
             token.text == "X" and previous.kind is NUMBER and following.kind in (NUMBER, WORD)
@@ -549,9 +549,11 @@ class _Statement:
         is_repetition |= (
             word in MOVES and following.kind is WORD and word == self._sure_word(following)
         )
-        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbours)
+        is_equal = any(
+            text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbour_texts
+        )
         is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
-            word == "TIME" and not neighbours & _COMPARISON_SENSES.keys()
+            word == "TIME" and not neighbour_texts & _COMPARISON_SENSES.keys()
         )
         self.possible_words.update(self._possible_words(token))
         self.unknown_word_count += token.text not in WORDS and not self.names.is_name(token.text)

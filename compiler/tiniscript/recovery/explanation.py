@@ -55,7 +55,7 @@ _CODES_SHOWN_WHOLE = frozenset((
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _ARM_CODES = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
-_WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
+_WORD, _WORD_AT_END = re.compile(r"\w+"), re.compile(r"\w+\Z")
 _SECOND_WORD = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
 _WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
@@ -227,7 +227,7 @@ class _Explainer:
         start, end = span
         if start < end:
             line_start = self.program.rfind("\n", 0, start) + 1
-            word_start = _WORD_BEFORE.search(self.program, line_start, start + 1)
+            word_start = _WORD_AT_END.search(self.program, line_start, start + 1)
             word_end = _WORD.match(self.program, end - 1)
             start -= len(word_start[0]) - 1 if word_start else 0
             end += len(word_end[0]) - 1 if word_end else 0

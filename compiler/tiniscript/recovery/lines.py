@@ -147,11 +147,11 @@ def _joining_word_index(tokens: Sequence[tuple[str, str]]) -> int:
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
         is_in_brackets = is_def and (is_in_brackets or text == "(") and text != ")"
-        neighbours = {tokens[k - 1][0], tokens[k + 1][0]}
+        neighbour_kinds = {tokens[k - 1][0], tokens[k + 1][0]}
         if (
             is_in_brackets
             and kind == WORD
-            and neighbours == {WORD}
+            and neighbour_kinds == {WORD}
             and lexicon_meaning(text, "then")
         ):
             return k
@@ -361,12 +361,12 @@ class _Search:
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            neighbours = texts((*tokens_before[-1:], *tokens_after[:1]))
+            neighbour_texts = texts((*tokens_before[-1:], *tokens_after[:1]))
             for sign in rows.SIGNS_MEANT_BY.get(token.text, ""):
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 new_tokens = [*tokens_before, make_token(sign), *tokens_after]
                 yield reading.with_change(
-                    new_tokens, rows.CONFUSED_COST, code, sign not in neighbours
+                    new_tokens, rows.CONFUSED_COST, code, sign not in neighbour_texts
                 )
             is_needed = _CALCULATION_SIGNS & {
                 token.text,

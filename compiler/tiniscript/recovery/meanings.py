@@ -1,6 +1,6 @@
 """Meanings: what each word and sign of a wrong line may stand for.
 
-Knows the lexicons, spelling, and the names that a program has. Knows no order of words.
+Knows the lexicons, spelling, and the names that a program has. Knows no instruction of words.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ class _LineNames(NamedTuple):
     spaced_names: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     names_with_values: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
-    block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    block_starts: dict[str, str]  # instructions that begin blocks, since their ends are there: PARA
     lone_words: set[str]  # words that are an instruction alone
     compared_words: set[str]  # words beside a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
@@ -623,7 +623,7 @@ class Names:
 
 
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
-    """Return what a line says of orders that begin blocks, and how many headers lack an end."""
+    """Return what a line says of words that begin blocks, and how many headers lack an end."""
     block_of_word: dict[str, str] = {}
     counted_starts: list[str] = []
     open_headers = 0

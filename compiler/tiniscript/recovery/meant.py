@@ -151,11 +151,11 @@ def _diagnostic(
     explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    has_certain_count = (
+    is_repetition_sure = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
     )  # how often
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
-    repair = Repair(tuple(explanation.edits), has_certain_count and is_sure)
+    repair = Repair(tuple(explanation.edits), is_repetition_sure and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
         explanation.block_text = ""  # where it ends is a guess
     code, values = _code_and_values(explanation)

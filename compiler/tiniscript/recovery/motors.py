@@ -126,10 +126,10 @@ def _switches(text: str) -> Iterator[_Switch]:
 
 def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
     """Return what is told of motors that are set one by one, and how the rest is read."""
-    text, motor_orders = source.text, [*_motors(source.text)]
+    text, motor_instructions = source.text, [*_motors(source.text)]
     findings: list[tuple[Diagnostic, Edit]] = []
     spans_used: set[Span] = set()
-    for motor, next_motor in zip_longest(motor_orders, motor_orders[1:]):
+    for motor, next_motor in zip_longest(motor_instructions, motor_instructions[1:]):
         if motor.span in spans_used:
             continue
         is_pair = next_motor and motor.side != next_motor.side

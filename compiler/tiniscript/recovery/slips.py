@@ -50,7 +50,7 @@ _CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("found", "right"): (
         codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE,
     ),
-    ("right", "fix"): (codes.QUOTE, codes.SEVERAL_ORDERS),
+    ("right", "fix"): (codes.QUOTE, codes.SEVERAL_INSTRUCTIONS),
     ("before", "fix"): (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_CLOSE),
     ("usage", "fix"): (codes.MISSING_COMMA,),
     ("word", "fix"): (codes.NO_VALUE, codes.NAMED_ARGUMENT, codes.GROUPED),

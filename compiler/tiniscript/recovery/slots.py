@@ -68,18 +68,18 @@ class _Value(NamedTuple):
 
 
 def fill_call(
-    words: Sequence[Lexeme], names: Names, has_until: bool, is_order: bool = False
+    words: Sequence[Lexeme], names: Names, has_until: bool, is_instruction: bool = False
 ) -> FilledCall | None:
     """Return the call that some words say, or None where one of them has no place in it.
 
-    `is_order`: it may have no value of its own.
+    `is_instruction`: it may have no value of its own.
     """
     reader = _Reader(words, names)
     if not reader.read() or reader.command is None or reader.next_unit:
         return None
     if reader.is_turn and reader.command not in ("L", "R"):
         return None
-    return reader.make_call(has_until, is_order)
+    return reader.make_call(has_until, is_instruction)
 
 
 class _Reader:
@@ -192,7 +192,7 @@ class _Reader:
             unit, thousandths = unit_meaning[0], float(unit_meaning[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
-                return None  # `R 1 50 S`: an order of its own
+                return None  # `R 1 50 S`: an instruction of its own
             is_comma = self.words[k].text == rows.COMMA_KEY and self._is_number(k + 1)
             self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
             if self._is_half(k):
@@ -258,7 +258,7 @@ class _Reader:
             self.next_unit = _UNIT_OF_LETTER[word]
         elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
-                return None  # another order
+                return None  # another instruction
             self.is_turn = True
             self.command = None if self.command == "F" else self.command
         elif self._names_unit(word, value_meaning):
@@ -337,7 +337,7 @@ class _Reader:
         self.cost += cost * 0.3
         return True
 
-    def make_call(self, has_until: bool, is_order: bool) -> FilledCall | None:
+    def make_call(self, has_until: bool, is_instruction: bool) -> FilledCall | None:
         assert self.command is not None
         self.command = OPPOSITE_MOVES[self.command] if self.is_reversed else self.command
         device = self.names.actuators.get(self.command)
@@ -347,7 +347,7 @@ class _Reader:
             stop = FilledCall([make_token(word.text)], self.cost, is_sure, self.times)
             return None if self.values else stop
         values = self._in_seconds(self._with_decimals(len(word.arguments)))
-        if values is None or not (values or is_order):
+        if values is None or not (values or is_instruction):
             return None
         slots = self._fill_slots(values, word.arguments, has_until)
         if not slots or (word.text == "M" and len(values) == 1):

@@ -1,6 +1,6 @@
 """What words after an instruction say, beside what the instruction says itself.
 
-Knows which words begin an order, and which numbers and words only repeat. Knows no row.
+Knows which words begin an instruction, and which numbers and words only repeat. Knows no row.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 class LineContext(NamedTuple):
     """Where an instruction stands: `depth` blocks are open there.
 
-    `orders_above` are the lines before it, "" for one of no orders, None for one that begins a
-    block.
+    `instructions_above` are the lines before it, "" for one of no instructions, None for one that
+    begins a block.
     """
 
     text: str
     names: Names
     depth: int
-    orders_above: Sequence[str | None]
+    instructions_above: Sequence[str | None]
 
 
 def token_width(token: Lexeme) -> int:
@@ -101,12 +101,12 @@ class Trailing:
         self, line_context: LineContext, start_offset: int, tokens: Sequence[Lexeme],
         instruction_size: int, instructions_before: Sequence[str | None], spoken_call: str = "",
     ) -> None:  # fmt: skip
-        text, self.names, depth, orders_above = line_context
+        text, self.names, depth, instructions_above = line_context
         self.is_spoken = bool(spoken_call)
         self.tokens = lexemes(spoken_call) if spoken_call else tokens[:instruction_size]
         self.row_tokens = tokens[instruction_size:]
         self.instructions_before, self.has_instruction_before = (
-            [*orders_above, *instructions_before],
+            [*instructions_above, *instructions_before],
             bool(instructions_before),
         )
         self.is_later = self.instructions_before[-1:] not in ([], [None])
@@ -281,7 +281,7 @@ class Trailing:
         token, text = self.row_tokens[k], self.row_tokens[k].text
         is_first = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[:k])
         if token.kind is WORD and self.number(k) is None:
-            return not self._is_order(k) and not (is_first and self._is_alone(k))
+            return not self._is_instruction(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
             unit = lexicon_meaning(self._text_at(k + 1), "unit")
             if self.number(k) in self.number_texts or (unit and unit[0] in ("cm", "°", "steps")):
@@ -320,7 +320,7 @@ class Trailing:
         is_capital_name = len(source) > 1 and source.isupper()
         return is_capital_name or nearest(token.text, _LONG_WORDS) is not None
 
-    def _is_order(self, k: int) -> bool:
+    def _is_instruction(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, command = self.row_tokens[k].text, self.command
         is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[k + 1 :])

@@ -77,10 +77,10 @@ class Pins:
                 "pin_cannot", key, need=ability, **values, choices=_choices(chip, ability)
             )
         elif is_motor and pin in chip.boot_pins:
-            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            choices = _choices(chip, ability, excluded_pins=chip.boot_pins)
             table.complain("pin_at_boot", key, **values, choices=choices)
         elif key == "start_button" and pin == chip.reset_pin:
-            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            choices = _choices(chip, ability, excluded_pins=chip.boot_pins)
             table.complain("pin_of_reset", key, **values, choices=choices)
         elif earlier_use is not None:
             table.complain(
@@ -151,15 +151,15 @@ class Pins:
 
 
 def _choices(
-    chip: Chip, ability: str, without_timers: frozenset[int | None] = frozenset(),
-    without_pins: frozenset[int] = frozenset(),
+    chip: Chip, ability: str, excluded_timers: frozenset[int | None] = frozenset(),
+    excluded_pins: frozenset[int] = frozenset(),
 ) -> str:  # fmt: skip
-    """Return the pins that can do `ability`, except those of the timers in `without_timers`."""
-    all_pins = sorted((chip.digital_pins | chip.reading_pins | chip.analog_pins) - without_pins)
+    """Return the pins that can do `ability`, except those of the timers in `excluded_timers`."""
+    all_pins = sorted((chip.digital_pins | chip.reading_pins | chip.analog_pins) - excluded_pins)
     fitting_pins = [
         pin
         for pin in all_pins
-        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in without_timers
+        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in excluded_timers
     ]
     return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 

@@ -87,13 +87,13 @@ class Header(HeaderPart):
     def paragraphs(self) -> tuple[str, ...]:
         """Return what drivers and the board define for the preprocessor, then what C++ has."""
         kit, board = self.robot.kit, self.robot.board
-        motors = motors_of(board.motors).firmware(self, board.motors)
+        motors = motors_of(board.motors).firmware_lines(self, board.motors)
         sensors = self._cases(kit.sensors, board.sensors, sensor_of)
         actuators = self._cases(kit.actuators, board.actuators, actuator_of)
         discs = []
         if board.discs:
             base_cm = self.robot.body.wheel_base_cm
-            discs = discs_of(board.discs).firmware(self, board.discs, base_cm)
+            discs = discs_of(board.discs).firmware_lines(self, board.discs, base_cm)
         bluetooth_state, status_led = board.bluetooth_state, board.status_led
         language = language_number(board.language)
         lines = [
@@ -172,7 +172,7 @@ class Header(HeaderPart):
         lines = []
         for number, (device, wiring) in enumerate(zip(devices, wirings, strict=True)):
             lines.append(f"    case {number}:  // {device.name}")
-            lines += driver_of(device.kind, wiring).firmware(self, device, wiring)
+            lines += driver_of(device.kind, wiring).firmware_lines(self, device, wiring)
         return lines
 
     def _ultrasonics(self) -> list[str]:

@@ -58,8 +58,8 @@ _HIGHEST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
-_UNTIL_BEFORE = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
-_MOST_CHARACTERS_BEFORE = 200
+_UNTIL_AT_END = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
+_MOST_CHARACTERS_BACK = 200
 _FEW_TIMES = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
 _NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
@@ -380,8 +380,8 @@ def next_condition(source: Source, span: Span) -> str:
 
 def _until_match(source: Source, span: Span) -> re.Match[str] | None:
     """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
-    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BEFORE) : span.start]
-    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_BEFORE.search(text_before)
+    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
+    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_AT_END.search(text_before)
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
@@ -411,7 +411,7 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
         if sum(text.startswith("-") for text in texts) == 1:
             values_text = ", ".join(text.lstrip("- ") for text in texts)
             values["fix"] = f"{OPPOSITE_MOVES[word.text]}({values_text})"
-        elif word.text == "B" and is_short and _is_tone(second):
+        elif word.text == "B" and is_short and _is_frequency(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:
             values["most"] = f"{word.text}({first}, {as_text(word.arguments[1].high)})"
@@ -423,7 +423,7 @@ def _whole_number(text: str) -> int:
     return int(text[:9]) if text.isdecimal() else 0
 
 
-def _is_tone(text: str) -> bool:
+def _is_frequency(text: str) -> bool:
     """Whether a number is rather a tone than a power: 440, but not 200."""
     return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 

@@ -119,7 +119,7 @@ class Attending:
     def has_left(self) -> bool:
         return self.silent_s > LEFT_S
 
-    def tell(self, news: list[Json]) -> None:
+    def queue_news(self, news: list[Json]) -> None:
         with self._lock:
             for news_item in news:
                 self._add(news_item)
@@ -142,7 +142,7 @@ class Attending:
                 stop_count < self.stop_count
                 or _number_in(request, "seen") < self._latch_news_number
             ):
-                self.tell([{"id": request["id"], **_VOID_ANSWER}])
+                self.queue_news([{"id": request["id"], **_VOID_ANSWER}])
                 continue
             if _starts_run(request):
                 self._stop_counts[request["id"]] = stop_count
@@ -150,7 +150,7 @@ class Attending:
                 link.ask(request)
             except BadRequest:
                 self._stop_counts.pop(request["id"], None)
-                self.tell([{"id": request["id"], "failure": "bad_request"}])
+                self.queue_news([{"id": request["id"], "failure": "bad_request"}])
         self._apply_news(link.news(limit_s))
         if self.is_attended:
             self._is_silent = False
@@ -184,7 +184,7 @@ class Attending:
                 self.last_stop = CONFIRMED
             elif "LOST" in events:
                 self.last_stop = SILENT
-        self.tell(news)
+        self.queue_news(news)
 
     def _void(self) -> None:
         for request in self._requests:

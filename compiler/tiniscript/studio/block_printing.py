@@ -58,7 +58,7 @@ class _Line(NamedTuple):
     columns: tuple[tuple[int, int], ...]
 
 
-def print_blocks(form: Form) -> Printed:
+def format_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
     indexes_of_blocks: list[list[int]] = []  # of each block, which instructions are its lines
@@ -250,7 +250,7 @@ def _loose_lines(stacks: tuple[Stack, ...]) -> list[str]:
     lines: list[str] = []
     for stack in stacks:
         if stack.body:
-            text = print_blocks(Form("", "", False, stack.body, ())).text
+            text = format_blocks(Form("", "", False, stack.body, ())).text
         else:
             text = LOOSE_VALUE_PREFIX + text_of(stack.value)
         lines += [LOOSE_PREFIX] * bool(lines)

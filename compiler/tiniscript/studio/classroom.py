@@ -476,9 +476,9 @@ class Classroom:
         token = robot.pupil.token
         runs = self._groups.runs_of(token)
         if robot.group_runs is not None and robot.group_runs is not runs:
-            robot.group_runs.tell(token, [{"over": "left"}])
+            robot.group_runs.add_news(token, [{"over": "left"}])
         robot.group_runs = runs
-        witness = partial(runs.tell, token) if runs is not None else None
+        witness = partial(runs.add_news, token) if runs is not None else None
         robot.hosted_robot.attending.witness = witness
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:

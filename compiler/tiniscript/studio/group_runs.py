@@ -44,7 +44,7 @@ class GroupRuns:
         self._began_s = 0.0
         self._value_count = 0  # of the run
 
-    def tell(self, driver: str, news: list[Json]) -> None:
+    def add_news(self, driver: str, news: list[Json]) -> None:
         """The robot that a pupil drives has told this."""
         with self._lock:
             for news_item in news:

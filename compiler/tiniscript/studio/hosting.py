@@ -173,8 +173,11 @@ def list_ports() -> list[Json]:
     """
     port_memory = known_ports.remembered_ports()
     virtual_robots = {robot.address: robot for robot in directory.unclaimed_robots()}
-    descriptions = {robot.port: robot.description for robot in ports.list_ports()}
-    port_names = [*descriptions, *(port for port in virtual_robots if port not in descriptions)]
+    description_by_port = {robot.port: robot.description for robot in ports.list_ports()}
+    port_names = [
+        *description_by_port,
+        *(port for port in virtual_robots if port not in description_by_port),
+    ]
     port_names += [
         port
         for port in port_memory.names
@@ -187,7 +190,7 @@ def list_ports() -> list[Json]:
             "name": virtual_robots[port].name
             if port in virtual_robots
             else port_memory.names.get(port, ""),
-            "description": printable(descriptions.get(port, ""), DESCRIPTION_CHARACTERS),
+            "description": printable(description_by_port.get(port, ""), DESCRIPTION_CHARACTERS),
             "virtual": virtual_robots[port].robot if port in virtual_robots else None,
         }
         for port in port_names

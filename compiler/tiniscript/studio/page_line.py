@@ -79,7 +79,7 @@ class PageLine(LinkConnection):
     def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
         return self._events.take() if self._events else None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self.session.tells_places = True
 
     def stop(self) -> int:

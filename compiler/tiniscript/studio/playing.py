@@ -143,7 +143,7 @@ class PlayedRun(Simulation):
         if not recording.is_virtual:
             marks = marks._replace(breakpoints=(*playable.sensor_of_show, *playable.read_offsets))
         super().__init__(recording.robot, played_world, playable.image, marks, settings)
-        if not recording.is_virtual and recording.is_by_button:
+        if not recording.is_virtual and recording.was_started_by_button:
             self._push_button()
 
     # -- its time ---------------------------------------------------------------------------------
@@ -387,7 +387,7 @@ class PlayedRun(Simulation):
         """
         recording = self.recording
         recorded_rows = [row for row in recording.rows if _is_program_event(row)]
-        if not recording.is_by_button or not recorded_rows:
+        if not recording.was_started_by_button or not recorded_rows:
             return recording.end_ms + _tolerance_ms(recording.end_ms)
         virtual_rows = [row for row in self._virtual_rows if _is_program_event(row)]
         if not virtual_rows:
@@ -402,7 +402,7 @@ class PlayedRun(Simulation):
         if not rows or rows[0].event == "LOST":
             return Divergence("empty")
         late_ms = 0
-        if self.recording.is_by_button and recorded_rows and virtual_rows:
+        if self.recording.was_started_by_button and recorded_rows and virtual_rows:
             late_ms = virtual_rows[0].ms - recorded_rows[0].ms
         recorded_rows = [row._replace(ms=row.ms + late_ms) for row in recorded_rows]
         end_ms = self.recording.end_ms + late_ms

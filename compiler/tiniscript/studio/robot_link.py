@@ -100,7 +100,7 @@ class RobotLink:
     def __init__(self, connection: LinkConnection, language: str) -> None:
         self.language = language
         self._connection = connection
-        connection.tell_places()
+        connection.enable_place_events()
         self._requests: list[_PageRequest] = []
         self._answers: list[Json] = []
         # Runs: which the page has started, which was the last to begin, and to end.

@@ -130,7 +130,7 @@ class _SetUp:
         status_line = StatusLine()
         module = find_module(
             self.wire,
-            on_baud=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
+            on_baud=lambda baud: status_line.show(self._text("module_looking", baud=str(baud))),
         )
         status_line.end()
         if module is None:

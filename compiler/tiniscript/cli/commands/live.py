@@ -319,7 +319,7 @@ class Repl:
         while (timed_event := self.connection.event(limit_s)) is not None:
             limit_s = 0
             if not bookkeeping.filter_event(timed_event[1]):
-                printer.tell(*timed_event)
+                printer.print_event(*timed_event)
 
 
 def requested_command(line: str, state: LiveState) -> str:
@@ -385,7 +385,7 @@ class ValueCatcher:
         released_events = self.held_events[:count]
         del self.held_events[:count]
         for event in released_events:
-            self.printer.tell(0, event)
+            self.printer.print_event(0, event)
 
 
 def _is_mark(event: ShownEvent) -> bool:

@@ -60,4 +60,4 @@ def _watch(
         if timed_event is not None:
             if plot_screen is not None:
                 plot_screen.take(*timed_event, printer.name_of)
-            printer.tell(*timed_event)
+            printer.print_event(*timed_event)

@@ -69,7 +69,7 @@ class _Log:
             self._say(event.name, "link_searching", port=printable_name(self.connection.port))
             self.search = self.connection.search()
         elif not self.bookkeeping.filter_event(event):
-            self.printer.tell(time_ms, event)
+            self.printer.print_event(time_ms, event)
 
     def _look_again(self) -> None:
         assert self.search is not None and self.search.outcome is not None

@@ -200,7 +200,7 @@ class Listener:
         try:
             for timed_event in connection.watch(self.end_s):
                 if timed_event is not None:
-                    printer.tell(*timed_event)
+                    printer.print_event(*timed_event)
         except KeyboardInterrupt:
             pass
         return Result(True, text("class_over", connection.language))

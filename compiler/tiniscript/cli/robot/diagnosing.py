@@ -135,5 +135,5 @@ def _make_services(
         confirm_opening,
         ports.is_radio,
         share_port,
-        lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
+        lambda what: status_line.show(text(f"doing_{what}", language).format(n=ping_count)),
     )

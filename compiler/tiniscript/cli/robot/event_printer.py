@@ -83,7 +83,7 @@ class EventPrinter:
         self.robot_fields = robot_fields or {}
         self.began_ms = began_ms
 
-    def tell(self, time_ms: int, event: Event) -> None:
+    def print_event(self, time_ms: int, event: Event) -> None:
         if self.began_ms is None:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms

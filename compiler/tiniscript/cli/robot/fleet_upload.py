@@ -43,7 +43,7 @@ def _upload(
     member.meet(connection)
 
     def draw_progress(done_bytes: int) -> None:
-        member.tell("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
+        member.set_state("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
 
     draw_progress(0)
     receipt_reply = program_upload.send_program(connection, ready_program, options, draw_progress)
@@ -51,7 +51,7 @@ def _upload(
     if options.json:
         member.print(json.dumps(receipt))
     starts = program_upload.is_running(ready_program, options)
-    member.tell("crew_running" if starts and not options.detach else "crew_saving")
+    member.set_state("crew_running" if starts and not options.detach else "crew_saving")
     printer = MemberPrinter(connection, ready_program, member, options.json, receipt_reply.program)
     saving = Saving(connection, printer, receipt_reply)
     exit_code = program_upload.follow_run(connection, ready_program, saving, options, printer)

@@ -95,7 +95,7 @@ class Member:
         self.connection: Connection | None = None
         self.bug: Exception | None = None
 
-    def tell(self, key: str, **values: object) -> None:
+    def set_state(self, key: str, **values: object) -> None:
         """Say what happens now."""
         self.state = key, values
 
@@ -105,7 +105,7 @@ class Member:
 
     def meet(self, connection: Connection) -> None:
         """Send HELLO to the robot. Raises CommandError."""
-        self.tell("crew_asking")
+        self.set_state("crew_asking")
         connection.meet()
         self.name = connection.name
 

@@ -214,7 +214,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
                 continue
             _check_event(connection, timed_event[1], saving.program)
             if timed_event[1].name != "STARTED":
-                printer.tell(*timed_event)
+                printer.print_event(*timed_event)
             exit_code = exit_code_of(timed_event[1], None)
             if exit_code is not None and not (has_person and _is_push(timed_event[1])):
                 return exit_code

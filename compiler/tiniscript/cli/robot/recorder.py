@@ -29,18 +29,20 @@ class Rows:
     the sentence `failure`.
     """
 
-    def __init__(self, name: str, first: bytes, failure: str = "unwritable_more --csv") -> None:
+    def __init__(
+        self, name: str, header_row: bytes, failure_key: str = "unwritable_more --csv"
+    ) -> None:
         self._name = name
-        self._how = failure
+        self._failure_key = failure_key
         self._lock = Lock()
         try:
             path = Path(name)
             if path.is_file() or not path.exists():
-                files.replace(path, first)
+                files.replace(path, header_row)
                 self._file = path.open("a", encoding="utf-8", newline="\n")
                 return
             self._file = path.open("w", encoding="utf-8", newline="\n")  # a device or a pipe
-            self._file.write(first.decode())
+            self._file.write(header_row.decode())
             self._file.flush()
         except (OSError, ValueError) as error:
             raise self._failure(error) from None
@@ -66,7 +68,7 @@ class Rows:
             self._file.close()
 
     def _failure(self, why: Exception) -> CommandError:
-        return unwritable_error(self._how, printable_name(self._name), why)
+        return unwritable_error(self._failure_key, printable_name(self._name), why)
 
 
 ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "MISSED")

@@ -67,7 +67,7 @@ class RunMonitor:
             except RobotError as error:
                 raise CommandError(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
-                self.printer.tell(time_ms, event)
+                self.printer.print_event(time_ms, event)
                 if event.name not in ("STARTED", "READING"):
                     self.connection.wait_notice.note_other_output()
             exit_code = exit_code_of(event, run)
@@ -90,7 +90,7 @@ def exit_code_of(event: Event, run: int | None) -> int | None:
         return None
     if end.name == "DONE":
         return DONE
-    return FAULTY if end.is_by_program else LOST
+    return FAULTY if end.was_caused_by_program else LOST
 
 
 def stop_and_say(connection: Connection) -> int:

@@ -102,14 +102,14 @@ class SelfTest(Conversation):
             ] or passed_by_part.get(part, [])
         return known_robot
 
-    def _passed_parts(self, name: str) -> dict[str, list[Finding]]:
+    def _passed_parts(self, robot_name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""
         if self.robot_answers is None:
             return {}
         hello, status, _, trips_ms = self.robot_answers
         sizes = {size: str(getattr(hello, size)) for size in ("room", "largest", "window")}
         findings = [
-            sure_finding("kit_is", robot=name),
+            sure_finding("kit_is", robot=robot_name),
             sure_finding("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
             sure_finding("supply_is", reset=row_name(RESETS, hello.reset)),
             sure_finding(_saved_cause(row_name(SAVED, status.saved))),

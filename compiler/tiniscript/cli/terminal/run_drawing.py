@@ -45,7 +45,7 @@ def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language:
                 now_ms += screen.rest() * 1000 * pace
             picture.take(event)
             screen.say(str(event))
-            if pace and screen.restart_if_late():
+            if pace and screen.reset_frame_clock_if_late():
                 screen.draw(picture, picture.now_ms)
         raise AssertionError("a run without an ending")
     finally:

@@ -154,7 +154,7 @@ class Screen:
         self.frame_s = time.monotonic()
         return min(self.frame_s - last_s, SLOWEST_FRAME_S)
 
-    def restart_if_late(self) -> bool:
+    def reset_frame_clock_if_late(self) -> bool:
         """Return whether a frame is overdue: much has happened that takes the robot no time."""
         now_s = time.monotonic()
         if now_s - self.frame_s < 2 * FRAME_S:

@@ -385,7 +385,7 @@ class Server:
         self, client: ConnectedClient, event: type[JoinedEvent] | type[LeftEvent]
     ) -> None:
         if client.verb not in ("", protocol.LOOKING_VERB):
-            self._connection.tell(event(client.verb.encode()))
+            self._connection.post_event(event(client.verb.encode()))
 
     # -- what clients are told --------------------------------------------------------------------
 

@@ -96,7 +96,7 @@ class SharedConnection(LinkConnection):
             self._listen(limit_s)
         return self._events.popleft() if self._events else None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self._send({"do": "places"})
 
     def stop(self) -> int:
