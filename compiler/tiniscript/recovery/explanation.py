@@ -303,12 +303,19 @@ class _Explainer:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
-            before, after = (instructions(tokens) for tokens in step[1:])
-            if len(before) != len(after) or step.code is codes.ASKED_AFTER:
+            instructions_before, instructions_after = (instructions(tokens) for tokens in step[1:])
+            if (
+                len(instructions_before) != len(instructions_after)
+                or step.code is codes.ASKED_AFTER
+            ):
                 return []
-            pairs = enumerate(zip(before, after, strict=True))
-            n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(before) - 1)
-            steps.setdefault(n, []).append(Step(step.code, before[n], after[n]))
+            pairs = enumerate(zip(instructions_before, instructions_after, strict=True))
+            n = next(
+                (n for n, (a, b) in pairs if texts(a) != texts(b)), len(instructions_before) - 1
+            )
+            steps.setdefault(n, []).append(
+                Step(step.code, instructions_before[n], instructions_after[n])
+            )
         old_instructions, new_instructions = instructions(old_tokens), instructions(new_tokens)
         notes = (split_note(line)[1] for line in (old_text, own_text))
         if (
@@ -564,7 +571,9 @@ def _is_closed(tokens: Sequence[Lexeme]) -> bool:
     return texts(tokens).count("(") == texts(tokens).count(")")
 
 
-def trimmed_edit(start: int, old: str, new: str) -> Edit:
+def trimmed_edit(start: int, old_text: str, new_text: str) -> Edit:
     """Return the edit of what differs."""
-    head, tail = common_lengths(old, new)
-    return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
+    head, tail = common_lengths(old_text, new_text)
+    return Edit(
+        Span(start + head, start + len(old_text) - tail), new_text[head : len(new_text) - tail]
+    )

@@ -130,8 +130,11 @@ def _returns(tokens: Sequence[Token], called_names: set[str]) -> Iterator[tuple[
 
 def _placeholder(text: str, span: Span) -> str:
     """Return a value that may stand for a call: a yes where that is a whole question."""
-    before, after = text[: span.start].rstrip(), text[span.end :].lstrip()
-    word = before.removesuffix("(").rstrip()[-6:].upper()
-    is_condition = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
-    is_joined = before.upper().endswith(_YES_NO_WORDS) or after[:3].upper() in ("AND", "OR ")
-    return "TRUE" if (is_condition and after.startswith(")")) or is_joined else "1"
+    text_before, text_after = text[: span.start].rstrip(), text[span.end :].lstrip()
+    word = text_before.removesuffix("(").rstrip()[-6:].upper()
+    is_condition = text_before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
+    is_joined = text_before.upper().endswith(_YES_NO_WORDS) or text_after[:3].upper() in (
+        "AND",
+        "OR ",
+    )
+    return "TRUE" if (is_condition and text_after.startswith(")")) or is_joined else "1"

@@ -84,7 +84,7 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
         group_words = list(group)
         if is_joint or (
             not found_instructions
-            and all(lexicon_meaning(lexeme.text, "filler") for lexeme in group_words)
+            and all(lexicon_meaning(token.text, "filler") for token in group_words)
         ):
             continue  # `Hola robot, …`
         part_instructions = _joined_instructions(group_words, names)
@@ -170,13 +170,13 @@ def _joined_instructions(words: list[Lexeme], names: Names) -> list[SpokenInstru
             and lexicon_meaning(words[k].text, "note")
         ):
             return []
-        rest = (
+        later_instructions = (
             _joined_instructions(words[k:], names)
             if first_instruction and len(first_instruction.samples) < 2
             else []
         )
-        if first_instruction and rest:
-            return [first_instruction, *rest]
+        if first_instruction and later_instructions:
+            return [first_instruction, *later_instructions]
     return []
 
 
@@ -190,11 +190,11 @@ def _spoken_instruction(words: list[Lexeme], names: Names) -> SpokenInstruction 
     if bounded_move := _move_until(words, names):
         return bounded_move
     concept = names.meant(words[0].text)
-    texts_after = [lexeme.text for lexeme in words[1:]]
+    texts_after = [token.text for token in words[1:]]
     if concept in ("S", "STOP") and texts_after:
         if all(lexicon_meaning(text, "the", "engine", "filler") for text in texts_after):
             return SpokenInstruction("S", "S", ())
-        if any(lexeme.kind is NUMBER for lexeme in words):
+        if any(token.kind is NUMBER for token in words):
             wait_call = fill_call([make_token("W"), *words[1:]], names, has_until=False)
             return (
                 SpokenInstruction("S", f"{concept};{format_line(wait_call.tokens)}", ())
@@ -202,9 +202,9 @@ def _spoken_instruction(words: list[Lexeme], names: Names) -> SpokenInstruction 
                 else None
             )
     call = fill_call(words, names, has_until=False, is_instruction=True)
-    is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
+    is_free_turn = call is None and any(lexicon_meaning(token.text, "turn") for token in words)
     if is_free_turn:
-        other_words = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
+        other_words = [token for token in words if not lexicon_meaning(token.text, "turn")]
         call = fill_call(
             [make_token("R"), *other_words], names, has_until=False, is_instruction=True
         )
@@ -222,8 +222,8 @@ def _move_until(words: Sequence[Lexeme], names: Names) -> SpokenInstruction | No
     until_index = next(
         (
             until_index
-            for until_index, lexeme in enumerate(words)
-            if names.meant(lexeme.text) == "UNTIL"
+            for until_index, token in enumerate(words)
+            if names.meant(token.text) == "UNTIL"
         ),
         0,
     )
@@ -315,7 +315,7 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
 def _block_header(word: str, words: Sequence[Lexeme], names: Names) -> str:
     """Return the header that words say: how often, or what is asked."""
     if word == "LOOP":
-        number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
+        number = next((token.text for token in words if token.kind is NUMBER), "")
         return f"LOOP({number})" if number and lexicon_meaning(words[-1].text, "times") else ""
     condition = _parse_condition(words, names)[0]
     return f"{word}({condition})" if condition else ""
@@ -331,9 +331,13 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
         [make_token("IF"), make_token("("), *words, make_token(")")], names, is_quick=True
     )
     tokens = readings[0].tokens if readings else []
-    end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
-    lexemes = tokens[2:end]
-    return lexemes if any(_is_question_word(lexeme.text, names) for lexeme in lexemes) else []
+    end = next((k for k, token in enumerate(tokens) if token.text == ";"), len(tokens)) - 1
+    condition_tokens = tokens[2:end]
+    return (
+        condition_tokens
+        if any(_is_question_word(token.text, names) for token in condition_tokens)
+        else []
+    )
 
 
 def _is_question_word(word: str, names: Names) -> bool:

@@ -37,7 +37,10 @@ _EQUAL_SIGNS = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
 _INSTRUCTION_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _ASSIGNMENT = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
 _LINK_KINDS = ("the", "of", "to", "is", "filler", "small", "pressed")
-_TEXTS_BEFORE, _TEXTS_AFTER = ("(", "AND", "OR", "NOT"), (")", "AND", "OR")  # what is asked alone
+_TEXTS_LEFT_OF_KEY, _TEXTS_RIGHT_OF_KEY = (
+    ("(", "AND", "OR", "NOT"),
+    (")", "AND", "OR"),
+)  # what is asked alone
 
 
 class _Piece(NamedTuple):
@@ -79,7 +82,7 @@ def key_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
             diagnostics += _Instruction(
                 match[1], line_start + match.start(), names, own_names
             ).diagnostics(depth > 0)
-            words = [lexeme.text for lexeme in lexemes(match[1])]
+            words = [token.text for token in lexemes(match[1])]
             depth += sum(
                 (concept in BLOCK_ENDS) - (concept in WORD_OF_END)
                 for concept in map(names.meant, words)
@@ -296,7 +299,7 @@ class _Instruction:
         if not side:
             is_button = self._word_at(end) in ("A", "B") and self._word_at(end + 1) in (
                 "",
-                *_TEXTS_AFTER,
+                *_TEXTS_RIGHT_OF_KEY,
             )
             return (
                 _Key(k, end + 1, f"KEY_{self._word_at(end)}", is_sure=False) if is_button else None
@@ -324,7 +327,9 @@ class _Instruction:
         side = _side_of(self._word_at(k))
         end = self._skip_while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
         is_negated, end = self._as_yes_no(end)
-        stands_alone = self._word_at(k - 1) in _TEXTS_BEFORE and self._word_at(end) in _TEXTS_AFTER
+        stands_alone = (
+            self._word_at(k - 1) in _TEXTS_LEFT_OF_KEY and self._word_at(end) in _TEXTS_RIGHT_OF_KEY
+        )
         is_call = self._word_at(k - 1) == "(" and self._word_at(k - 2).isalpha()
         stands_alone = stands_alone and not (
             is_call and self._concept_of(self.pieces[k - 2]) not in ASKING_WORDS

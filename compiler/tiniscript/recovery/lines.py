@@ -120,10 +120,10 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
     items: list[Item] = []
     start = 0
     padded_texts = [";", *(text for _, text in tokens), BRACES[1], ";"]
-    for k, (previous, text, following) in enumerate(
+    for k, (previous_text, text, following_text) in enumerate(
         zip(padded_texts, padded_texts[1:], padded_texts[2:], strict=False)
     ):
-        is_separate = {previous, following} <= {";", "|", *BRACES}
+        is_separate = {previous_text, following_text} <= {";", "|", *BRACES}
         is_end = is_separate and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
@@ -385,11 +385,11 @@ class _Search:
 
 def _is_grouping_bracket(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
-    previous = tokens[k - 1].text if k else ""
+    previous_text = tokens[k - 1].text if k else ""
     texts_after = [token.text for token in tokens[k + 1 :]]
     return (
         tokens[k].text == "("
-        and previous in ("=", *SIGNS)
+        and previous_text in ("=", *SIGNS)
         and bool(_CALCULATION_SIGNS & {*texts_after})
     )
 

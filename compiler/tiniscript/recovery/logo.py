@@ -178,10 +178,10 @@ class _Reader:
         meanings = lexicon_meaning(word, "turtle")
         return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
 
-    def _move_text(self, word: str, number: str) -> str:
+    def _move_text(self, word: str, number_text: str) -> str:
         unit = UNIT_OF.get(word, "")
-        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
+        if not unit or float(number_text) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
         self.move_count += 1
         self.is_turned |= unit == "DEG"
-        return f"{word}({number} {unit}, {self.power})"
+        return f"{word}({number_text} {unit}, {self.power})"

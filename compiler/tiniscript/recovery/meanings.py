@@ -346,7 +346,11 @@ def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
     texts_around = (";", *texts(line), ";")
     triples = zip(texts_around, texts_around[1:], texts_around[2:], strict=False)
-    return {word for previous, word, following in triples if previous in ";|" and following == ";"}
+    return {
+        word
+        for previous_text, word, following_text in triples
+        if previous_text in ";|" and following_text == ";"
+    }
 
 
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
@@ -404,7 +408,7 @@ def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
 class Names:
     """The names of one program, by a look at its tokens; `label` is what rewrites match."""
 
-    def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
+    def __init__(self, token_lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
         readings = [reading for reading in kit.readings if reading.name]
         self.sensors = frozenset(reading.name for reading in readings)
         self.sensor_names = tuple(sorted(sensor.name for sensor in kit.sensors))
@@ -412,7 +416,7 @@ class Names:
             reading.name: reading for reading in readings if not reading.is_yes_no
         }
         self.actuators = {actuator.name: actuator for actuator in kit.actuators}
-        names_of_lines = [_names_of(tuple(line)) for line in lines]
+        names_of_lines = [_names_of(tuple(line)) for line in token_lines]
         self.in_brackets = {name for line in names_of_lines for name in line.in_brackets}
         self.spaced_names = {row for line in names_of_lines for row in line.spaced_names}
         self.parameters = {
@@ -556,11 +560,11 @@ class Names:
         )  # `5S`, `5 CM`
         key = (token.kind, token.text, bool(is_unit_position))
         if key not in self._labels:
-            classes = [*self._classes(token), *(["@unit"] if is_unit_position else [])]
+            classes = [*self._word_classes(token), *(["@unit"] if is_unit_position else [])]
             self._labels[key] = f"\x01|{'|'.join(dict.fromkeys(classes))}|\x02"
         return self._labels[key]
 
-    def _classes(self, token: Lexeme) -> list[str]:
+    def _word_classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
             fitting_classes = (name for name, check in _CHECK_OF_UNIT.items() if check(float(text)))

@@ -78,8 +78,8 @@ def meant_diagnostics(
         ]
     other_explanations = [
         explanation
-        for other in recovery.other_candidates
-        for explanation in explain_candidate(source_text, other)
+        for other_candidate in recovery.other_candidates
+        for explanation in explain_candidate(source_text, other_candidate)
     ]
     return [
         _with_rival(_with_carried_unit(diagnostic, source.text), explanation, other_explanations)
@@ -122,7 +122,11 @@ def _with_rival(
     diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    other_fixes = (other.fix for other in other_explanations if other.place == explanation.place)
+    other_fixes = (
+        other_explanation.fix
+        for other_explanation in other_explanations
+        if other_explanation.place == explanation.place
+    )
     rival = next((fix for fix in other_fixes if fix and fix != explanation.fix), "")
     if not rival:
         return diagnostic

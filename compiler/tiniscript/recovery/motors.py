@@ -103,9 +103,13 @@ def _are_together(text: str, first: _Switch, second: _Switch) -> bool:
     return not text[first.span.end : second.span.start].strip(_SEPARATORS)
 
 
-def _seconds_text(number: str) -> str:
+def _seconds_text(milliseconds_text: str) -> str:
     """Return how long a wait lasts: 500 are milliseconds."""
-    return number_text(float(number) / 1000) if float(number) >= _LEAST_WAIT_MS else number
+    return (
+        number_text(float(milliseconds_text) / 1000)
+        if float(milliseconds_text) >= _LEAST_WAIT_MS
+        else milliseconds_text
+    )
 
 
 def _switches(text: str) -> Iterator[_Switch]:

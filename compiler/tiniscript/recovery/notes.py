@@ -71,11 +71,14 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
 
 
 def _is_note(body: str, match: re.Match[str]) -> bool:
-    before, after = body[: match.start()], body[match.end() :]
-    is_inside = before.count("(") > before.count(")") or _OPEN_VALUE.search(before) is not None
-    if is_inside or (match["sign"] == "#" and _DEFINE.match(after)):
+    text_before, text_after = body[: match.start()], body[match.end() :]
+    is_inside = (
+        text_before.count("(") > text_before.count(")")
+        or _OPEN_VALUE.search(text_before) is not None
+    )
+    if is_inside or (match["sign"] == "#" and _DEFINE.match(text_after)):
         return False
-    return not any(_is_instruction(word) for word in _CALL.findall(after))
+    return not any(_is_instruction(word) for word in _CALL.findall(text_after))
 
 
 def _is_instruction(word: str) -> bool:

@@ -134,8 +134,8 @@ def _anchor_edges(pattern: str) -> str:
 
 def _example_texts(example: str) -> tuple[str, str]:
     """Return the program of an example, and what becomes of it."""
-    wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
-    return wrong.strip(" "), right
+    wrong_text, _, right_text = example.replace("⏎", "\n").rpartition(" => ")
+    return wrong_text.strip(" "), right_text
 
 
 class Pattern(NamedTuple):
@@ -222,16 +222,16 @@ def index_rows(patterns: Mapping[int, Pattern]) -> RowIndex:
     count_of_label = Counter(
         label for pattern in patterns.values() for label in chain(*pattern.needed_labels)
     )
-    index: dict[str, list[int]] = {}
+    rows_by_label: dict[str, list[int]] = {}
     for k, pattern in patterns.items():
-        rarest = min(
+        rarest_labels = min(
             pattern.needed_labels,
             key=lambda labels: sum(count_of_label[label] for label in labels),
             default=("",),
         )
-        for label in rarest:
-            index.setdefault(label, []).append(k)
-    return index
+        for label in rarest_labels:
+            rows_by_label.setdefault(label, []).append(k)
+    return rows_by_label
 
 
 class Encoded:
@@ -308,7 +308,7 @@ class Encoded:
         if part[0] == "$" and len(part) == 2:
             return captured(part[1])
         if part[0] == "&" and len(part) == 2:
-            return [self.translate(lexeme) for lexeme in captured(part[1])]
+            return [self.translate(token) for token in captured(part[1])]
         if part[0] != "@":
             return [make_token(part.strip("'"))]
         function, *names = part[1:].split(":")
@@ -338,8 +338,8 @@ _Replacement = list[Lexeme] | None
 
 def negate(condition: Sequence[Lexeme]) -> list[Lexeme]:
     """Return the condition that is TRUE where `condition` is not."""
-    signs = [k for k, lexeme in enumerate(condition) if lexeme.text in COMPARISONS]
-    if len(signs) == 1 and not any(lexeme.text in ("AND", "OR", "NOT") for lexeme in condition):
+    signs = [k for k, token in enumerate(condition) if token.text in COMPARISONS]
+    if len(signs) == 1 and not any(token.text in ("AND", "OR", "NOT") for token in condition):
         k = signs[0]
         return [*condition[:k], make_token(OPPOSITES[condition[k].text]), *condition[k + 1 :]]
     return [make_token("NOT"), make_token("("), *condition, make_token(")")]
@@ -356,7 +356,7 @@ def _decimal(match: _Match) -> _Replacement:
     """`1,5` is 1.5 where nobody takes it for two values."""
     (whole_token,), (comma_token,), (decimals_token,) = match.captures
     text_before = match.line.tokens[match.start - 1].text if match.start else ""
-    longest = 3 if whole_token.text == "0" else 2 if text_before == "=" else 1
+    most_decimals = 3 if whole_token.text == "0" else 2 if text_before == "=" else 1
     is_value_list = decimals_token.text == "0" or (
         len(whole_token.text) > 1 and decimals_token.text != "5"
     )
@@ -364,7 +364,7 @@ def _decimal(match: _Match) -> _Replacement:
     if (
         "." in whole_token.text + decimals_token.text
         or is_value_list
-        or len(decimals_token.text) > longest
+        or len(decimals_token.text) > most_decimals
         or has_space
     ):
         return None

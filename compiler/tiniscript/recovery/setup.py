@@ -245,8 +245,8 @@ def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
     setup_text = "".join(source[setup_span].split()).upper()
     edits[0] = edits[0]._replace(text=setup_text)
     edits = [edit for edit in edits if edit.text or edit.span.start < edit.span.end]
-    rest = split_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
-    fix = setup_text + ";".join((*assignments, rest))
+    text_behind = split_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
+    fix = setup_text + ";".join((*assignments, text_behind))
     repair = Repair((*edits, Edit(setup_span, "")), True)
     return [
         Diagnostic(codes.SETUP_TWICE, setup_span, {"begun": fix, "found": setup_text}, None, repair)

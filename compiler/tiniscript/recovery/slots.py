@@ -217,19 +217,19 @@ class _Reader:
         return is_and and lexicon_meaning(self.text_at(k + 1), "power") == ("50",)
 
     def _read_sign(self, k: int) -> int | None:
-        sign, previous = self.text_at(k), self.text_at(k - 1)
+        sign, previous_text = self.text_at(k), self.text_at(k - 1)
         is_minus = sign == "-" and self._is_number(k + 1)
         if is_minus and self.command in ("M", "SHOW"):
-            self.is_sure = self.is_sure and not (self.values and previous != ",")
+            self.is_sure = self.is_sure and not (self.values and previous_text != ",")
             self._add_value("-" + number_text(float(self.text_at(k + 1))), self.next_unit)
             return k + 2
-        if is_minus and (previous in ("(", ",") or self._is_glued(k)):
+        if is_minus and (previous_text in ("(", ",") or self._is_glued(k)):
             is_minus_of_move = self.command in MOVES and not self.is_reversed and not self.values
             self.is_sure, self.is_reversed = False, True
             return k + 1 if is_minus_of_move else None  # nobody drops a sign
         if sign not in _IGNORED_SIGNS or (sign == "=" and not self.next_unit):
             return None
-        if sign == "," and self.next_unit and previous != ",":
+        if sign == "," and self.next_unit and previous_text != ",":
             return None  # a value that is only named
         self.cost += 0.0 if sign in "(),%" else 0.2
         is_odd = sign in ("-", ".") or (sign == "%" and not self._is_number(k - 1))
@@ -359,7 +359,7 @@ class _Reader:
             samples += [] if given_text else [f"{argument.sample} {argument.unit}"]
             texts.append(given_text or argument.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.extent_word},", 1)
-        tokens = [make_token(lexeme.text) for lexeme in lexemes(call)]
+        tokens = [make_token(token.text) for token in lexemes(call)]
         return FilledCall(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
     def _own_value(self, argument: Argument) -> str:
@@ -434,12 +434,12 @@ class _Reader:
                 if slot_k is None:
                     return None
                 slots[slot_k], slot_of_value[k] = value, slot_k
-        unplaced = [k for k in range(len(values)) if k not in slot_of_value]
-        if self.command == "BEEP" and len(unplaced) == 2:
-            unplaced.sort(key=lambda k: values[k].number >= LONG_TIME_S)
-        if has_until and slots[0] is None and arguments[0].unit == "s" and not unplaced:
+        unplaced_indexes = [k for k in range(len(values)) if k not in slot_of_value]
+        if self.command == "BEEP" and len(unplaced_indexes) == 2:
+            unplaced_indexes.sort(key=lambda k: values[k].number >= LONG_TIME_S)
+        if has_until and slots[0] is None and arguments[0].unit == "s" and not unplaced_indexes:
             slots[0] = _Value("FOREVER", None)
-        for k in unplaced:
+        for k in unplaced_indexes:
             slot_k = next((i for i, slot in enumerate(slots) if slot is None), None)
             if self.command == "BEEP" and len(values) == 1:
                 slot_k = 1 if values[k].number * 1000 >= arguments[1].low else slot_k
@@ -457,7 +457,7 @@ class _Reader:
         if None in slots:
             if any(value.unit == "%" and value.number < LONG_TIME_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
-            is_move = self.command in MOVES and unplaced == [0]
+            is_move = self.command in MOVES and unplaced_indexes == [0]
             if self.command == "SHOW" or (is_move and values[0].number >= LONG_TIME_S):
                 return None  # a power, degrees or centimetres
             self.is_sure, self.cost = False, self.cost + 2

@@ -119,11 +119,17 @@ def rows() -> tuple[Row, ...]:
         named_values = dict(
             assignment.split("=", 1) for assignment in values.split("; ") if assignment
         )
-        wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
+        wrong_text, _, right_text = example.replace("⏎", "\n").rpartition(" => ")
         compiled_pattern = rewrites.compile_pattern(pattern, suggestion_rows.PARTS)
         code_number, *conditions = code.split()
         compiled_rows.append(
-            Row(compiled_pattern, CODES.get(code_number), conditions, named_values, (wrong, right))
+            Row(
+                compiled_pattern,
+                CODES.get(code_number),
+                conditions,
+                named_values,
+                (wrong_text, right_text),
+            )
         )
     return tuple(compiled_rows)
 
@@ -602,8 +608,8 @@ def _call_with_note(gaps: Gaps) -> str:
 
 def _is_last(trailing: Trailing) -> bool:
     """Whether nothing but a note follows the words on their line."""
-    rest = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
-    return not rest or rest.startswith("//")
+    text_behind = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
+    return not text_behind or text_behind.startswith("//")
 
 
 def _note_values(trailing: Trailing) -> dict[str, str]:

@@ -183,7 +183,9 @@ class _Text:
     def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
         starts = (
-            other.span.end for other in diagnostics if other.code is codes.PARAMETER_NEEDS_NAME
+            diagnostic_of_def.span.end
+            for diagnostic_of_def in diagnostics
+            if diagnostic_of_def.code is codes.PARAMETER_NEEDS_NAME
         )
         start = max((start for start in starts if start <= diagnostic.span.start), default=-1)
         return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
@@ -566,8 +568,10 @@ class Usage:
     @cached_property
     def wrong_value(self) -> _WrongValue | None:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
-        before = self.tokens_before()
-        calls = [token.text for token, next_token in pairwise(before) if next_token.text == "("]
+        tokens_before = self.tokens_before()
+        calls = [
+            token.text for token, next_token in pairwise(tokens_before) if next_token.text == "("
+        ]
         found_text = self.source[self.diagnostic.span]
         word, found_word = WORDS.get("".join(calls[-1:])), plain(found_text)
         is_word = (
@@ -575,17 +579,29 @@ class Usage:
             and found_word not in WORDS
             and not self.names.is_name(found_word)
         )
-        if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
+        if (
+            word is None
+            or not word.arguments
+            or tokens_before[-1].kind is not NUMBER
+            or not is_word
+        ):
             return None
-        argument_index = min(sum(token.text == "," for token in before), len(word.arguments) - 1)
+        argument_index = min(
+            sum(token.text == "," for token in tokens_before), len(word.arguments) - 1
+        )
         argument = word.arguments[argument_index]
         unit = lexicon_meaning(found_word, "unit")
         extent_word = UNIT_OF.get(word.text, "")
         is_extent = bool(extent_word) and unit == (EXTENTS[extent_word].unit, "1000")
-        extent_text = f"{before[-1].text} {extent_word}" if is_extent else ""
+        extent_text = f"{tokens_before[-1].text} {extent_word}" if is_extent else ""
         return (
             _WrongValue(
-                word, argument, before[-1].text, found_text, unit[0] if unit else "", extent_text
+                word,
+                argument,
+                tokens_before[-1].text,
+                found_text,
+                unit[0] if unit else "",
+                extent_text,
             )
             if (argument.unit in _NOUN_OF_UNIT)
             else None
@@ -610,16 +626,21 @@ class Usage:
         tokens = [token for token in self.row_tokens[1:] if token.text not in ("(", ")")]
         if UNIT_OF.get(word) != "CM" or not tokens or tokens[0].kind is not NUMBER:
             return {}
-        number, *rest = tokens
-        is_more = bool(rest) and (
-            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_KINDS_AFTER_NUMBER)
+        number_token, *tokens_after = tokens
+        is_more = bool(tokens_after) and (
+            tokens_after[0].kind is not WORD
+            or lexicon_meaning(tokens_after[0].text, *_KINDS_AFTER_NUMBER)
         )
-        if is_more or not LONG_TIME_S <= float(number.text) <= _FARTHEST_CM:
+        if is_more or not LONG_TIME_S <= float(number_token.text) <= _FARTHEST_CM:
             return {}
-        extent_call = f"{word}({number.text} CM, {POWER.sample})"
-        if float(number.text) > MOST_POWER:
+        extent_call = f"{word}({number_token.text} CM, {POWER.sample})"
+        if float(number_token.text) > MOST_POWER:
             return {"fix": extent_call, "usage": ""}
-        return {"number": number.text, "way": extent_call, "power": f"{word}(2, {number.text})"}
+        return {
+            "number": number_token.text,
+            "way": extent_call,
+            "power": f"{word}(2, {number_token.text})",
+        }
 
     def bound_values(self) -> dict[str, str]:
         """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
@@ -680,9 +701,9 @@ class Usage:
         end_word = BLOCK_ENDS[(match["word"] or "DEF").upper()]
         values = {"head": head, "right": end_word, "out": "" if end else match["here"].strip()}
         def_name = (match["name"] or "").upper()
-        rest = self.text[match.end() :] if end == end_word else ""
-        instructions_below = _short_instructions(rest) or (
-            _instructions_before_blocks(rest, def_name) if def_name else []
+        text_below = self.text[match.end() :] if end == end_word else ""
+        instructions_below = _short_instructions(text_below) or (
+            _instructions_before_blocks(text_below, def_name) if def_name else []
         )
         calls = [
             instruction for instruction in instructions_below if _is_call_of(instruction, def_name)
