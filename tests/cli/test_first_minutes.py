@@ -352,8 +352,8 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
-            assert catch.hold(ShownEvent(value, 0))
-        assert catch.hold(DoneEvent(1))
+            assert catch.hold_event(ShownEvent(value, 0))
+        assert catch.hold_event(DoneEvent(1))
         assert {name: value.value for name, value in known.values.items()} == {
             "X": BOOKKEEPING_MARK,
             "Y": 7,
@@ -369,15 +369,15 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     known = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
-        assert not catch.hold(show(7))
+        assert not catch.hold_event(show(7))
         told: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
-        assert [catch.hold(each) for each in told] == [True, True, False]
-        catch.hold(event(end))
+        assert [catch.hold_event(each) for each in told] == [True, True, False]
+        catch.hold_event(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
     catch = ValueCatcher(("X",), known, EventPrinter("en"), prints_done=False)
     for each in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
-        catch.hold(each)
+        catch.hold_event(each)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
     assert known.values["X"].value == 5000
     # nor the picture or the lines of a virtual robot

@@ -309,6 +309,6 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
         monkeypatch.setattr(fleet._result_bell, "wait", press)
     else:
         monkeypatch.setattr(fleet, when, press)
-    monkeypatch.setattr(fleet, "interrupt", interrupt)
-    fleet.watch(None)
+    monkeypatch.setattr(fleet, "interrupt_robots", interrupt)
+    fleet.print_until_done(None)
     assert fleet.is_interrupted and fleet.exit_code() == 2

@@ -106,7 +106,7 @@ class Client:
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
-            self.heard += cast(list[Json], self.reader.put(self.socket.recv(1 << 20)))
+            self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
     def answered(self) -> int:
         return sum("status" in each for each in self.heard)

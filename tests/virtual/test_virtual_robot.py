@@ -248,9 +248,9 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 
     def wait() -> None:
         now_ms = robot.now_ms + 1
-        there.put(session.poll(now_ms), now_ms)
-        back.put(robot.step(now_ms, there.take(now_ms)), now_ms)
-        session.receive(back.take(now_ms), now_ms)
+        there.send_bytes(session.poll(now_ms), now_ms)
+        back.send_bytes(robot.step(now_ms, there.take_arrived(now_ms)), now_ms)
+        session.receive(back.take_arrived(now_ms), now_ms)
 
     long = "SI|" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 31)) + "S"
     image = unpack(compile_text(long, KIT).image)
@@ -269,8 +269,8 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
     def through(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))
-        line.put(bytes(range(256)) * 8, 0)
-        return line.take(10_000_000)
+        line.send_bytes(bytes(range(256)) * 8, 0)
+        return line.take_arrived(10_000_000)
 
     assert through(0, 1) == bytes(range(256)) * 8
     assert through(20, 1) == through(20, 1) != through(20, 2)

@@ -57,7 +57,7 @@ class KeyRing:
         """Return all keys."""
         raise NotImplementedError
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         """Keep what is made of all keys; return whether that was possible."""
         raise NotImplementedError
 
@@ -80,7 +80,7 @@ class KeyRing:
                 key,
             ]
 
-        return key if self._change(with_key_added) else None
+        return key if self._change_keys(with_key_added) else None
 
     def robot_at(self, place: str) -> int | None:
         """Return the robot of ours that has proved at a place who it is."""
@@ -93,7 +93,7 @@ class KeyRing:
         """Return whether a robot may answer in the place of one of ours."""
         return False
 
-    def settle(self, key: RobotKey) -> None:
+    def settle_key(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
         settled_key = key._replace(is_pending=False, is_stale=False)
 
@@ -102,17 +102,19 @@ class KeyRing:
                 return keys
             return [*(robot_key for robot_key in keys if robot_key.slot != key.slot), settled_key]
 
-        self._change(with_key_settled)
+        self._change_keys(with_key_settled)
 
     def mark_stale(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
-        self._change(lambda before: [
+        self._change_keys(lambda before: [
             item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
         ])  # fmt: skip
 
-    def drop(self, key: RobotKey) -> None:
+    def drop_key(self, key: RobotKey) -> None:
         """The robot has not taken, or no longer has, this key."""
-        self._change(lambda before: [robot_key for robot_key in before if robot_key.key != key.key])
+        self._change_keys(
+            lambda before: [robot_key for robot_key in before if robot_key.key != key.key]
+        )
 
 
 def ownership_of(robot: DeviceInfo) -> str:
@@ -169,7 +171,7 @@ def show_keys(
                 is_pending=False, is_stale=False, uses_seals=_can_seal(robot) or key.uses_seals
             )
             if proven_key != key:
-                ring.settle(proven_key)
+                ring.settle_key(proven_key)
         if ring is not None and reply.status == WRONG_KEY:
             ring.mark_stale(key)  # kept all the same: the robot is not known to have said so
         if reply.status != WRONG_KEY:
@@ -215,9 +217,9 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
             request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply
         )
     if reply.status == OK:
-        ring.settle(key._replace(uses_seals=_can_seal(robot)))
+        ring.settle_key(key._replace(uses_seals=_can_seal(robot)))
     elif reply.status not in ACCEPTING_STATUSES:
-        ring.drop(key)
+        ring.drop_key(key)
     return reply
 
 
@@ -228,5 +230,5 @@ def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]
     if reply.status == OK:
         for key in ring.of_robot(robot.id):
             if key.which == which:
-                ring.drop(key)
+                ring.drop_key(key)
     return reply

@@ -78,13 +78,13 @@ class KeyFile(KeyRing):
             other_keys = [key for key in stored_keys if key.is_pending or key.slot not in new_keys]
             changed_keys = [key for key in new_keys.values() if key not in stored_keys]
             if changed_keys:
-                self._write([*other_keys, *new_keys.values()])
+                self._write_keys([*other_keys, *new_keys.values()])
             return len(changed_keys)
 
     def forget(self, robot_id: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
         with self._locked():
-            self._write([key for key in self.all() if key.id != robot_id])
+            self._write_keys([key for key in self.all() if key.id != robot_id])
 
     def accept(self, robot_id: int) -> None:
         """Let a robot answer where another one did, or with its name. Raises BadKeys."""
@@ -122,13 +122,13 @@ class KeyFile(KeyRing):
             or robot_id in met_robots.read_met_robots(self._met_robots_path).accepted_ids
         )
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
             with self._locked():
                 old_keys = self.all()
                 new_keys = change(old_keys)
                 if new_keys != old_keys:
-                    self._write(new_keys)
+                    self._write_keys(new_keys)
         except BadKeys:
             return False
         return True
@@ -148,7 +148,7 @@ class KeyFile(KeyRing):
         self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         self.path.parent.chmod(0o700)
 
-    def _write(self, keys: list[RobotKey]) -> None:
+    def _write_keys(self, keys: list[RobotKey]) -> None:
         if len(keys) > MOST_KEYS:
             raise TooManyKeys
         try:

@@ -130,18 +130,18 @@ class RemoteControl:
         due_ms = self.due_ms()
         return due_ms is not None and now_ms >= due_ms
 
-    def say(self, now_ms: int) -> dict[str, int | bytes]:
+    def take_message(self, now_ms: int) -> dict[str, int | bytes]:
         """Return the newest word, which is sent now."""
         self._sent_state, self._sent_ms = self.combined_state, now_ms
         self._unanswered_count += 1
         self._note_sent()
-        return self.word()
+        return self.newest_message()
 
-    def word(self) -> dict[str, int | bytes]:
+    def newest_message(self) -> dict[str, int | bytes]:
         """Return the newest word as the message has it."""
         return dict(self.combined_state._asdict())
 
-    def answer(self, outcome: Reply[Any]) -> None:
+    def take_answer(self, outcome: Reply[Any]) -> None:
         """Take the robot's answer. One that takes no keys is not told of them again."""
         self._unanswered_count = 0
         if outcome.status == OK:
@@ -152,11 +152,11 @@ class RemoteControl:
         self._note_sent()
         self._finish_sent(Reply(outcome.status, outcome.detail))
 
-    def hear(self) -> None:
+    def note_answered(self) -> None:
         """An earlier word was answered."""
         self._unanswered_count = max(0, self._unanswered_count - 1)
 
-    def miss(self) -> None:
+    def note_unanswered(self) -> None:
         """No answer has come in time."""
         self._finish_sent(Reply(LOST))
 

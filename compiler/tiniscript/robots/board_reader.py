@@ -44,7 +44,7 @@ class Pins:
         self._chip = chip
         self._pin_uses: list[PinUse] = []
 
-    def take(
+    def take_pin(
         self,
         table: Table,
         key: str,
@@ -179,10 +179,10 @@ def read_board(table: Table, kit: Kit) -> Board:
     max_run = table.whole_number(
         "max_run_seconds", 1, LONGEST_RUN_SECONDS, default=DEFAULT_RUN_SECONDS
     )
-    start_button = pins.take(table, "start_button", "pull_up")
-    buzzer = pins.take(table, "buzzer", "tone", is_optional=True)
-    status_led = pins.take(table, "status_led", "output", is_optional=True)
-    bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
+    start_button = pins.take_pin(table, "start_button", "pull_up")
+    buzzer = pins.take_pin(table, "buzzer", "tone", is_optional=True)
+    status_led = pins.take_pin(table, "status_led", "output", is_optional=True)
+    bluetooth_state = pins.take_pin(table, "bluetooth_state", "input", is_optional=True)
     language = table.choice("language", languages()) if table.check_for("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
     discs = None
@@ -264,7 +264,7 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
         else:
             has_pull_up = ability == "input" and settings.get("pull_up")
             ability = "pull_up" if has_pull_up else ability
-            pin = pins.take(table, key, ability, is_optional, is_motor=used_by == "motors")
+            pin = pins.take_pin(table, key, ability, is_optional, is_motor=used_by == "motors")
         if pin is not None:
             pin_of_key[key] = pin
     table.finish()

@@ -88,8 +88,8 @@ class Header(HeaderPart):
         """Return what drivers and the board define for the preprocessor, then what C++ has."""
         kit, board = self.robot.kit, self.robot.board
         motors = motors_of(board.motors).firmware_lines(self, board.motors)
-        sensors = self._cases(kit.sensors, board.sensors, sensor_of)
-        actuators = self._cases(kit.actuators, board.actuators, actuator_of)
+        sensors = self._case_lines(kit.sensors, board.sensors, sensor_of)
+        actuators = self._case_lines(kit.actuators, board.actuators, actuator_of)
         discs = []
         if board.discs:
             base_cm = self.robot.body.wheel_base_cm
@@ -128,7 +128,7 @@ class Header(HeaderPart):
             kind = "Pin" if isinstance(self.pins, AvrPins) else "Pwm"
             lines.append(f"constexpr {kind} kServos[] = {{{pins}}};")
         lines += [
-            *self._ultrasonics(),
+            *self._ultrasonic_lines(),
             "",
             "inline void begin_devices() {",
             *(f"  {line}" for line in self.begin_lines),
@@ -164,7 +164,7 @@ class Header(HeaderPart):
             names.append(f"ultrasonic_vectors(each) {vector_calls}")
         return names
 
-    def _cases(
+    def _case_lines(
         self, devices: Sequence[Device], wirings: Sequence[Wiring],
         driver_of: Callable[[str, Wiring], SensorDriver | ActuatorDriver],
     ) -> list[str]:  # fmt: skip
@@ -175,7 +175,7 @@ class Header(HeaderPart):
             lines += driver_of(device.kind, wiring).firmware_lines(self, device, wiring)
         return lines
 
-    def _ultrasonics(self) -> list[str]:
+    def _ultrasonic_lines(self) -> list[str]:
         """Return the number of ultrasonic sensors and their wiring; a single one uses constants."""
         if not self.ultrasonic_texts:
             return []

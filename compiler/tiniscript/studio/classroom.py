@@ -244,7 +244,7 @@ class Classroom:
             action = request.get("do")
             if action in ("stop", "stop_all"):
                 return self._stop(pupil, request)
-            if not self._request_rate.take(token, self._clock()):
+            if not self._request_rate.take_amount(token, self._clock()):
                 raise BadRequest
             pupil.heard_s = self._clock()
             if action == "here":
@@ -271,11 +271,11 @@ class Classroom:
         code, name = request.get("code"), request.get("name")
         if request.get("do") != "join" or not isinstance(code, str) or not isinstance(name, str):
             raise BadRequest
-        if not self._wrong_code_rate.has(address, now_s):
+        if not self._wrong_code_rate.has_left(address, now_s):
             return {"failure": "class_slow"}
         typed_code = "".join(code.upper().split()).encode("utf-8", "replace")
         if not hmac.compare_digest(typed_code, self.code.encode()):
-            self._wrong_code_rate.take(address, now_s)
+            self._wrong_code_rate.take_amount(address, now_s)
             return {"failure": "class_wrong"}
         if self._ending:
             return {"failure": "class_over"}

@@ -169,9 +169,9 @@ class Groups:
         own_groups = [group for group in self._groups.values() if group.founder == token]
         if len(self._groups) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
             return None
-        return self._add(name, token, new_token(), _tree_of(text))
+        return self._add_group(name, token, new_token(), _tree_of(text))
 
-    def _add(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
+    def _add_group(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
         """Add a group with a program, or one that goes on from its journal."""
         journal = Journal(self._folder / f"{key}.journal" if self._folder is not None else None)
         epoch = new_token()
@@ -250,7 +250,7 @@ class Groups:
             group.condition.notify_all()
             run_position = request.get("ran")
             if request.get("waits") is True and not changes:
-                self._hold(group, member, since_number, seen_version, run_position)
+                self._wait_for_news(group, member, since_number, seen_version, run_position)
             if group.members.get(token) is not member:
                 return {"left": True}
             number, runs = group.runs.news_after(run_position, token)
@@ -273,7 +273,7 @@ class Groups:
             del group.members[TEACHER]
             _notify(group)
 
-    def _hold(
+    def _wait_for_news(
         self,
         group: Group,
         member: Member,
@@ -306,7 +306,7 @@ class Groups:
             size = len(json.dumps(row, separators=(",", ":")))
             cost = 1 + min(size, CHANGE_BYTES) // BYTES_PER_COST
             with self._rate_lock:
-                if not self._rate.take(member.token, self._clock(), cost):
+                if not self._rate.take_amount(member.token, self._clock(), cost):
                     return False
             if size > CHANGE_BYTES:
                 group.program.refuse(uid, TOO_LONG)
@@ -425,7 +425,7 @@ class Groups:
                 is_key = isinstance(key, str) and re.fullmatch("[0-9a-f]{32}", key) is not None
                 if not is_key or not group_name or len(self._groups) >= MOST_GROUPS:
                     continue
-                group = self._add(group_name, str(founder), str(key), None)
+                group = self._add_group(group_name, str(founder), str(key), None)
                 if group is None:
                     continue
                 owners = row.get("owners")

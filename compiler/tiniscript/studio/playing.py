@@ -211,7 +211,7 @@ class PlayedRun(Simulation):
             row = self._inputs[self._next_input]
             self._next_input += 1
             if not self.recording.is_virtual:
-                self._learn(row)
+                self._learn_readings(row)
             elif row.event == HALT:
                 self.session.stop(self.robot.now_ms)
             elif row.event == HELD:
@@ -287,13 +287,13 @@ class PlayedRun(Simulation):
 
     def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
-        self._listen()
+        self._read_events()
         while self.held_at is not None:
             self._program_offset = self.held_at
             if self._program_offset in self.playable.sensor_of_show:
                 self._tell_shown(self._program_offset)
             self.go_on()
-            self._listen()
+            self._read_events()
 
     def _tell_shown(self, offset: int) -> None:
         sensor = self.playable.sensor_of_show[offset]
@@ -337,7 +337,7 @@ class PlayedRun(Simulation):
             max(readings[number].low, min(readings[number].high, _reading_value(value[0]))),
         )
 
-    def _learn(self, row: Row) -> None:
+    def _learn_readings(self, row: Row) -> None:
         """The virtual sensors have the readings that the robot has told."""
         kind, number, value = self._reading(row)
         if kind == UNREAD:
@@ -348,7 +348,7 @@ class PlayedRun(Simulation):
             if number not in self._incomplete_sensors:
                 self._known_sensors.add(number)
 
-    def _listen(self) -> None:
+    def _read_events(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
             is_read = event.kind == "READ"

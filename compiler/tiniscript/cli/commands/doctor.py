@@ -98,7 +98,7 @@ def _port(options: Namespace) -> str | None:
 
 def _examine_member(expectations: Expectations, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
-    member.meet(connection)
+    member.meet_robot(connection)
     language = connection.language
     findings, answers = examination_of(
         connection,

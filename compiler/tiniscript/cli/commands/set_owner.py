@@ -39,7 +39,7 @@ def _claim(connection: Connection, key_kind: int) -> None:
         raise connection.error_for_reply(reply)
     else:
         key = "claimed" if key_kind == KEY_OWNER else "claimed_teacher"
-    connection.say(key)
+    connection.print_text(key)
 
 
 def _check_claimable(connection: Connection) -> None:

@@ -51,7 +51,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _undo_member(connection: Connection, member: Member) -> Result:
-    member.meet(connection)
+    member.meet_robot(connection)
     receipt = UndoReceipt(connection)
     member.set_state("crew_saving")
     printer = EventPrinter(connection.language, False, print_line=lambda line: None)

@@ -132,7 +132,7 @@ def _upload(
         text, robot = options.recorded_text, connection.profile
         head = recordings.header_line(recordings.REAL, text, robot, receipt_reply.program)
         recorder = Recorder(options.record, head, sent_s, robot_ms, robot.kit)
-        printer.add_row = recorder.add
+        printer.add_row = recorder.add_event
         printer.readings = recorder.add_reading if tells_readings else None
     saving = Saving(connection, printer, receipt_reply)
     try:
@@ -152,7 +152,7 @@ def _upload(
         exit_code = stop_and_say(connection)
         try:
             if recorder is not None:
-                recorder.end("STOPPED")
+                recorder.end_recording("STOPPED")
             saving.wait()  # short, as the motors stand now
         except CommandError as error:
             print(error.sentence(language), file=sys.stderr)
@@ -165,7 +165,7 @@ def _upload(
         raise
     except CommandError:
         if recorder is not None:
-            recorder.end("LOST")
+            recorder.end_recording("LOST")
         raise
     finally:
         if recorder is not None:

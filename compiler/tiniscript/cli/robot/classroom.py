@@ -180,13 +180,13 @@ class Listener:
         self.began_ms = now_ms()
 
     def listen(self, connection: Connection, member: Member) -> Result:
-        member.meet(connection)
+        member.meet_robot(connection)
         robot_fields = {"port": connection.port, "robot": connection.name}
 
         def print_line(line: str) -> None:
-            member.print(line if self.is_json else f"{connection.name}: {line}")
+            member.queue_line(line if self.is_json else f"{connection.name}: {line}")
 
-        add_row = self.rows.add if self.rows is not None else None
+        add_row = self.rows.add_row if self.rows is not None else None
         first_cells = (
             escape_formula(printable_name(connection.name)),
             f"{connection.device_info.id:08x}",

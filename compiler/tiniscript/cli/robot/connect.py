@@ -257,7 +257,7 @@ class Connection(Client):
         default_values = {"robot": name, "port": printable_name(self.port)}
         return text(key, self.language).format(**{**default_values, **values})
 
-    def say(self, key: str, **values: object) -> None:
+    def print_text(self, key: str, **values: object) -> None:
         """Print such a sentence."""
         print(self.text(key, **values))
 

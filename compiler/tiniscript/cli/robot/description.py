@@ -179,7 +179,7 @@ def describe_robot(connection: Connection) -> Description:
 
 def describe_in_a_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots."""
-    member.meet(connection)
+    member.meet_robot(connection)
     description = describe_robot(connection)
     return Result(True, description.line(), description.fields())
 

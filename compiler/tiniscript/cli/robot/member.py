@@ -99,11 +99,11 @@ class Member:
         """Say what happens now."""
         self.state = key, values
 
-    def print(self, line: str) -> None:
+    def queue_line(self, line: str) -> None:
         """Queue a line for printing."""
         self.lines.append(line)
 
-    def meet(self, connection: Connection) -> None:
+    def meet_robot(self, connection: Connection) -> None:
         """Send HELLO to the robot. Raises CommandError."""
         self.set_state("crew_asking")
         connection.meet()

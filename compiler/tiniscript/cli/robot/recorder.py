@@ -47,7 +47,7 @@ class Rows:
         except (OSError, ValueError) as error:
             raise self._failure(error) from None
 
-    def add(self, *cells: object) -> None:
+    def add_row(self, *cells: object) -> None:
         try:
             with self._lock:
                 csv.writer(self._file, lineterminator="\n").writerow(cells)
@@ -55,7 +55,7 @@ class Rows:
         except (OSError, ValueError) as error:
             raise self._failure(error) from None
 
-    def line(self, row: str) -> None:
+    def add_line(self, row: str) -> None:
         try:
             with self._lock:
                 self._file.write(row + "\n")
@@ -97,19 +97,19 @@ class Recorder:
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
-    def add(self, _: int, name: str, text: str, __: str = "") -> None:
+    def add_event(self, _: int, name: str, text: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
         event = f"{name} {text}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
-        row = Row(self._ms(event), event)
+        row = Row(self._event_ms(event), event)
         is_row_kept = self._kept.add(row)
         if is_row_kept:
-            self._rows.line(recordings.encode_row(row))
+            self._rows.add_line(recordings.encode_row(row))
         if not is_row_kept or name in ENDING_EVENTS:
-            self._end(row.ms)
+            self._add_end_row(row.ms)
 
     def add_reading(self, event: ReadingEvent) -> None:
         """Add what the program has read, at the time that the robot tells."""
@@ -118,35 +118,35 @@ class Recorder:
         since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
         for row in self._readings.rows(event, round(since_s * 1000)):
             if self._kept.add(row):
-                self._rows.line(recordings.encode_row(row))
+                self._rows.add_line(recordings.encode_row(row))
             elif self._kept.is_full:
-                return self._end(row.ms)
+                return self._add_end_row(row.ms)
 
     @property
     def untold(self) -> list[str]:
         """The sensors of which the robot could not tell all readings."""
         return self._readings.incomplete_names
 
-    def end(self, event: str) -> None:
+    def end_recording(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
-            row = Row(self._ms(event), event)
+            row = Row(self._event_ms(event), event)
             if self._kept.add(row):
-                self._rows.line(recordings.encode_row(row))
-            self._end(row.ms)
+                self._rows.add_line(recordings.encode_row(row))
+            self._add_end_row(row.ms)
 
     def close(self) -> None:
         """Close the file; a run whose end nobody has told was stopped by this computer."""
         try:
-            self.end("STOPPED")
+            self.end_recording("STOPPED")
         finally:
             self._rows.close()
 
-    def _ms(self, event: str) -> int:
+    def _event_ms(self, event: str) -> int:
         if self._robot_ms is not None:
             return self._robot_ms(event)
         return 0 if self._began_s is None else round((monotonic() - self._began_s) * 1000)
 
-    def _end(self, ms: int) -> None:
+    def _add_end_row(self, ms: int) -> None:
         self._is_over = True
-        self._rows.line(recordings.encode_row(Row(min(ms, MOST_MS), END)))
+        self._rows.add_line(recordings.encode_row(Row(min(ms, MOST_MS), END)))

@@ -38,7 +38,7 @@ class HeldKeys:
         self._release_s: dict[str, float] = {}
         self._unfinished_key = ""
 
-    def take(self, typed_keys: str, now_s: float) -> bool:
+    def press_typed(self, typed_keys: str, now_s: float) -> bool:
         """Take what was typed; return whether somebody wants to leave."""
         text, offset = self._unfinished_key + typed_keys, 0
         self._unfinished_key = ""
@@ -56,10 +56,10 @@ class HeldKeys:
             if letter is not None and letter.upper() in _LETTERS:
                 name = letter.upper()
             if name:
-                self._press(name, now_s)
+                self._hold_key(name, now_s)
         return False
 
-    def _press(self, name: str, now_s: float) -> None:
+    def _hold_key(self, name: str, now_s: float) -> None:
         is_repeat = now_s < self._release_s.get(name, now_s)
         self._release_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
@@ -92,7 +92,7 @@ class TerminalRemote:
     def poll(self) -> None:
         """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
         now_s = monotonic()
-        if self._held_keys.take(self._keys.read_keys(), now_s):
+        if self._held_keys.press_typed(self._keys.read_keys(), now_s):
             self.has_quit = True
             raise KeyboardInterrupt
         self._check_reply()

@@ -92,7 +92,7 @@ class CommandSimulator(SimulatorThread):
         """Whether it is drawn on a terminal."""
         return sys.stderr.isatty() and not getattr(self.options, "json", False)
 
-    def watch(self, keys: str = "") -> None:
+    def start_drawing(self, keys: str = "") -> None:
         """Draw it from now on, if there is a terminal. `keys` is the help for the keys."""
         if not self._is_watched:
             self._is_watched = True
@@ -109,18 +109,18 @@ class CommandSimulator(SimulatorThread):
                 self._picture = WorldPicture(self.robot, self.language, keys)
             self.screen.begin()
 
-    def say(self, line: str) -> None:
+    def print_line(self, line: str) -> None:
         """Print a line, above the picture if there is one."""
         with self._draw_lock:
             if self.screen is not None:
-                self.screen.say(line)
+                self.screen.print_line(line)
                 return
         print(line, flush=True)
 
-    def say_error(self, line: str) -> None:
+    def print_error(self, line: str) -> None:
         with self._draw_lock:
             if self.screen is not None and self.screen.is_shared:
-                self.screen.say(line)
+                self.screen.print_line(line)
                 return
         sys.stdout.flush()
         print(line, file=sys.stderr, flush=True)
@@ -148,7 +148,7 @@ class CommandSimulator(SimulatorThread):
                 if told_event.text == event_text:
                     return told_event.time_ms - started_ms
 
-    def unwatch(self) -> None:
+    def stop_drawing(self) -> None:
         """Stop drawing; the last picture stays."""
         if self.screen is not None:
             with self._draw_lock:
@@ -169,7 +169,7 @@ class CommandSimulator(SimulatorThread):
         try:
             super().close()
         finally:
-            self.unwatch()
+            self.stop_drawing()
         if not self._is_watched:
             return
         if self.options.plot is not None:
@@ -195,7 +195,7 @@ class CommandSimulator(SimulatorThread):
             while self._picture is not None and self._undrawn_events:
                 event = self._undrawn_events.popleft()
                 if not self._bookkeeping.filter_trace_event(event.kind, event.values):
-                    self._picture.take(event)
+                    self._picture.add_event(event)
             if self.screen is not None and monotonic() >= self._frame_s:
                 self._frame_s = monotonic() + FRAME_S
                 self._draw(self.screen)

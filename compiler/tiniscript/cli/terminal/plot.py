@@ -42,9 +42,9 @@ class PlotScreen(Screen):
     def __exit__(self, *_: object) -> None:
         self.end()
 
-    def take(self, time_ms: int, event: Event, name_of: Callable[[ShownEvent], str]) -> None:
+    def add_event(self, time_ms: int, event: Event, name_of: Callable[[ShownEvent], str]) -> None:
         if event.name == "SHOW":
-            self.plot.take(time_ms, event.value, bool(event.is_yes_no), name_of(event))
+            self.plot.add_value(time_ms, event.value, bool(event.is_yes_no), name_of(event))
 
     def draw_plot(self, now_ms: int) -> None:
         """Draw the curves as they are now, where the last frame is over."""
@@ -66,14 +66,14 @@ class Plot:
         self.styles: dict[str, str] = {}
         self.margin = 0  # columns of the labels
 
-    def take(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
+    def add_value(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
         self.now_ms = time_ms
         name = name or NAMELESS_CURVE
         if name not in self.curves:
-            self._add(name)
+            self._add_curve(name)
         self.curves[name].append((time_ms, value * 1000 if is_yes_no else value))
 
-    def _add(self, name: str) -> None:
+    def _add_curve(self, name: str) -> None:
         """Begin a curve; where all styles are taken, the one without a value for longest ends."""
         if len(self.curves) == len(STYLES):
             oldest = min(self.curves, key=lambda curve_name: self.curves[curve_name][-1][0])

@@ -42,9 +42,9 @@ def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language:
                 return event
             while pace and event.time_ms > now_ms:
                 screen.draw(picture, now_ms)
-                now_ms += screen.rest() * 1000 * pace
-            picture.take(event)
-            screen.say(str(event))
+                now_ms += screen.wait_for_frame() * 1000 * pace
+            picture.add_event(event)
+            screen.print_line(str(event))
             if pace and screen.reset_frame_clock_if_late():
                 screen.draw(picture, picture.now_ms)
         raise AssertionError("a run without an ending")
@@ -68,7 +68,7 @@ class Picture:
         self.ending = ""
         self.column_widths = [0, 0]  # columns of values and units, so far
 
-    def take(self, event: Event) -> None:
+    def add_event(self, event: Event) -> None:
         self.now_ms, name, values, event_text, _ = event
         if name == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)

@@ -125,7 +125,7 @@ class Screen:
                 else:
                     self.frame.end()
 
-    def say(self, line: str) -> None:
+    def print_line(self, line: str) -> None:
         """Print a line of the trace, at the next frame at the latest."""
         if self.is_shared and self.is_begun and not self.is_still:
             self.lines.append(line)
@@ -139,7 +139,7 @@ class Screen:
             self.lines = []
             self.frame.draw(self.frame.lines, text)
 
-    def warn(self, line: str) -> None:
+    def print_error(self, line: str) -> None:
         """Print a line on standard error, above the picture."""
         self.flush()
         if self.is_begun and not self.is_still:
@@ -147,7 +147,7 @@ class Screen:
         else:
             self.console.print(Text(line), soft_wrap=True)
 
-    def rest(self) -> float:
+    def wait_for_frame(self) -> float:
         """Wait for the next frame; return the seconds since the last one."""
         last_s = self.frame_s
         time.sleep(max(0.0, last_s + FRAME_S - time.monotonic()))

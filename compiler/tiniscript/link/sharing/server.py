@@ -228,7 +228,7 @@ class Server:
                 data = self._greet(client, data)
             else:
                 client.heard_s = monotonic()
-            for message in client.messages.put(data) if client.verb else ():
+            for message in client.messages.read_messages(data) if client.verb else ():
                 self._handle_message(client, message)
         except BlockingIOError:
             pass

@@ -316,7 +316,7 @@ class Broker:
             elif len(levels) == 5 and not message.retain:
                 port = self._ports.get((levels[1], levels[2]))
                 if port is not None:
-                    port.take(bytes(message.payload))
+                    port.take_message(bytes(message.payload))
 
     def _take_presence(self, group: str, robot_id: str, payload: bytes) -> None:
         presences = self._presences.get(group)
@@ -357,7 +357,7 @@ class BrokerPort(PushedTransport):
         self.end("closed")  # whoever writes after the goodbye would come in again
         self._broker.forget(self)
 
-    def take(self, data: bytes) -> None:
+    def take_message(self, data: bytes) -> None:
         """A message of the robot has come; an empty one says that another client has it."""
         if not data:
             if monotonic() > self._patient_until_s:
