@@ -153,10 +153,12 @@ def test_no_more_curves_than_colours(width: int) -> None:
     names = [f"X + {k}" for k in range(len(STYLES))]
     for k, name in enumerate(names):
         plot.add_value(k, 1000, False, name)
-    before = dict(plot.styles)
+    before = dict(plot.style_by_name)
     plot.add_value(100, 1000, False, names[0])
     plot.add_value(200, 1000, True, "TIME > 1")
-    assert [*plot.curves] == [names[0], *names[2:], "TIME > 1"]
-    assert plot.styles["TIME > 1"] == before[names[1]]
-    assert {name: plot.styles[name] for name in names[2:]} == {n: before[n] for n in names[2:]}
+    assert [*plot.values_by_name] == [names[0], *names[2:], "TIME > 1"]
+    assert plot.style_by_name["TIME > 1"] == before[names[1]]
+    assert {name: plot.style_by_name[name] for name in names[2:]} == {
+        n: before[n] for n in names[2:]
+    }
     assert all(line.cell_len <= width for line in plot.lines(width, 9, 300))

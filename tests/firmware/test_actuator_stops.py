@@ -105,6 +105,6 @@ def test_the_virtual_robot_says_and_draws_it(
     for event in events:
         if event.kind != "START":
             picture.add_event(event)
-    assert picture.settings == drawn == robot.actuators
+    assert picture.value_by_actuator == drawn == robot.actuators
     robot.press()
     assert not [event for event in robot.take_events() if event.kind in ("SET", "RELEASE")]

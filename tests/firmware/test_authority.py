@@ -154,7 +154,7 @@ def test_no_challenge_is_a_tag() -> None:
     owner = table.claimed(keys)
     assert owner.robot is not None
     nonce = owner.robot.values.nonce.to_bytes(4, "little")
-    [key] = keys.of_robot(owner.robot.id)
+    [key] = keys.keys_of_robot(owner.robot.id)
     challenges = []
     for _ in range(2):
         answer = table.asked(owner, "AUTHENTICATE", bytes([key.which]))

@@ -131,7 +131,7 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     rng = Random(seed)
     program = program_of()
     ana = Ana(program)
-    before = {id: node.copy() for id, node in program.tree.nodes.items()}
+    before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
     touched: set[str] = set()
     for _ in range(rng.randrange(1, 5)):

@@ -25,23 +25,24 @@ class MachineCase(NamedTuple):
     name: str
     devices: tuple[str, ...]
     image: bytes
-    readings: dict[int, tuple[int, ...]]
+    readings_by_sensor: dict[int, tuple[int, ...]]
     seed: int
     begin_ms: int
     every_ms: tuple[int, ...]
     until_ms: int
     needs: int
     answer: tuple[str, ...]
-    slow: dict[int, tuple[int, int, int]]
+    delays_by_sensor: dict[int, tuple[int, int, int]]
 
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
         reading_rows = [
             " ".join(("readings", str(number), *map(str, values)))
-            for number, values in sorted(self.readings.items())
+            for number, values in sorted(self.readings_by_sensor.items())
         ]
         slow_rows = [
-            f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow
+            f"slow {number} {' '.join(map(str, self.delays_by_sensor[number]))}"
+            for number in self.delays_by_sensor
         ]
         rows = (
             *self.devices,

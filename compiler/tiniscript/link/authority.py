@@ -61,7 +61,7 @@ class KeyRing:
         """Keep what is made of all keys; return whether that was possible."""
         raise NotImplementedError
 
-    def of_robot(self, robot_id: int | None) -> list[RobotKey]:
+    def keys_of_robot(self, robot_id: int | None) -> list[RobotKey]:
         """Return the keys of a robot, or of all."""
         return [key for key in self._stored_keys() if robot_id in (None, key.id)]
 
@@ -129,7 +129,7 @@ def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
     """Return whether our keys say that a robot seals; where none is known, whether any does."""
     if ring is None:
         return False
-    keys = ring.of_robot(None if robot is None else robot.id)
+    keys = ring.keys_of_robot(None if robot is None else robot.id)
     return any(key.uses_seals and not key.is_pending for key in keys)
 
 
@@ -137,7 +137,7 @@ def is_impostor(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
     """Return whether somebody answers in the place of a robot of ours that seals: where that one
     has answered before, or with its name. One whose key we have too has to prove itself.
     """
-    our_keys = [] if ring is None else ring.of_robot(None)
+    our_keys = [] if ring is None else ring.keys_of_robot(None)
     our_keys = [key for key in our_keys if key.uses_seals and not key.is_pending]
     if ring is None or any(key.id == robot.id for key in our_keys) or ring.accepts(robot.id):
         return False
@@ -159,7 +159,7 @@ def show_keys(
     it `is_needed`, since showing it takes time.
     """
     reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
-    keys = [] if ring is None else ring.of_robot(robot.id)
+    keys = [] if ring is None else ring.keys_of_robot(robot.id)
     for key in sorted(keys, key=_key_order):
         if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
@@ -228,7 +228,7 @@ def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]
     request = Request("CLAIM", {"which": which, "key": b""})
     reply = yield from requests.save_and_confirm(request, EmptyReply)
     if reply.status == OK:
-        for key in ring.of_robot(robot.id):
+        for key in ring.keys_of_robot(robot.id):
             if key.which == which:
                 ring.drop_key(key)
     return reply

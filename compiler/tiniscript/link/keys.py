@@ -47,15 +47,18 @@ class KeyFile(KeyRing):
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
     def __init__(
-        self, path: Path | None = None, is_for_virtual: bool = False, accepts_all: bool = False
+        self,
+        path: Path | None = None,
+        serves_virtual_robots: bool = False,
+        accepts_all: bool = False,
     ) -> None:
-        """`is_for_virtual`: whoever answers may be a virtual robot that begins anew each time, with
-        the same id and without the owner that it had. `accepts_all`: any robot may answer where
-        another one did.
+        """`serves_virtual_robots`: whoever answers may be a virtual robot that begins anew each
+        time, with the same id and without the owner that it had. `accepts_all`: any robot may
+        answer where another one did.
         """
         self._accepts_all = accepts_all
         self.path = path or files.settings_folder() / "keys.json"
-        self._is_for_virtual = is_for_virtual
+        self._serves_virtual_robots = serves_virtual_robots
 
     def all(self) -> list[RobotKey]:
         """Return all keys. Raises BadKeys where the file is none."""
@@ -100,7 +103,7 @@ class KeyFile(KeyRing):
             robot_keys = self.all()
             return (
                 [key._replace(uses_seals=False) for key in robot_keys]
-                if self._is_for_virtual
+                if self._serves_virtual_robots
                 else robot_keys
             )
         return []
@@ -113,7 +116,7 @@ class KeyFile(KeyRing):
         return met_robots.read_met_robots(self._met_robots_path).id_by_place.get(place)
 
     def remember_robot(self, place: str, robot_id: int) -> None:
-        if not self._is_for_virtual:
+        if not self._serves_virtual_robots:
             met_robots.remember_robot(self._met_robots_path, place, robot_id)
 
     def accepts(self, robot_id: int) -> bool:

@@ -99,7 +99,7 @@ class Matching:
         ]
         self.items.append((len(lines), Item("", "", 0, 0)))
         self.open_blocks: list[_Block] = []
-        self.edits: dict[int, list[Edit]] = {}
+        self.edits_by_line: dict[int, list[Edit]] = {}
         self.ends_on_line: dict[int, list[str]] = {}
         self.ends_below: dict[int, list[str]] = {}
         self.is_sure = True
@@ -135,7 +135,7 @@ class Matching:
         self.edit_tokens(self.item.start, old_count, [make_token(text) for text in new_texts])
 
     def edit_tokens(self, start: int, old_count: int, new_tokens: list[Lexeme]) -> None:
-        self.edits.setdefault(self.k, []).append(Edit(start, old_count, new_tokens))
+        self.edits_by_line.setdefault(self.k, []).append(Edit(start, old_count, new_tokens))
 
     def close_below(self, k: int, block: _Block) -> None:
         self.ends_below.setdefault(k, []).append(" " * block.indent + block.end)

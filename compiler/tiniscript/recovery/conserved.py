@@ -157,7 +157,7 @@ def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
     additions = [
         word
         for word in _DRIVING_WORDS
-        if repaired.sure_words[word] > statement.possible_words[word]
+        if repaired.sure_word_counts[word] > statement.possible_word_counts[word]
     ]
     additions = additions if len(additions) > statement.unknown_word_count else []
     additions += [
@@ -408,14 +408,14 @@ class _Statement:
             "TIME": "s"
         }
         self.units |= self._units_of_names()
-        self.sure_words: Counter[str] = Counter()  # that it surely says
-        self.possible_words: Counter[str] = Counter()  # that it may say
+        self.sure_word_counts: Counter[str] = Counter()  # that it surely says
+        self.possible_word_counts: Counter[str] = Counter()  # that it may say
         self.source_of_word: dict[str, str] = {}
         self.amounts: list[Amount] = []
         self.loose_units: list[
             tuple[str, str]
         ] = []  # units after no number, and how they are written
-        self.foreign_words: Counter[str] = Counter()  # of those, in words of another language
+        self.foreign_word_counts: Counter[str] = Counter()  # of those, in words of another language
         self.unknown_word_count = 0  # words of other languages, or of none
         self._read()
 
@@ -510,7 +510,7 @@ class _Statement:
             if token.kind is WORD and not self._is_label(k):
                 self._count_word(k, len(open_brackets) > 1)
             k += 1
-        self.sure_words["ELSE"] += self._count_arms_in_brackets()
+        self.sure_word_counts["ELSE"] += self._count_arms_in_brackets()
 
     def _is_lone_one(self, k: int) -> bool:
         """Whether a 1 alone is asked for yes: `while (1)`."""
@@ -555,13 +555,13 @@ class _Statement:
         is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
             word == "TIME" and not neighbour_texts & _COMPARISON_SENSES.keys()
         )
-        self.possible_words.update(self._possible_words(token))
+        self.possible_word_counts.update(self._possible_words(token))
         self.unknown_word_count += token.text not in WORDS and not self.names.is_name(token.text)
         if is_name_part or is_times_sign or is_joint or is_repetition or is_needless:
             return
         if word in _COUNTED_WORDS or (word and word not in WORDS):
-            self.sure_words[word] += 1
-            self.foreign_words[word] += word != token.text
+            self.sure_word_counts[word] += 1
+            self.foreign_word_counts[word] += word != token.text
             self.source_of_word.setdefault(word, token.source or token.text)
 
     def _next_token(self, k: int) -> Lexeme:
@@ -741,7 +741,7 @@ class _Statement:
 
     def count_sum_signs(self) -> Counter[str]:
         """Count the signs between two values, of which one at least is no plain number."""
-        sums: Counter[str] = Counter()
+        sign_counts: Counter[str] = Counter()
         tokens_after = (*self.tokens[3:], _END)
         for left, sign, right, token_after in zip(
             self.tokens, self.tokens[1:], self.tokens[2:], tokens_after, strict=False
@@ -750,8 +750,8 @@ class _Statement:
             is_other_value = self._has_value(token_after if right.text == "(" else right)
             is_plain = left.kind is NUMBER and right.kind is NUMBER
             if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
-                sums[sign.text] += 1
-        return sums
+                sign_counts[sign.text] += 1
+        return sign_counts
 
     def _has_value(self, token: Lexeme) -> bool:
         """Whether a token is a number, or a name that has a value."""
@@ -949,16 +949,18 @@ def _lost_words(statement: _Statement, repaired: _Statement) -> Iterator[str]:
     """Give the words that are gone, and are not in a note."""
     noted_words = repaired.note_words - statement.note_words
     is_turned = _count_senses(statement) != _count_senses(repaired)
-    for word, count in statement.sure_words.items():
-        missing_count = count - repaired.sure_words[word]
+    for word, count in statement.sure_word_counts.items():
+        missing_count = count - repaired.sure_word_counts[word]
         replaced_count = max(
             (
-                repaired.sure_words[replacement] - statement.sure_words[replacement]
+                repaired.sure_word_counts[replacement] - statement.sure_word_counts[replacement]
                 for replacement in _COUNTED_AS.get(word, ())
             ),
             default=0,
         )
-        replaced_count = max(replaced_count, min(noted_words[word], statement.foreign_words[word]))
+        replaced_count = max(
+            replaced_count, min(noted_words[word], statement.foreign_word_counts[word])
+        )
         if missing_count > replaced_count and not (word == "NOT" and is_turned):
             yield statement.source_of_word.get(word, word)
 
@@ -968,7 +970,7 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
     lost_senses = _count_senses(statement) - (repaired.note_words - statement.note_words)
     new_senses = _count_senses(repaired)
     turner_counts = (
-        {word: each.sure_words[word] for word in _QUESTION_TURNERS}
+        {word: each.sure_word_counts[word] for word in _QUESTION_TURNERS}
         for each in (statement, repaired)
     )
     negations = (statement.negations, repaired.negations)
@@ -986,7 +988,7 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
 
 
 def _count_senses(statement: _Statement) -> Counter[str]:
-    senses: Counter[str] = Counter()
+    sense_counts: Counter[str] = Counter()
     open_brackets = [False]
     for left, sign, right in zip(
         statement.tokens, statement.tokens[1:], statement.tokens[2:], strict=False
@@ -1005,5 +1007,5 @@ def _count_senses(statement: _Statement) -> Counter[str]:
             and not open_brackets[-1]
             and left.text not in CALL_WORDS
         ):
-            senses[_COMPARISON_SENSES[sign.text]] += 1
-    return senses
+            sense_counts[_COMPARISON_SENSES[sign.text]] += 1
+    return sense_counts

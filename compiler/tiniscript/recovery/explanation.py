@@ -301,7 +301,7 @@ class _Explainer:
         new_tokens: Sequence[Lexeme],
     ) -> list[Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
-        steps: dict[int, list[Step]] = {}
+        steps_by_instruction: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
             instructions_before, instructions_after = (instructions(tokens) for tokens in step[1:])
             if (
@@ -313,7 +313,7 @@ class _Explainer:
             n = next(
                 (n for n, (a, b) in pairs if texts(a) != texts(b)), len(instructions_before) - 1
             )
-            steps.setdefault(n, []).append(
+            steps_by_instruction.setdefault(n, []).append(
                 Step(step.code, instructions_before[n], instructions_after[n])
             )
         old_instructions, new_instructions = instructions(old_tokens), instructions(new_tokens)
@@ -339,8 +339,12 @@ class _Explainer:
                 edit = trimmed_edit(span.start, text, new_text)
                 if edit.span.start == span.end:
                     edit = Edit(span, new_text)  # an end that is missing comes behind all of it
-                changes.append(Change(span, edit, steps.get(n, []), instruction, new_instruction))
-                if not steps.get(n) and text.isascii():
+                changes.append(
+                    Change(
+                        span, edit, steps_by_instruction.get(n, []), instruction, new_instruction
+                    )
+                )
+                if not steps_by_instruction.get(n) and text.isascii():
                     return []
         has_all_texts = all(change.new_tokens for change in changes)
         is_separate_line = not self.candidate.is_whole and has_all_texts  # others are not read

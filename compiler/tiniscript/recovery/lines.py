@@ -52,7 +52,11 @@ _CALCULATION_SIGNS = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _MOST_PLAIN_DIGITS = 4
 _WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
-_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
+_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.belongs_to_blocks} | {
+    ";",
+    "UNTIL",
+    *BRACES,
+}
 
 
 class Step(NamedTuple):

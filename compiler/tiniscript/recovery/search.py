@@ -399,7 +399,7 @@ class Recovery:
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
             if reading is not _UNREAD_LINE:
-                edits, tails = blocks.edits.get(k, []), blocks.ends_on_line.get(k, [])
+                edits, tails = blocks.edits_by_line.get(k, []), blocks.ends_on_line.get(k, [])
                 text = _rewritten_line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.ends_below.get(k, [])))
             steps, is_sure = (*line.steps, *reading.steps), line.is_sure and reading.is_sure

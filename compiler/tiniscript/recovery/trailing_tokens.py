@@ -127,7 +127,7 @@ class Trailing:
         self.text = text
         concept = self.names.meant(self.tokens[0].text, NEAR) if instruction_size else ""
         word_row = WORDS.get(concept)
-        self.is_arm = word_row is not None and word_row.role.is_of_blocks
+        self.is_arm = word_row is not None and word_row.role.belongs_to_blocks
         self.command = WORD_OF_END.get(concept, concept)
         self.has_until = any(token.text == "UNTIL" for token in self.tokens)
         self.time_match = _TIME_OF_CALL.match(self.call_text)
@@ -353,7 +353,12 @@ class Trailing:
         concept = self.means(text)
         word_row = WORDS.get(concept)
         is_repetition = concept == command or (concept == "S" and self.has_until)
-        if is_repetition or word_row is None or word_row.role.is_of_values or concept == "START":
+        if (
+            is_repetition
+            or word_row is None
+            or word_row.role.belongs_to_values
+            or concept == "START"
+        ):
             return False
         return command not in ("LOOP", "DEF", "S", "STOP") or concept not in ("S", "LOOP", "DEF")
 

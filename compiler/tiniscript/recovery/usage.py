@@ -855,7 +855,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
             count = _value_count(tokens, k + 1)
             has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
             is_alone = following.kind in (*_INSTRUCTION_STARTS, "end")
-            if has_own_values or (is_alone and not WORDS[word].role.is_of_blocks):
+            if has_own_values or (is_alone and not WORDS[word].role.belongs_to_blocks):
                 yield k
 
 

@@ -321,9 +321,9 @@ def switch_shape() -> Shape:
     )
 
 
-def lamp_shape(is_on_low: bool) -> Shape:
+def lamp_shape(is_lit_by_low: bool) -> Shape:
     """Return the shape of an LED, which shines while its pin is high, or low."""
-    if is_on_low:
+    if is_lit_by_low:
         terminals = (
             Terminal("long_leg", rail=BOARD_5V),
             Terminal("short_leg", "pin", series_resistor="220 Ω"),

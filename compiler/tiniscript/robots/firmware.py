@@ -206,11 +206,11 @@ class Header(HeaderPart):
 def _hashes(kit: Kit) -> tuple[list[str], list[str], list[str]]:
     """Return those of the sensors, of the remote control, and of the actuators."""
     hash_texts = [f"0x{device_hash:04x}," for device_hash in kit.hashes]
-    first, last = len(kit.sensors), len(kit.readings)
-    actuators = hash_texts[last:]
-    if not first and not actuators:
+    first_number, end_number = len(kit.sensors), len(kit.readings)
+    actuators = hash_texts[end_number:]
+    if not first_number and not actuators:
         actuators = ["0x0000,"]  # C++ has no empty array
-    return hash_texts[:first], hash_texts[first:last], actuators
+    return hash_texts[:first_number], hash_texts[first_number:end_number], actuators
 
 
 def _bytes(data: bytes) -> list[str]:
@@ -252,11 +252,11 @@ class AvrPins:
     def pin(self, pin: int | None) -> str:
         if pin is None:
             return "kNoPin"
-        bit = self._avr.bits[pin]
+        bit = self._avr.bit_by_pin[pin]
         return f"{{kPort{bit.port.upper()}, 1 << {bit.bit}}}"
 
     def pwm(self, pin: int) -> str:
-        timer, channel = self._avr.compares[pin]
+        timer, channel = self._avr.compare_by_pin[pin]
         return f"{{{self.pin(pin)}, {timer}, kChannel{channel.upper()}}}"
 
     def servo(self, pin: int) -> str:
@@ -266,13 +266,13 @@ class AvrPins:
         return f"Pin kBuzzer = {self.pin(pin)}"
 
     def echo(self, pin: int) -> str:
-        vector, group, bit = self._avr.interrupts[pin]
+        vector, group, bit = self._avr.interrupt_by_pin[pin]
         if vector not in self.interrupt_vectors:
             self.interrupt_vectors.append(vector)
         return f"{{{self.pin(pin)}, {group}, 1 << {bit}}}"
 
     def count(self, pin: int) -> str:
-        vector, _, bit = self._avr.external_interrupts[pin]
+        vector, _, bit = self._avr.external_interrupt_by_pin[pin]
         self.counter_vectors.append(vector)
         return f"{self.pin(pin)}, 1 << {bit}"
 

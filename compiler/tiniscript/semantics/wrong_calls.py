@@ -187,8 +187,8 @@ class WrongCalls:
                 and pair[2] != other_pair[2]
                 and pair[3].upper() != other_pair[3].upper()
             ):
-                rest = self.scope.source[Span(unit.end, node.span.end)]
-                values["swapped"] = f"{node.word}({other_pair[2]} {right_unit}{rest}"
+                text_after = self.scope.source[Span(unit.end, node.span.end)]
+                values["swapped"] = f"{node.word}({other_pair[2]} {right_unit}{text_after}"
                 values["line"] = str(self.scope.source.position(other_pair.start())[0])
         self.scope.report(codes.UNIT_PAIR, unit_span, node.span, word=node.word, fix=fix, **values)
 
@@ -309,14 +309,14 @@ class WrongCalls:
 
     def report_def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
-        other = self.free_name(node.name, procedures)
+        free_name = self.free_name(node.name, procedures)
         called_def = next(
             (procedure for procedure in procedures if procedure.name == node.name), None
         )
         value_pattern = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
         value_match = re.search(value_pattern, self.scope.source.text)
         if called_def is None or len(called_def.values) != 1 or node.value is None or value_match:
-            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=free_name)
             return
         fix = f"{node.name}({self.scope.source[node.value.span]})"
         self.scope.report(codes.NAME_TAKEN, node.span, None, name=node.name, other="", fix=fix)
@@ -398,23 +398,23 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
     values: dict[str, str] = {}
     if len(texts) != 2 or not all(argument.is_plain for argument in arguments):
         return values
-    first, second = texts
-    is_short = first.replace(".", "", 1).isdecimal() and float(first) < _LONG_TIME_S
+    first_text, second_text = texts
+    is_short = first_text.replace(".", "", 1).isdecimal() and float(first_text) < _LONG_TIME_S
     if word.role.name == "beep":
-        if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
-            values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
-        elif _whole_number(first) > _LOWEST_HERTZ:
-            values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
+        if re.fullmatch(r"\d+\.\d{3}", second_text):  # `BEEP(1, 1.000)`
+            values["fix"] = f"{word.text}({first_text}, {second_text.replace('.', '')})"
+        elif _whole_number(first_text) > _LOWEST_HERTZ:
+            values |= {"fix": f"{word.text}({second_text}, {first_text})", "usage": word.usage}
         elif is_short:
-            values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
+            values["tone"] = f"{word.text}({first_text}, {WORDS['BEEP'].arguments[1].sample})"
     elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
             values_text = ", ".join(text.lstrip("- ") for text in texts)
             values["fix"] = f"{OPPOSITE_MOVES[word.text]}({values_text})"
-        elif word.text == "B" and is_short and _is_frequency(second):
-            values["sound"] = f"BEEP({first}, {second})"
+        elif word.text == "B" and is_short and _is_frequency(second_text):
+            values["sound"] = f"BEEP({first_text}, {second_text})"
         elif is_short:
-            values["most"] = f"{word.text}({first}, {as_text(word.arguments[1].high)})"
+            values["most"] = f"{word.text}({first_text}, {as_text(word.arguments[1].high)})"
     return values
 
 

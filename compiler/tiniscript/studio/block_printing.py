@@ -222,10 +222,10 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
         text += ";" * (k > 0)
         columns.append((len(text), len(text) + len(instruction.text)))
         text += instruction.text
-    first, last = instructions[0], instructions[-1]
-    word = last.word if len(instructions) == 1 else ""
-    is_apart = first.is_apart and not setup
-    return _Line(Row(word, _with_note(text + end, last.note), is_apart), tuple(columns))
+    first_block, last_block = instructions[0], instructions[-1]
+    word = last_block.word if len(instructions) == 1 else ""
+    is_apart = first_block.is_apart and not setup
+    return _Line(Row(word, _with_note(text + end, last_block.note), is_apart), tuple(columns))
 
 
 def _with_note(text: str, note: str) -> str:
@@ -275,8 +275,8 @@ def text_of(value: Value) -> str:
         elif op == "NEG":
             text, precedence = stack.pop()
             is_number = text[:1].isdigit() or text[:1] == "-"  # whose sign it would become
-            inner = f"({text})" if is_number else _bracket((text, precedence), ATOM)
-            stack.append((f"-{inner}", MINUS))
+            inner_text = f"({text})" if is_number else _bracket((text, precedence), ATOM)
+            stack.append((f"-{inner_text}", MINUS))
         elif op == "BRACKETS":
             stack.append((f"({stack.pop()[0]})", ATOM))
         elif op in FUNCTIONS:

@@ -146,23 +146,23 @@ class Repl:
             return stop_and_say(self.connection)
         if not exit_code and live_line.loses_values and not is_last:
             say_aside("live_forgets", self.language)
-        if not exit_code and live_line.defs:
-            self.state.defs.update(live_line.defs)
+        if not exit_code and live_line.text_by_def:
+            self.state.text_by_def.update(live_line.text_by_def)
             if live_line.has_only_defs:
-                names = ", ".join(live_line.defs)
+                names = ", ".join(live_line.text_by_def)
                 say("live_known", self.language, names=names)
         return exit_code
 
-    def read_block(self, line: str, more: Callable[[], str | None]) -> str:
+    def read_block(self, line: str, read_more: Callable[[], str | None]) -> str:
         """Return a line with those that its blocks go on over, up to the first one with a mistake.
 
-        `more` returns the next line, or None if there is none.
+        `read_more` returns the next line, or None if there is none.
         """
         while ends := missing_ends(line):
             closed_line = f"{line}\n{ends}"
             if not self.state.compile_line(closed_line, 0).compilation.is_right:
                 return closed_line
-            next_line = more()
+            next_line = read_more()
             if next_line is None:
                 return line
             line = f"{line}\n{next_line}"
@@ -328,7 +328,7 @@ def requested_command(line: str, state: LiveState) -> str:
     A name of the kit or of the user's program is no such command.
     """
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
-    if word in (*state.defs, *state.kit.names):
+    if word in (*state.text_by_def, *state.kit.names):
         return ""
     return (
         HELP_ME
@@ -369,7 +369,7 @@ class ValueCatcher:
             shown_events = self.held_events[1:]
             if len(shown_events) == len(self.shown_variables):
                 for name, shown_event in zip(self.shown_variables, shown_events, strict=True):
-                    self.state.values[name] = LiveValue(
+                    self.state.value_by_name[name] = LiveValue(
                         shown_event.value, bool(shown_event.is_yes_no)
                     )
             self.held_events = []

@@ -264,7 +264,7 @@ def _memory(name: str | None) -> bytes | None:
 def _set_name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc set name` does, before any client connects."""
     data = name_bytes(name)
-    keys = KeyFile(is_for_virtual=True)
+    keys = KeyFile(serves_virtual_robots=True)
     computer = Computer(robot, robot.random_source.getrandbits(32), keys)
     computer.wait_for(computer.session.name(data))
     robot.step(robot.now_ms + 500)  # it is saved

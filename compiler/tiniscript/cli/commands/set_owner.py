@@ -47,5 +47,5 @@ def _check_claimable(connection: Connection) -> None:
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
-    if ownership_of(device_info) == OWNED_BY_OTHER and not KeyFile().of_robot(device_info.id):
+    if ownership_of(device_info) == OWNED_BY_OTHER and not KeyFile().keys_of_robot(device_info.id):
         raise connection.error_for_reply(Reply(NOT_OWNER))

@@ -238,7 +238,7 @@ class Connection(Client):
             return
         from tiniscript.link.keys import KeyFile
 
-        keys = KeyFile().of_robot(device_info.id)
+        keys = KeyFile().keys_of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):
             say_aside("key_is_stale", self.language, robot=self.name)
 
@@ -431,7 +431,7 @@ def _ask_port(
     language: str, can_start_virtual: bool, virtual_robots: list[directory.RunningRobot]
 ) -> str:
     """Let the person choose a port, or one of the virtual robots."""
-    name_by_port = known_ports.remembered_ports().names
+    name_by_port = known_ports.remembered_ports().name_by_port
     from tiniscript.link import ports
 
     listed_ports = ports.list_ports()

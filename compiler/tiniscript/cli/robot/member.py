@@ -47,7 +47,7 @@ def targets(options: Namespace) -> list[Target]:
 
     Ports in use come first, then ports of known robots. Opens none.
     """
-    names_by_port = known_ports.remembered_ports().names
+    names_by_port = known_ports.remembered_ports().name_by_port
     candidate_ports = [inputs.check_port(port) for port in options.ports]
     if options.all:
         candidate_ports = [registration.port for registration in find_all()]

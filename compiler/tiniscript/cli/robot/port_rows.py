@@ -30,7 +30,7 @@ def list_rows(
     if only_port is None:
         shown_ports += [
             port
-            for port in remembered_ports.names
+            for port in remembered_ports.name_by_port
             if port not in description_by_port
             and exists(port)
             and port not in in_reach.other_ports
@@ -48,7 +48,7 @@ def list_rows(
         {
             "port": port,
             "description": description_by_port.get(port, ""),
-            "remembered": remembered_ports.names.get(port),
+            "remembered": remembered_ports.name_by_port.get(port),
             "is_last_used": remembered_ports.last_port == port,
             "is_virtual": port in virtual_by_address,
             "held_by": verb_of_port.get(canonical_port(port)),

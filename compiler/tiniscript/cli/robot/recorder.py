@@ -67,8 +67,8 @@ class Rows:
         with suppress(OSError):  # a write failure was told already
             self._file.close()
 
-    def _failure(self, why: Exception) -> CommandError:
-        return unwritable_error(self._failure_key, printable_name(self._name), why)
+    def _failure(self, error: Exception) -> CommandError:
+        return unwritable_error(self._failure_key, printable_name(self._name), error)
 
 
 ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "MISSED")
@@ -92,7 +92,7 @@ class Recorder:
     ) -> None:
         self._began_s = began_s
         self._robot_ms = robot_ms
-        self._kept = recordings.Rows()
+        self._kept_rows = recordings.Rows()
         self._readings = recordings.ReadingRows(kit or Kit((), ()))
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
@@ -105,7 +105,7 @@ class Recorder:
         if self._began_s is None:
             self._began_s = monotonic()
         row = Row(self._event_ms(event), event)
-        is_row_kept = self._kept.add(row)
+        is_row_kept = self._kept_rows.add(row)
         if is_row_kept:
             self._rows.add_line(recordings.encode_row(row))
         if not is_row_kept or name in ENDING_EVENTS:
@@ -117,9 +117,9 @@ class Recorder:
             return
         since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
         for row in self._readings.rows(event, round(since_s * 1000)):
-            if self._kept.add(row):
+            if self._kept_rows.add(row):
                 self._rows.add_line(recordings.encode_row(row))
-            elif self._kept.is_full:
+            elif self._kept_rows.is_full:
                 return self._add_end_row(row.ms)
 
     @property
@@ -131,7 +131,7 @@ class Recorder:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
             row = Row(self._event_ms(event), event)
-            if self._kept.add(row):
+            if self._kept_rows.add(row):
                 self._rows.add_line(recordings.encode_row(row))
             self._add_end_row(row.ms)
 

@@ -35,7 +35,7 @@ class HeldKeys:
     """Which keys are held, as far as a terminal tells."""
 
     def __init__(self) -> None:
-        self._release_s: dict[str, float] = {}
+        self._release_s_by_key: dict[str, float] = {}
         self._unfinished_key = ""
 
     def press_typed(self, typed_keys: str, now_s: float) -> bool:
@@ -60,12 +60,12 @@ class HeldKeys:
         return False
 
     def _hold_key(self, name: str, now_s: float) -> None:
-        is_repeat = now_s < self._release_s.get(name, now_s)
-        self._release_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
+        is_repeat = now_s < self._release_s_by_key.get(name, now_s)
+        self._release_s_by_key[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
     def keys_at(self, now_s: float) -> RemoteState:
         return remote_state_of(
-            name for name, release_s in self._release_s.items() if now_s < release_s
+            name for name, release_s in self._release_s_by_key.items() if now_s < release_s
         )
 
 

@@ -61,8 +61,8 @@ class Picture:
         self.labels = {**REMOTE_SIGNS, **robot.labels[language]}
         self.sketch = Sketch(robot)
         self.now_ms = 0  # when the newest event was
-        self.readings: dict[int, int] = {}
-        self.settings: dict[int, int] = {}
+        self.value_by_sensor: dict[int, int] = {}
+        self.value_by_actuator: dict[int, int] = {}
         self.shown_values: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
@@ -73,11 +73,11 @@ class Picture:
         if name == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)
         elif name == "READ":
-            self.readings[values[0]] = values[1]
+            self.value_by_sensor[values[0]] = values[1]
         elif name == "SET":
-            self.settings[values[0]] = values[1]
+            self.value_by_actuator[values[0]] = values[1]
         elif name == "RELEASE":
-            self.settings.pop(values[0], None)
+            self.value_by_actuator.pop(values[0], None)
         elif name == "SHOW":
             self.shown_values.append(event_text.removeprefix("SHOW "))
         elif name == "BEEP":
@@ -128,7 +128,10 @@ class Picture:
             (text("motor_left", language), str(left), "%", _bar(left)),
             (text("motor_right", language), str(right), "%", _bar(right)),
         ]
-        for devices, values in ((kit.readings, self.readings), (kit.actuators, self.settings)):
+        for devices, values in (
+            (kit.readings, self.value_by_sensor),
+            (kit.actuators, self.value_by_actuator),
+        ):
             for number in sorted(values):
                 name, unit = devices[number].name, devices[number].unit
                 rows.append((name, devices[number].text(values[number]), unit, self.labels[name]))

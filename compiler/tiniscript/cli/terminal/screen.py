@@ -37,11 +37,11 @@ class Frame:
         self._write(("\n" if self.lines else "") + SHOW_CURSOR)
         self.lines = []
 
-    def draw(self, lines: Sequence[Text], above: str = "") -> None:
-        """Show these lines in place of the last ones, and print `above` over them, to stay."""
+    def draw(self, lines: Sequence[Text], text_above: str = "") -> None:
+        """Show these lines in place of the last ones, and print `text_above` over them, to stay."""
         width = self.console.size.width
-        if above or width != self._width or len(lines) != len(self.lines):
-            text = self._full_picture(lines, above)
+        if text_above or width != self._width or len(lines) != len(self.lines):
+            text = self._full_picture(lines, text_above)
         else:
             text = self._changes(lines)
         self.lines = [line.copy() for line in lines]
@@ -49,14 +49,16 @@ class Frame:
         if text:
             self._write(BEGIN_UPDATE + text + END_UPDATE)
 
-    def _full_picture(self, lines: Sequence[Text], above: str) -> str:
+    def _full_picture(self, lines: Sequence[Text], text_above: str) -> str:
         """Return what writes all of it, from the first line of the last picture on."""
         width = self.console.size.width
         # a terminal that has become narrower has wrapped the last picture
         rows = max(0, len(self.lines) - 1)
         if width != self._width:
             rows += sum(max(0, line.cell_len - 1) // width for line in self.lines)
-        parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
+        parts = (
+            [*(f"{line}{TO_LINE_END}\n" for line in text_above.split("\n"))] if text_above else []
+        )
         parts.append(f"{TO_LINE_END}\n".join(map(self._style, lines)))
         erase_code = TO_SCREEN_END if width != self._width else ""
         return f"\r{_cursor_up(rows)}{erase_code}{''.join(parts)}{TO_SCREEN_END}"
@@ -64,8 +66,10 @@ class Frame:
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were; there are as many as before."""
         rows = [
-            "" if new == old and new.style == old.style else self._style(new) + TO_LINE_END
-            for new, old in zip(lines, self.lines, strict=True)
+            ""
+            if new_line == old_line and new_line.style == old_line.style
+            else self._style(new_line) + TO_LINE_END
+            for new_line, old_line in zip(lines, self.lines, strict=True)
         ]
         return f"\r{_cursor_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
 

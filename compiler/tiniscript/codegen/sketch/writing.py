@@ -336,13 +336,13 @@ class _Sketch:
 
     def add_needed_helpers(self, texts: Iterable[str]) -> None:
         """Find the helpers that texts and other helpers need."""
-        by_name = {
+        helper_by_name = {
             translated_name(key, self.language): key for key in self.functions if key in IDENTIFIERS
         }
         for text in texts:
             for word in re.findall(r"\w+", text):
-                if word in by_name and f"{word}(" in text:
-                    self.needed_helpers[by_name[word]] = None
+                if word in helper_by_name and f"{word}(" in text:
+                    self.needed_helpers[helper_by_name[word]] = None
             self._names_in(text)
         pending_keys = list(self.needed_helpers)
         while pending_keys:

@@ -23,11 +23,11 @@ class DigitalActuator(ActuatorDriver):
     settings = (Setting("yes_is_low", "yes/no"),)
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
-        pin, is_on_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
-        off = "true" if is_on_low else "false"
+        pin, is_switched_by_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
+        off = "true" if is_switched_by_low else "false"
         part.begin_lines.append(f"begin_output({pin}, {off});")
         part.off_lines.append(f"write({pin}, {off});  // {device.name}")
-        condition = "value == 0" if is_on_low else "value != 0"
+        condition = "value == 0" if is_switched_by_low else "value != 0"
         return [f"      write({pin}, {condition});", "      return;"]
 
     def sketch_lines(

@@ -12,7 +12,7 @@ class PwmActuator(ActuatorDriver):
     profile_help = "pin"
     used_by = "actuators number"
     pins = (PinKey("pin", "pwm"),)
-    fixed_shape = lamp_shape(is_on_low=False)
+    fixed_shape = lamp_shape(is_lit_by_low=False)
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, pwm = part.pins.pin(wiring.pins["pin"]), part.pins.pwm(wiring.pins["pin"])
