@@ -39,7 +39,7 @@ def answers_of(is_right: bool) -> list[tuple[Path, Answer]]:
 def name_of(value: object) -> str:
     if isinstance(value, Path):
         return value.name
-    return value.label_by_language["en"].replace(" ", "_")  # type: ignore[attr-defined]
+    return str(value.label_by_language["en"]).replace(" ", "_")  # type: ignore[attr-defined]
 
 
 def findings_of(text: str, lesson: Lesson, seeds: Sequence[int]) -> list[Finding]:
