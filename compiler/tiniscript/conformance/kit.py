@@ -18,8 +18,9 @@ MACHINE_VERSION = 5  # of the form; grows when a reader of the file, or a machin
 
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, as the specification hashes them, and how fast it is;
-    `readings` are thousandths by the number of the sensor; times are milliseconds. A `slow` sensor
-    has a period, and from when to when in each it is not ready. `every_ms` has one for each wait,
+    `readings_by_sensor` are thousandths by the number of the sensor; times are milliseconds. A slow
+    sensor has a period, and from when to when in each it is not ready. `every_ms` has one for each
+    wait,
     the last for all that follow. A machine may lack what a case `needs`, as images say it."""
 
     name: str

@@ -35,7 +35,7 @@ class Place(NamedTuple):
 class Criterion(NamedTuple):
     """What a run or a program must be like. `kind` is a row of `criteria.KINDS`.
 
-    `numbers` has the numbers of that row by their keys, `words` its words, `places` its places.
+    `number_by_key` has the numbers of that row by their keys, `words` its words, `places` its places.
     `labels[language]` is what a place is called in sentences. `area` is around a place: from and
     to, along x and y, in centimetres.
     """

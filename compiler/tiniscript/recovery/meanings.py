@@ -374,7 +374,7 @@ def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
 def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
     """Return a name of several words that ends before `end_text`: `mi vel = 5`, `DEF paso 1`."""
     name_words: list[str] = []
-    is_glued = (
+    is_number_glued_to_word = (
         end_text == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
     )
     for token in tokens[: _MOST_NAME_WORDS + 1]:
@@ -386,7 +386,7 @@ def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
         ):
             break
         if not name_words and (
-            lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)
+            lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_number_glued_to_word)
         ):
             break
         is_reserved = (
@@ -456,9 +456,11 @@ class Names:
         )
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         defs_without_values = {name for name, count in counts.items() if not count}
-        calls = {*counts.items(), *((name, 1) for name in self.actuators)}
+        names_and_value_counts = {*counts.items(), *((name, 1) for name in self.actuators)}
         values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
-        self.known_names = KnownNames(frozenset(values), instructions, frozenset(calls))
+        self.known_names = KnownNames(
+            frozenset(values), instructions, frozenset(names_and_value_counts)
+        )
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared_names = {
             name for line in names_of_lines for name in line.compared_words if name not in WORDS

@@ -241,13 +241,13 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
 
 def matching_rows(subject: Subject) -> Iterator[tuple[Row, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
-    encoded = rewrites.Encoded(
+    encoded_line = rewrites.Encoded(
         [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
     )
-    for k in encoded.candidate_rows(_row_index()):
+    for k in encoded_line.candidate_rows(_row_index()):
         row = rows()[k]
-        if match := next(encoded.matches(row.pattern), None):
-            gaps = Gaps(subject, encoded, match)
+        if match := next(encoded_line.matches(row.pattern), None):
+            gaps = Gaps(subject, encoded_line, match)
             with suppress(UnfillableGap):
                 gaps.fill(row)
                 yield row, gaps
@@ -478,7 +478,7 @@ def _measured_condition(gaps: Gaps) -> str:
     return (condition_values(words, gaps.trailing.names) or {}).get("asked", "") if has_word else ""
 
 
-def _reading(gaps: Gaps) -> str:
+def _sensor_on_side(gaps: Gaps) -> str:
     """The sensor on the side of an L or R, which is no name."""
     word, part = gaps["s"].upper(), gaps.trailing
     return "" if word in words_set(part.text) else part.names.sensor_on_side(word)
@@ -659,7 +659,7 @@ _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
     "choices": _choice, "number": lambda gaps: free_number_name(gaps.trailing.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
-    "reading": _reading,
+    "reading": _sensor_on_side,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
     "measured": _measured_condition, "alone": _lone_condition, "then": _consequence,

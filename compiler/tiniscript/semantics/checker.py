@@ -346,7 +346,7 @@ class _Checker(Scope):
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
-            self.wrong_calls.report_call_values(
+            self.wrong_calls.report_value_count(
                 node, procedure, [self.variables[k] for k in procedure.values]
             )
             return

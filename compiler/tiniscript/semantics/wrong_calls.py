@@ -83,7 +83,7 @@ class WrongCalls:
     def report_not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
 
-    def report_call_values(
+    def report_value_count(
         self, node: ast.Command, procedure: ir.Procedure, names: Sequence[str]
     ) -> None:
         """Another count of values than the DEF has names."""

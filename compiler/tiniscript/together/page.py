@@ -286,7 +286,10 @@ class Page:
 
     def flush(self) -> None:
         """Make operations of what is finished, and drafts of the rest, and of a hot line."""
-        if self.lines == [item.text for item in self._visible_lines()] and not self.drafts:
+        if (
+            self.lines == [shown_line.text for shown_line in self._visible_lines()]
+            and not self.drafts
+        ):
             return
         hunks = self._hunks()
         if not hunks:

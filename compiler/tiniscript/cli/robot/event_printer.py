@@ -91,11 +91,11 @@ class EventPrinter:
             if self.readings is not None:
                 self.readings(event)
         elif event.name == "SHOW":
-            self._tell_value(since_ms, event)
+            self._print_value(since_ms, event)
         elif event.name == "DONE":
             self.print_values(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
-            self._tell_fault(since_ms, event.fault, event.at, event.program)
+            self._print_fault(since_ms, event.fault, event.at, event.program)
         elif event.name == "STOPPED":
             cause = cause_name(event.cause)
             sentence = text(f"stopped_{cause}", self.language)
@@ -125,7 +125,7 @@ class EventPrinter:
             return show.text
         return text("shown_line", self.language).format(what=show.text, line=line_text)
 
-    def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
+    def _print_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
         shown_value, show = value_text(*value), self.shows.show_of(event)
         if show is None:
@@ -136,7 +136,7 @@ class EventPrinter:
                           value=value_of(*value), name=show.text, line=show.line,
                           column=show.column)  # fmt: skip
 
-    def _tell_fault(self, since_ms: int, fault_number: int, offset: int, checksum: int) -> None:
+    def _print_fault(self, since_ms: int, fault_number: int, offset: int, checksum: int) -> None:
         fault = fault_name(fault_number)
         sentence = fault_sentence(fault_number, offset, checksum, self.program_map, self.language)
         program_map = self.program_map or source_map.recall(checksum)

@@ -36,9 +36,9 @@ class LiveValue(NamedTuple):
 class LiveLine(NamedTuple):
     """A compiled line: `shown_variables` are the variables whose values it shows after the mark.
 
-    `defs` are the DEFs in it, which are known once it is done; `has_only_defs`: it has nothing
-    but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map` is the
-    map of the line with the DEFs and variables before it, which have `lines_before` lines.
+    `text_by_def` are the DEFs in it, which are known once it is done; `has_only_defs`: it has
+    nothing but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map`
+    is the map of the line with the DEFs and variables before it, which have `lines_before` lines.
     """
 
     compilation: Compilation

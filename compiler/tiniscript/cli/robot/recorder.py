@@ -23,10 +23,10 @@ from tiniscript.studio.recordings import END, MOST_MS, Row
 
 
 class Rows:
-    """A file that begins with the row `first`; until that is there, the old file stays.
+    """A file that begins with `header_row`; until that is there, the old file stays.
 
     Threads may add rows at once. All raise CommandError where the file cannot be written, with
-    the sentence `failure`.
+    the sentence `failure_key`.
     """
 
     def __init__(

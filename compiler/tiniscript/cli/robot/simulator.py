@@ -64,7 +64,7 @@ class CommandSimulator(SimulatorThread):
         self.language = language
         self.screen: Screen | None = None
         self._picture: WorldPicture | None = None
-        self._is_watched = False  # `watch` was called
+        self._is_watched = False  # `start_drawing` was called
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._draw_lock = RLock()
@@ -83,7 +83,8 @@ class CommandSimulator(SimulatorThread):
     def is_time_over(self) -> bool:
         """Whether the time of `--for` is over.
 
-        It begins with the first program, or with `watch` if the program waits for the button.
+        It begins with the first program, or with `start_drawing` if the program waits for the
+        button.
         """
         return self._is_watched and self.simulator.is_over
 

@@ -257,13 +257,13 @@ class _Layout:
         )
         boxes = tuple(self._box(part, (left_part, right_part)) for part in self.plan.parts)
         width = right_part + PART_WIDTH + MARGIN + MOTORS_WIDTH * has_motors[RIGHT]
-        lowest = max(
+        bottom_y = max(
             self.board_top + self.board_height,
             *(box.y + box.height for box in boxes),
             *(y for route in routes for _, y in route.points),
         )
         board = (board_left, self.board_top, BOARD_WIDTH, self.board_height)
-        return Layout(width, lowest + MARGIN, board, tuple(self.pins), boxes, routes)
+        return Layout(width, bottom_y + MARGIN, board, tuple(self.pins), boxes, routes)
 
     def _free_y(self) -> int:
         """Return the first height below the board, a quarter step beside pins and terminals."""

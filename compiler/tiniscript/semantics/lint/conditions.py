@@ -435,8 +435,8 @@ def _sensors(condition: ir.Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 
-def _is_within(inner: Comparison, outer: Comparison) -> bool:
+def _is_within(narrower: Comparison, wider: Comparison) -> bool:
     """Whether one comparison is true only where the other one is; their signs go the same way."""
-    if inner.number == outer.number:
-        return inner.op == outer.op or outer.op in ("LE", "GE")
-    return (inner.number < outer.number) == (_SIDE_BY_COMPARATOR[outer.op] == "below")
+    if narrower.number == wider.number:
+        return narrower.op == wider.op or wider.op in ("LE", "GE")
+    return (narrower.number < wider.number) == (_SIDE_BY_COMPARATOR[wider.op] == "below")
