@@ -286,7 +286,7 @@ def test_every_table_fits_its_terminal(count: int) -> None:
                 assert lines[-1].plain.startswith("…")
 
 
-@pytest.mark.parametrize("when", ["_print", "_print_lines", "_news"])
+@pytest.mark.parametrize("when", ["_print_result", "_print_lines", "_news"])
 def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
     when: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
