@@ -126,7 +126,7 @@ def test_operands_are_where_the_table_says() -> None:
         lowest = tuple(operand.kind.low for operand in op.operands)
         for values in (highest, lowest):
             data = op.opcode + b"".join(
-                value.to_bytes(operand.kind.size, "little", signed=operand.kind.signed)
+                value.to_bytes(operand.kind.size, "little", signed=operand.kind.is_signed)
                 for operand, value in zip(op.operands, values, strict=True)
             )
             assert len(data) == op.size, op.name

@@ -143,9 +143,9 @@ def test_only_robots_that_a_command_drives_are_stopped(
     def broken(self: fleet.Fleet, table: object) -> None:
         raise BrokenPipeError
 
-    monkeypatch.setattr(fleet.Fleet, "begin", lambda self, work: None)
-    monkeypatch.setattr(fleet.Fleet, "watch", broken)
-    monkeypatch.setattr(fleet.Fleet, "interrupt", lambda self: stopped.append(verb))
+    monkeypatch.setattr(fleet.Fleet, "start_work", lambda self, work: None)
+    monkeypatch.setattr(fleet.Fleet, "print_until_done", broken)
+    monkeypatch.setattr(fleet.Fleet, "interrupt_robots", lambda self: stopped.append(verb))
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):

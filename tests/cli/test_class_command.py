@@ -244,7 +244,7 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
         connection = SimpleNamespace(
             port="x", name="tini", language="en", device_info=SimpleNamespace(id=robot), watch=watch
         )
-        member = SimpleNamespace(meet=lambda _: None, print=printed.append)
+        member = SimpleNamespace(meet_robot=lambda _: None, queue_line=printed.append)
         listener.listen(cast(Connection, connection), cast(Member, member))
 
     listen(1, 2000)

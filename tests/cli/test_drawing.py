@@ -188,7 +188,7 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
             seen = run_drawing.Picture(robot, language)
             for event in events_of(GRABBER, "grabber")[:-1]:
                 assert isinstance(event, Event)
-                seen.take(event)
+                seen.add_event(event)
                 lines = seen.lines(width, height, event.time_ms)
                 assert 1 <= len(lines) <= height
                 assert all(line.cell_len <= width for line in lines)

@@ -342,7 +342,7 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
         assert requested_command(line, known) == HELP_ME, line
     for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
         assert requested_command(line, known) == "", line
-    known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
+    known.text_by_def["EXIT"] = "DEF EXIT; S; END_DEF"
     assert requested_command("exit", known) == ""  # it is the person's own
 
 
@@ -352,14 +352,14 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
-            assert catch.hold(ShownEvent(value, 0))
-        assert catch.hold(DoneEvent(1))
-        assert {name: value.value for name, value in known.values.items()} == {
+            assert catch.hold_event(ShownEvent(value, 0))
+        assert catch.hold_event(DoneEvent(1))
+        assert {name: value.value for name, value in known.value_by_name.items()} == {
             "X": BOOKKEEPING_MARK,
             "Y": 7,
         }
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
-        known.values.clear()
+        known.value_by_name.clear()
 
 
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
@@ -369,17 +369,17 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     known = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
-        assert not catch.hold(show(7))
+        assert not catch.hold_event(show(7))
         told: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
-        assert [catch.hold(each) for each in told] == [True, True, False]
-        catch.hold(event(end))
+        assert [catch.hold_event(each) for each in told] == [True, True, False]
+        catch.hold_event(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
     catch = ValueCatcher(("X",), known, EventPrinter("en"), prints_done=False)
     for each in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
-        catch.hold(each)
+        catch.hold_event(each)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
-    assert known.values["X"].value == 5000
+    assert known.value_by_name["X"].value == 5000
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [

@@ -91,7 +91,7 @@ def test_after_ctrl_c_nothing_starts(
     stepping(monkeypatch, room, opening, "connection_to", OPENING, OPENED)
     stepping(monkeypatch, room, Client, "meet", ASKING, ASKED)
     stepping(monkeypatch, room, Client, "send_program", SENDING, DRIVING + 1)
-    interrupt = Fleet.interrupt
+    interrupt = Fleet.interrupt_robots
 
     def press(_: Fleet) -> None:
         if not room.pressed.is_set() and room.may_press():
@@ -103,7 +103,7 @@ def test_after_ctrl_c_nothing_starts(
         room.pressed.set()
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
-    monkeypatch.setattr(Fleet, "interrupt", interrupted)
+    monkeypatch.setattr(Fleet, "interrupt_robots", interrupted)
     done = inside("upload", "-e", ENDLESS, "--all").gives(2)
     assert room.pressed.is_set()
     assert room.counted() == room.starts, (room.stages, done)
@@ -168,11 +168,11 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
             room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with not_passed_on():
-                room.fleet.stop()
+                room.fleet.stop_robots()
         else:
-            table = SimpleNamespace(draw=room.passes, end=lambda _: None, say=lambda _: None)
+            table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
             with not_passed_on():
-                room.fleet.watch(cast(FleetTable, table) if how == "a table" else None)
+                room.fleet.print_until_done(cast(FleetTable, table) if how == "a table" else None)
         assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * LOOK_INTERVAL_S], (
             "each is told"
         )

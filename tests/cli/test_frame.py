@@ -152,10 +152,10 @@ def test_an_axis_has_round_marks_around_the_values(low: int, high: int) -> None:
 
 def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     plot = Plot()
-    plot.take(0, 0, False)
-    plot.take(100, 97_300, False)
+    plot.add_value(0, 0, False)
+    plot.add_value(100, 97_300, False)
     before = plot.lines(80, 20, 200)
-    plot.take(200, 98_900, False)
+    plot.add_value(200, 98_900, False)
     after = plot.lines(80, 20, 300)
     assert [text.plain[:8] for text in before[1:]] == [text.plain[:8] for text in after[1:]]
     assert len(after) <= MOST_ROWS + 1
@@ -169,7 +169,7 @@ def test_columns_of_values_only_grow() -> None:
     picture = Picture(robots.load("tinibot"), "en")
     places = []
     for k, value in enumerate((5, 400, 7)):
-        picture.take(Event(k * 100, "READ", (2, value * 1000), ""))
+        picture.add_event(Event(k * 100, "READ", (2, value * 1000), ""))
         row = next(text for text in picture.lines(100, 20, k * 100) if "DISTANCE" in text.plain)
         places.append(row.plain.index(" cm"))
     assert places[0] <= places[1] == places[2]

@@ -85,7 +85,7 @@ def found_output() -> list[int]:
 KEPT = {
     "ports": Kept(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG),
-        lambda: [int(name[-1]) for name in known_ports.remembered_ports().names],
+        lambda: [int(name[-1]) for name in known_ports.remembered_ports().name_by_port],
         known_ports,
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),

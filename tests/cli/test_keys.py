@@ -56,24 +56,24 @@ def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
     with pytest.raises(BadKeys) as exception_info:
         key_file.all()
     assert SECRET not in repr(exception_info.value)
-    assert key_file.of_robot(1) == []
+    assert key_file.keys_of_robot(1) == []
     assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
-    key_file.settle(ONE)
-    key_file.drop(ONE)
+    key_file.settle_key(ONE)
+    key_file.drop_key(ONE)
     assert key_file.path.read_bytes() == data
 
 
 def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
     key_file: KeyFile,
 ) -> None:
-    key_file.settle(ONE._replace(uses_seals=True))
-    key_file.settle(ONE._replace(id=7))
-    assert [key.uses_seals for key in key_file.of_robot(None)] == [True, False]
+    key_file.settle_key(ONE._replace(uses_seals=True))
+    key_file.settle_key(ONE._replace(id=7))
+    assert [key.uses_seals for key in key_file.keys_of_robot(None)] == [True, False]
     key_file.add([ONE, ONE._replace(id=7)])
-    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [True]
-    assert KeyFile(key_file.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
+    assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [True]
+    assert KeyFile(key_file.path, serves_virtual_robots=True).keys_of_robot(ONE.id) == [ONE]
     key_file.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
-    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [False]
+    assert [key.uses_seals for key in key_file.keys_of_robot(ONE.id)] == [False]
 
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
@@ -101,7 +101,7 @@ ring, first = KeyFile(Path(sys.argv[1])), int(sys.argv[2])
 for robot in range(first, first + 25):
     key = ring.create_pending_key(robot, 0, "R")
     assert key
-    ring.settle(key)
+    ring.settle_key(key)
     ring.mark_stale(key) if robot % 5 == 0 else None
 """
 
@@ -131,17 +131,18 @@ def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
     changes: list[Callable[[], object]] = [
         lambda: key_file.add([ONE]), lambda: key_file.add([other, ONE._replace(which=KEY_TEACHER)]),
         lambda: key_file.add([ONE._replace(id=7)]), lambda: key_file.forget(7),
-        lambda: key_file.mark_stale(ONE), lambda: key_file.drop(ONE), lambda: key_file.drop(other),
-        lambda: key_file.settle(ONE._replace(id=7)),
-        lambda: key_file.settle(ONE._replace(which=KEY_TEACHER)),
+        lambda: key_file.mark_stale(ONE),
+        lambda: key_file.drop_key(ONE), lambda: key_file.drop_key(other),
+        lambda: key_file.settle_key(ONE._replace(id=7)),
+        lambda: key_file.settle_key(ONE._replace(which=KEY_TEACHER)),
         lambda: key_file.create_pending_key(ONE.id, KEY_TEACHER, ONE.name),
     ]  # fmt: skip
     chance = random.Random(seed)
     for change in chance.choices(changes, k=6):
         change()
         assert claim in key_file.all()
-    key_file.settle(claim)
-    assert [key for key in key_file.of_robot(ONE.id) if key.which == ONE.which] == [
+    key_file.settle_key(claim)
+    assert [key for key in key_file.keys_of_robot(ONE.id) if key.which == ONE.which] == [
         claim._replace(is_pending=False)
     ]
 
@@ -155,7 +156,7 @@ def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
         assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):
             key_file.add([ONE._replace(id=2)])
-        key_file.drop(ONE)
+        key_file.drop_key(ONE)
         assert key_file.all() == [ONE]
     assert key_file.create_pending_key(1, KEY_OWNER, "A")
 
@@ -237,9 +238,9 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     other = key_file.create_pending_key(7, 0, "")
     assert last and other
     key_file.mark_stale(last)
-    robot_keys = key_file.of_robot(ONE.id)
+    robot_keys = key_file.keys_of_robot(ONE.id)
     assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
-    assert robot_keys[-1] == last._replace(is_stale=True) and key_file.of_robot(7) == [other]
+    assert robot_keys[-1] == last._replace(is_stale=True) and key_file.keys_of_robot(7) == [other]
 
 
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
@@ -282,7 +283,7 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     key_file.accept(9)
     assert again.accepts(9) and again.robot_at(PLACE) == 8
     assert KeyFile(key_file.path, accepts_all=True).accepts(10)
-    KeyFile(key_file.path, is_for_virtual=True).remember_robot(PLACE, 11)
+    KeyFile(key_file.path, serves_virtual_robots=True).remember_robot(PLACE, 11)
     assert again.robot_at(PLACE) == 8
 
 

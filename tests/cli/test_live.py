@@ -145,13 +145,18 @@ def test_which_ends_are_missing(text: str, ends: str) -> None:
 
 def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
     known = LiveState(KIT)
-    known.values = {
+    known.value_by_name = {
         "X": LiveValue(5000, False),
         "Y": LiveValue(1, True),
         "Z": LiveValue(-1500, False),
     }
-    known.defs = {"HOP": "DEF HOP; F(1, Z); SKIP; END_DEF", "SKIP": "DEF SKIP; W(X); END_DEF"}
-    known.defs = dict(sorted(known.defs.items(), reverse=True))  # what is called stands first
+    known.text_by_def = {
+        "HOP": "DEF HOP; F(1, Z); SKIP; END_DEF",
+        "SKIP": "DEF SKIP; W(X); END_DEF",
+    }
+    known.text_by_def = dict(
+        sorted(known.text_by_def.items(), reverse=True)
+    )  # what is called stands first
     line = known.compile_line("HOP", 55)
     assert line.compilation.is_right
     assert line.compilation.program is not None
@@ -165,7 +170,7 @@ def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
 
 def test_mistakes_and_warnings_are_those_of_the_line() -> None:
     known = LiveState(KIT)
-    known.values = {"X": LiveValue(5000, False)}
+    known.value_by_name = {"X": LiveValue(5000, False)}
     line = known.compile_line("X = X + 1; F(X 2)", 55)
     (diagnostic,) = line.compilation.diagnostics
     assert diagnostic.code.number == "TS017"

@@ -286,7 +286,7 @@ def test_every_table_fits_its_terminal(count: int) -> None:
                 assert lines[-1].plain.startswith("…")
 
 
-@pytest.mark.parametrize("when", ["_print", "_print_lines", "_news"])
+@pytest.mark.parametrize("when", ["_print_result", "_print_lines", "_news"])
 def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
     when: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -309,6 +309,6 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
         monkeypatch.setattr(fleet._result_bell, "wait", press)
     else:
         monkeypatch.setattr(fleet, when, press)
-    monkeypatch.setattr(fleet, "interrupt", interrupt)
-    fleet.watch(None)
+    monkeypatch.setattr(fleet, "interrupt_robots", interrupt)
+    fleet.print_until_done(None)
     assert fleet.is_interrupted and fleet.exit_code() == 2

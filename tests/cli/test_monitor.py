@@ -72,7 +72,7 @@ def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
     title = plot.lines(80, 8, 0)[0].plain
     assert title.startswith("── SHOW todavía ningún valor ──")
     for time_ms, value in values:
-        plot.take(time_ms, value, is_yes_no=False)
+        plot.add_value(time_ms, value, is_yes_no=False)
     for now_ms in (20_000, 45_000, 90_000):
         for width in (1, 2, 5, 8, 20, 80, 200):
             for height in (1, 2, 3, 8, 50):

@@ -201,7 +201,7 @@ def test_a_name_has_no_signs_that_act(sign: str) -> None:
     found = device_info_of(values).name
     assert is_harmless(found) and found.startswith("AB") and found.endswith("C")
     known_ports.remember("/dev/x", f"AB{sign}C".encode("utf-8", "replace").decode())
-    assert is_harmless(known_ports.remembered_ports().names["/dev/x"])
+    assert is_harmless(known_ports.remembered_ports().name_by_port["/dev/x"])
 
 
 @each_row("sign", ACTING)
@@ -247,7 +247,7 @@ def printed(text: str, is_json: bool) -> tuple[str, str]:
     printer = EventPrinter(
         "en", is_json, add_row=add, print_line=said.append, print_error=said.append
     )
-    printer.tell(5, TextEvent(text.encode("utf-8", "surrogateescape")))
+    printer.print_event(5, TextEvent(text.encode("utf-8", "surrogateescape")))
     return "\n".join(said), rows.getvalue()
 
 

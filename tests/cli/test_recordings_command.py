@@ -278,9 +278,9 @@ def recorded(
     """Record these events of a robot; return what the file has then."""
     made = Recorder(str(file), HEAD, began_s=began_s)
     for event in events:
-        made.add(7, *event)
+        made.add_event(7, *event)
     if end:
-        made.end(end)
+        made.end_recording(end)
     made.close()
     return decode(file.read_bytes()).rows
 

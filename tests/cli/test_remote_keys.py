@@ -19,12 +19,12 @@ KEYS = (
 @pytest.mark.parametrize(("typed", "name"), KEYS)
 def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str) -> None:
     keys, held = HeldKeys(), remote_state_of([name])
-    assert not keys.take(typed, 10.0)
+    assert not keys.press_typed(typed, 10.0)
     assert keys.keys_at(10.0) == keys.keys_at(10.0 + FIRST_HOLD_S - 0.01) == held
     assert keys.keys_at(10.0 + FIRST_HOLD_S) == NOTHING_PRESSED
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
         assert keys.keys_at(20.66 + k / 25 - 0.01) == (held if k else NOTHING_PRESSED)
-        keys.take(typed, 20.66 + k / 25)
+        keys.press_typed(typed, 20.66 + k / 25)
     last = 20.66 + 19 / 25
     assert keys.keys_at(last + REPEAT_HOLD_S - 0.01) == held
     assert keys.keys_at(last + REPEAT_HOLD_S) == NOTHING_PRESSED
@@ -33,11 +33,11 @@ def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
     for delay_s in (0.25, 0.5, 0.66):
         keys = HeldKeys()
-        keys.take(UP, 0.0)
+        keys.press_typed(UP, 0.0)
         now_s = 0.0
         while now_s < 2.0:
             if now_s >= delay_s:
-                keys.take(UP, now_s)
+                keys.press_typed(UP, now_s)
             for _ in range(4):
                 assert keys.keys_at(now_s) == remote_state_of(["UP"]), (delay_s, now_s)
                 now_s += 0.01
@@ -46,27 +46,27 @@ def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
 @pytest.mark.parametrize("cut", [1, 2])
 def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
     keys = HeldKeys()
-    keys.take("a" + UP[:cut], 0.0)
+    keys.press_typed("a" + UP[:cut], 0.0)
     assert keys.keys_at(0.1) == remote_state_of(["A"])
-    keys.take(UP[cut:] + LEFT, 0.1)
+    keys.press_typed(UP[cut:] + LEFT, 0.1)
     assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
 @pytest.mark.parametrize("typed", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
 def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
     keys = HeldKeys()
-    assert not keys.take(typed + "\x1b", 0.0)
-    assert not keys.take("b", 0.1) and keys.keys_at(0.1) in (
+    assert not keys.press_typed(typed + "\x1b", 0.0)
+    assert not keys.press_typed("b", 0.1) and keys.keys_at(0.1) in (
         NOTHING_PRESSED,
         remote_state_of(["B"]),
     )
-    assert not keys.take("b", 0.2)
+    assert not keys.press_typed("b", 0.2)
     assert keys.keys_at(0.2) == remote_state_of(["B"])
 
 
 @pytest.mark.parametrize("typed", ["q", "Q", "\x04", UP + "q", "aaaq"])
 def test_who_wants_to_leave(typed: str) -> None:
-    assert HeldKeys().take(typed, 0.0)
+    assert HeldKeys().press_typed(typed, 0.0)
 
 
 OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
@@ -80,6 +80,6 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     for k in range(20):
         typed, now_s = chance.choice([*(typed for typed, _ in KEYS), *OTHERS]), 2.0 * k
         at = chance.randrange(len(typed) + 1)
-        leaves = [cut.take(piece, now_s) for piece in (typed[:at], "", typed[at:], "")]
-        assert any(leaves) == whole.take(typed, now_s), (k, typed)
+        leaves = [cut.press_typed(piece, now_s) for piece in (typed[:at], "", typed[at:], "")]
+        assert any(leaves) == whole.press_typed(typed, now_s), (k, typed)
         assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed)

@@ -111,8 +111,8 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
         add_row=lambda *cells: table.append(cells),
     )  # fmt: skip
     for number in range(2):
-        printer.tell(0, event(text, number))
-    printer.tell(0, event(text, 0, program=1))
+        printer.print_event(0, event(text, number))
+    printer.print_event(0, event(text, 0, program=1))
     assert said == ["-X (line 1) 2", "-X (line 1) 2", "SHOW 2"]
     assert [row[3] for row in table] == ["'-X (line 1:8)", "'-X (line 1:18)", ""]
 
@@ -135,14 +135,14 @@ def test_the_library_names_values() -> None:
 def test_each_name_has_a_curve_of_its_own() -> None:
     plot = Plot()
     for k in range(40):
-        plot.take(k * 100, 1000 * k, False, "DISTANCE")
-        plot.take(k * 100, 500, False, "LIGHT_R - LIGHT_L")
+        plot.add_value(k * 100, 1000 * k, False, "DISTANCE")
+        plot.add_value(k * 100, 500, False, "LIGHT_R - LIGHT_L")
     lines = plot.lines(90, 12, 4000)
     assert lines[0].plain.startswith("── DISTANCE 39  LIGHT_R - LIGHT_L 0.5 ──")
     assert lines[0].cell_len <= 88
     styles = {str(span.style) for line in lines[1:] for span in line.spans}
     assert {"cyan", "magenta"} <= styles
-    plot.take(4000, 0, False)
+    plot.add_value(4000, 0, False)
     assert "SHOW 0" in plot.lines(90, 12, 4000)[0].plain
 
 
@@ -152,11 +152,13 @@ def test_no_more_curves_than_colours(width: int) -> None:
     plot = Plot()
     names = [f"X + {k}" for k in range(len(STYLES))]
     for k, name in enumerate(names):
-        plot.take(k, 1000, False, name)
-    before = dict(plot.styles)
-    plot.take(100, 1000, False, names[0])
-    plot.take(200, 1000, True, "TIME > 1")
-    assert [*plot.curves] == [names[0], *names[2:], "TIME > 1"]
-    assert plot.styles["TIME > 1"] == before[names[1]]
-    assert {name: plot.styles[name] for name in names[2:]} == {n: before[n] for n in names[2:]}
+        plot.add_value(k, 1000, False, name)
+    before = dict(plot.style_by_name)
+    plot.add_value(100, 1000, False, names[0])
+    plot.add_value(200, 1000, True, "TIME > 1")
+    assert [*plot.values_by_name] == [names[0], *names[2:], "TIME > 1"]
+    assert plot.style_by_name["TIME > 1"] == before[names[1]]
+    assert {name: plot.style_by_name[name] for name in names[2:]} == {
+        n: before[n] for n in names[2:]
+    }
     assert all(line.cell_len <= width for line in plot.lines(width, 9, 300))

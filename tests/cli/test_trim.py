@@ -185,7 +185,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
     def stopped(wizard: trim_wizard.TrimWizard, before: Trim) -> Trim:
         raise CommandError(3, key)
 
-    monkeypatch.setattr(trim_wizard.TrimWizard, "trim", stopped)
+    monkeypatch.setattr(trim_wizard.TrimWizard, "ask_trim", stopped)
     monkeypatch.setattr(trim_wizard.TrimWizard, "__init__", lambda wizard, connection: None)
     for key in ("stopped_elsewhere", "plain"):
         stops[:] = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale

@@ -48,15 +48,17 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
     case = next(
         machine_case
         for machine_case in machine_cases()
-        if not machine_case.needs and machine_case.readings
+        if not machine_case.needs and machine_case.readings_by_sensor
     )
-    rows = case._replace(readings={0: (), 1: (5000, -1)}).request().splitlines()
+    rows = case._replace(readings_by_sensor={0: (), 1: (5000, -1)}).request().splitlines()
     assert [row for row in rows if row.startswith("readings")] == [
         "readings 0",
         "readings 1 5000 -1",
     ]
     shown = compile_text("SHOW(LIGHT_R)", robots.load("tinibot").kit).image
-    case = case._replace(devices=TINIBOT, image=shown, readings={0: ()}, every_ms=(1,), begin_ms=0)
+    case = case._replace(
+        devices=TINIBOT, image=shown, readings_by_sensor={0: ()}, every_ms=(1,), begin_ms=0
+    )
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
 
@@ -64,8 +66,8 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
 def test_a_sensor_that_is_late_has_a_line_after_the_readings() -> None:
     image = compile_text("SHOW(LIGHT_R + TIME)", robots.load("tinibot").kit).image
     case = machine_cases()[0]._replace(
-        devices=TINIBOT, image=image, readings={0: (5000,)}, slow={0: (100, 0, 32)},
-        begin_ms=2**32 - 5, every_ms=(3,), until_ms=99,
+        devices=TINIBOT, image=image, readings_by_sensor={0: (5000,)},
+        delays_by_sensor={0: (100, 0, 32)}, begin_ms=2**32 - 5, every_ms=(3,), until_ms=99,
     )  # fmt: skip
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert rows[-7:-5] == ["readings 0 5000", "slow 0 100 0 32"]
@@ -214,7 +216,7 @@ def test_each_instruction_runs() -> None:
             continue
         kit = kit_of(case)
         code = load_image(case.image, kit).code
-        robot = TracedRobot(kit, Lists(kit, case.readings))
+        robot = TracedRobot(kit, Lists(kit, case.readings_by_sensor))
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)

@@ -104,7 +104,7 @@ def test_the_virtual_robot_says_and_draws_it(
     picture = Picture(profile, "en")
     for event in events:
         if event.kind != "START":
-            picture.take(event)
-    assert picture.settings == drawn == robot.actuators
+            picture.add_event(event)
+    assert picture.value_by_actuator == drawn == robot.actuators
     robot.press()
     assert not [event for event in robot.take_events() if event.kind in ("SET", "RELEASE")]

@@ -16,7 +16,7 @@ from tests.support.owners import (
     robots_of_both_kinds,
     state_of,
 )
-from tiniscript.link.authority import OF_ANOTHER
+from tiniscript.link.authority import OWNED_BY_OTHER
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
@@ -41,7 +41,7 @@ def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
     owner = table.claimed(keys)
     assert table.tries(owner) == "OK"
     stranger = table.session(nonce=3)
-    assert owner_of(table, stranger) == OF_ANOTHER
+    assert owner_of(table, stranger) == OWNED_BY_OTHER
     for is_open in (stranger.ping(), stranger.identify()):
         assert table.outcome(stranger, is_open) == "OK"
     assert state_of(table, stranger) == STATE_RUNNING
@@ -57,7 +57,7 @@ def test_every_request_has_a_side() -> None:
     table, keys = Owned(), Keys()
     assert table.tries(table.claimed(keys)) == "OK"
     stranger = table.session(nonce=3)
-    assert owner_of(table, stranger) == OF_ANOTHER
+    assert owner_of(table, stranger) == OWNED_BY_OTHER
     for message in BY_NAME.values():
         if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
             continue
@@ -140,7 +140,7 @@ def test_wrong_keys_cost_the_owner_nothing() -> None:
     for count in range(20):
         wrong.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
         thief = table.session(wrong, nonce=10 + count)
-        assert owner_of(table, thief) == OF_ANOTHER
+        assert owner_of(table, thief) == OWNED_BY_OTHER
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
     owner = table.session(keys, nonce=9)
     began_ms = table.robot.now_ms
@@ -154,7 +154,7 @@ def test_no_challenge_is_a_tag() -> None:
     owner = table.claimed(keys)
     assert owner.robot is not None
     nonce = owner.robot.values.nonce.to_bytes(4, "little")
-    [key] = keys.of_robot(owner.robot.id)
+    [key] = keys.keys_of_robot(owner.robot.id)
     challenges = []
     for _ in range(2):
         answer = table.asked(owner, "AUTHENTICATE", bytes([key.which]))

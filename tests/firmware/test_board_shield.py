@@ -103,7 +103,7 @@ def seen_by_the_motors(board: Board) -> list[Seen]:
 
 def level_of(board: Board, pin: int, values: dict[int, int]) -> int:
     """Return what a PWM pin gives, 255 of 255 where it is simply high."""
-    timer, channel = board.avr.compares[pin]
+    timer, channel = board.avr.compare_by_pin[pin]
     connection = {"a": 0x80, "b": 0x20, "c": 0x08}[channel]
     if values.get(CONTROLS[timer], 0) & connection:
         return values.get(board.compare_address(pin), 0)

@@ -29,7 +29,7 @@ def busy(robot: Robot, text: str, more: str = "") -> Board:
 
 def interrupt(code: str) -> str:
     """Return what is done when the wire changes, instead of what a stop of the link does."""
-    bit = AVRS["mega"].interrupts[WIRE].bit
+    bit = AVRS["mega"].interrupt_by_pin[WIRE].bit
     text = STOPS.replace("1 << 1", "1 << 0").replace("PCMSK1 = 1 << 5", f"PCMSK0 = 1 << {bit}")
     before = next(line for line in text.splitlines() if line.startswith("ISR"))
     return text.replace(before, code)

@@ -221,7 +221,7 @@ def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: i
     wired = f'[board.actuators.LAMP]\ndriver = "digital"\npin = {lamp}\n\n[body]\n'
     changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired))
     robot = on_board("tinibot", chip, *changes)
-    bit = AVRS[chip].interrupts[stop_pin].bit
+    bit = AVRS[chip].interrupt_by_pin[stop_pin].bit
     more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
     more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
     board = started(robot, STOPPING, more)

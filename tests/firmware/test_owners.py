@@ -21,7 +21,7 @@ from tests.support.owners import (
     robots_of_both_kinds,
     state_of,
 )
-from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, RobotKey
+from tiniscript.link.authority import FREE, OWNED_BY_OTHER, OWNED_BY_YOU, RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
@@ -45,11 +45,11 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     table, keys = Owned(), Keys()
     session = table.claimed(keys)
     assert [key.is_pending for key in keys.stored_keys] == [False]
-    assert owner_of(table, session) == YOUR_OWN
+    assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
     later = Owned(table.robot.memory(), seed=7)
-    assert owner_of(later, later.session()) == OF_ANOTHER
-    assert owner_of(later, later.session(keys, nonce=2)) == YOUR_OWN
+    assert owner_of(later, later.session()) == OWNED_BY_OTHER
+    assert owner_of(later, later.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
 def a_shorter_press(table: Owned, session: Session) -> PendingRequest[Any]:
@@ -145,7 +145,7 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
     table.robot.step(flags=RELEASED)
     is_taken = owner_of(table, table.session(nonce=8)) != FREE
     assert is_taken or what not in ("held", "taken and cut")
-    assert owner_of(table, table.session(keys, nonce=7)) == (YOUR_OWN if is_taken else FREE)
+    assert owner_of(table, table.session(keys, nonce=7)) == (OWNED_BY_YOU if is_taken else FREE)
 
 
 def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:
@@ -185,7 +185,7 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table.pass_time(session, cut_ms)
     later = Owned(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
-    assert owner_of(later, later.session(keys, nonce=77)) == YOUR_OWN
+    assert owner_of(later, later.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
 def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None:
@@ -206,11 +206,11 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     table.robot.step(flags=RELEASED)
     keys.stored_keys = [left[0], keys.stored_keys[-1]._replace(is_pending=True)]
     later = table.session(keys, nonce=99)
-    assert owner_of(table, later) == YOUR_OWN
+    assert owner_of(table, later) == OWNED_BY_YOU
     assert [(key.key[0], key.is_pending) for key in keys.stored_keys] == [(8, False)]
     stale = Keys()
     stale.stored_keys = left[:2]
-    assert owner_of(table, table.session(stale, nonce=100)) == OF_ANOTHER
+    assert owner_of(table, table.session(stale, nonce=100)) == OWNED_BY_OTHER
     assert [(key.is_pending, key.is_stale) for key in stale.stored_keys] == [(True, True)] * 2
 
 
@@ -237,7 +237,7 @@ def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> Non
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
     again = Owned(table.robot.memory())
-    assert owner_of(again, again.session()) == OF_ANOTHER
+    assert owner_of(again, again.session()) == OWNED_BY_OTHER
 
 
 def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
@@ -278,9 +278,9 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     mine.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
     table.claimed(other)
     for nonce in range(10, 30):  # more often than it may be tried
-        assert owner_of(table, table.session(mine, nonce=nonce)) == OF_ANOTHER
+        assert owner_of(table, table.session(mine, nonce=nonce)) == OWNED_BY_OTHER
         assert [key.is_stale for key in mine.stored_keys] == [True]
-    assert owner_of(table, table.session(other, nonce=40)) == YOUR_OWN
+    assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
 
 
 def test_a_stale_key_that_is_right_after_all_is_none() -> None:
@@ -289,10 +289,10 @@ def test_a_stale_key_that_is_right_after_all_is_none() -> None:
     table.claimed(keys)
     keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
-    assert owner_of(table, session) == OF_ANOTHER
+    assert owner_of(table, session) == OWNED_BY_OTHER
     assert table.tries(session) == "OK"
     assert [key.is_stale for key in keys.stored_keys] == [False]
-    assert owner_of(table, table.session(keys, nonce=10)) == YOUR_OWN
+    assert owner_of(table, table.session(keys, nonce=10)) == OWNED_BY_YOU
 
 
 # -- the teacher ----------------------------------------------------------------------------------
@@ -350,8 +350,10 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     table.claimed(keys, KEY_TEACHER)
     table.claimed(keys)
     table.hold(None, 11_000)
-    assert owner_of(table, table.session(keys, nonce=4)) == YOUR_OWN, "later they forget nothing"
-    for milliseconds, found in ((9800, YOUR_OWN), (10_800, FREE)):
+    assert owner_of(table, table.session(keys, nonce=4)) == OWNED_BY_YOU, (
+        "later they forget nothing"
+    )
+    for milliseconds, found in ((9800, OWNED_BY_YOU), (10_800, FREE)):
         table = Owned(table.robot.memory(), seed=milliseconds)
         table.pass_time(None, 1, HELD)  # as a button that was down before the reset
         table.pass_time(None, milliseconds - 1)

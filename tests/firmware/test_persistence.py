@@ -363,9 +363,9 @@ def test_a_robot_that_writes_says_busy_to_fetch() -> None:
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
 
-    naming = other._add(send_single(Request("NAME", {"name": b"NEW"}), EmptyReply))
+    naming = other._queue_exchange(send_single(Request("NAME", {"name": b"NEW"}), EmptyReply))
     assert robot.until(other, naming) == STATUSES["SAVING"]
-    request = other._add(send_single(Request("FETCH", {"offset": 0}), FetchReply))
+    request = other._queue_exchange(send_single(Request("FETCH", {"offset": 0}), FetchReply))
     assert robot.until(other, request) == STATUSES["BUSY"]
 
 

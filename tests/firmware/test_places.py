@@ -12,7 +12,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys, Owned, owner_of
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
-from tiniscript.link.authority import YOUR_OWN
+from tiniscript.link.authority import OWNED_BY_YOU
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, PLACES, STATE_RUNNING, decode_payload
 from tiniscript.link.outcomes import Event, PlaceEvent
@@ -128,7 +128,7 @@ def test_a_sealed_session_hears_places_sealed() -> None:
     table, keys = Owned(), Keys()
     table.claimed(keys)
     session = table.session(keys, nonce=4)
-    assert owner_of(table, session) == YOUR_OWN
+    assert owner_of(table, session) == OWNED_BY_YOU
     session.tells_places = True
     image = image_of(DRIVE)
     assert table.robot.until(session, session.upload(image, saves=False)) == OK

@@ -16,7 +16,7 @@ from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, owner_of, state_of
 from tests.support.thief import Thief, wire_of
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
+from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
@@ -53,7 +53,7 @@ def opened(*defines: str) -> tuple[Owned, Session, Keys]:
     table, keys = Owned(defines=defines), Keys()
     table.claimed(keys)
     session = table.session(keys, nonce=4)
-    assert owner_of(table, session) == YOUR_OWN
+    assert owner_of(table, session) == OWNED_BY_YOU
     return table, session, keys
 
 
@@ -171,7 +171,9 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
     keys.stored_keys = [robot_key._replace(is_pending=is_pending) for robot_key in keys.stored_keys]
     session = table.session(keys, nonce=8)
     assert refused_by_a_stranger(table, session, is_cut).status == 0
-    assert session.robot and ownership_of(session.robot) == (OF_ANOTHER if is_cut else YOUR_OWN)
+    assert session.robot and ownership_of(session.robot) == (
+        OWNED_BY_OTHER if is_cut else OWNED_BY_YOU
+    )
     assert [key.is_stale for key in keys.stored_keys] == [is_cut]
     assert is_cut or not keys.stored_keys[0].is_pending
     assert table.tries(table.session(keys, nonce=9) if is_cut else session) == "OK"
@@ -304,7 +306,7 @@ def test_another_session_with_the_same_numbers_is_another_seal() -> None:
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
         later = Owned(memory, seed=seed)
-        assert owner_of(later, later.session(keys, nonce=4)) == YOUR_OWN
+        assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
         for each in there * 3:
             later.robot.wait(5, b"\0" + each + b"\0")
         assert not [line for line in later.robot.did if "MOTORS" in line]
@@ -318,7 +320,7 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
         assert said and said.payload[0] == 0 and not said.is_sealed
     assert table.tries(session) == "OK"
     stranger = table.session(nonce=50)
-    assert owner_of(table, stranger) == OF_ANOTHER
+    assert owner_of(table, stranger) == OWNED_BY_OTHER
 
 
 def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:

@@ -13,7 +13,7 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
 from tiniscript.library import source_map
 from tiniscript.library.shows import ShowFinder
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
+from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
 from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.requests import OK
@@ -265,13 +265,13 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
     uno.press("button", 2100)
     assert wired.until(request) == OK
     begun_ms = wired.now_ms
-    assert greeted(keys, 2) == YOUR_OWN
+    assert greeted(keys, 2) == OWNED_BY_YOU
     # HELLO and its answer, a challenge, a tag: about 150 bytes on the line
     assert wired.now_ms - begun_ms <= 150 * 10 * 1000 / BAUD + 2 * HASH_MS + 8
     uno.reset("external")
     uno.run_ms(300)
-    assert greeted(keys, 3) == YOUR_OWN
-    assert greeted(None, 4) == OF_ANOTHER
+    assert greeted(keys, 3) == OWNED_BY_YOU
+    assert greeted(None, 4) == OWNED_BY_OTHER
 
 
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:

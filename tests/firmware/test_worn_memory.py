@@ -18,7 +18,7 @@ from tests.firmware.test_persistence import bytes_of
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned, owner_of
-from tiniscript.link.authority import FREE, YOUR_OWN
+from tiniscript.link.authority import FREE, OWNED_BY_YOU
 from tiniscript.link.messages import SAVED_STORED
 
 NAMES = (b"x", b"Pia", b"OLD", b"sixteen letters!")
@@ -75,7 +75,7 @@ def check(seed: int) -> str:
                 continue
             status = table.claim(session)
             is_kept = status == "OK"
-            owner.asked(YOUR_OWN, is_kept)
+            owner.asked(OWNED_BY_YOU, is_kept)
         elif what == "fault":
             robot.until(session, session.upload(image_of("SI|X = 0;SHOW(1 / X)"), saves=False))
             robot.talk(session, 600)

@@ -127,7 +127,7 @@ def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
 def check_message(found: object) -> None:
     """A line of a shared port is a request that a session takes, or no message."""
     try:
-        for each in MessageReader(1 << 20).put(json.dumps(found).encode() + b"\n"):
+        for each in MessageReader(1 << 20).read_messages(json.dumps(found).encode() + b"\n"):
             ask = request_maker(each, 1000)
             session = Session(7, 9600, KIT.fingerprint)
             ask(session)
@@ -141,7 +141,7 @@ def check_line(data: bytes) -> None:
     """Any bytes of a stranger are a greeting, the begin of one, or none."""
     try:
         protocol.read_greeting(data)
-        MessageReader(200).put(data)
+        MessageReader(200).read_messages(data)
     except BadMessage:
         return
 

@@ -37,7 +37,9 @@ def answers_of(is_right: bool) -> list[tuple[Path, Answer]]:
 
 
 def name_of(value: object) -> str:
-    return value.name if isinstance(value, Path) else value.labels["en"].replace(" ", "_")  # type: ignore[attr-defined]
+    if isinstance(value, Path):
+        return value.name
+    return str(value.label_by_language["en"]).replace(" ", "_")  # type: ignore[attr-defined]
 
 
 def findings_of(text: str, lesson: Lesson, seeds: Sequence[int]) -> list[Finding]:
@@ -69,7 +71,7 @@ def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None
     findings = findings_of(answer.program, lesson, range(1, lesson.world_count + 1))
     assert findings, "it passes"
     for language in languages():
-        assert sentence(findings[0], language) == answer.sentences[language]
+        assert sentence(findings[0], language) == answer.sentence_by_language[language]
 
 
 @each
@@ -80,7 +82,7 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     if (
         catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
     ):  # there "always to the left"
-        assert any(BY_HEART in answer.labels["en"] for answer in wrong)
+        assert any(BY_HEART in answer.label_by_language["en"] for answer in wrong)
 
 
 @each

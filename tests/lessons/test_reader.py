@@ -123,8 +123,8 @@ def test_a_place_of_ones_own_is_said_in_each_language(folder: Path) -> None:
     rows += "place = 'the blue flag'\nes = 'la bandera azul'\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
     _, (answer,) = catalogue.answers(folder)
-    assert "9 cm before the middle of the blue flag" in answer.sentences["en"]
-    assert "de la bandera azul" in answer.sentences["es"]
+    assert "9 cm before the middle of the blue flag" in answer.sentence_by_language["en"]
+    assert "de la bandera azul" in answer.sentence_by_language["es"]
 
 
 def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:

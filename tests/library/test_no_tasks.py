@@ -110,7 +110,11 @@ def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
     kit = robots.load(ROBOT).kit.fingerprint
     robot = SimpleNamespace(kit=kit)
     connection: Any = SimpleNamespace(
-        robot=robot, boot=0, holder_verb="", tell_places=lambda: None, event=lambda limit_s=0: None
+        robot=robot,
+        boot=0,
+        holder_verb="",
+        enable_place_events=lambda: None,
+        event=lambda limit_s=0: None,
     )
     link = robot_link.RobotLink(connection, "en")
     data = tiniscript.compile(TEXT, ROBOT).image.hex()

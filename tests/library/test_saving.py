@@ -146,7 +146,7 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
         wanted.append("LOW_SUPPLY")
     story += [(rng.uniform(2, 5), SAVED_SAVING), (5.0, SAVED_STORED)]
     line, told = Line(), list[str]()
-    printer = SimpleNamespace(say=lambda at_ms, name, *rest, **more: told.append(name))
+    printer = SimpleNamespace(print_values=lambda at_ms, name, *rest, **more: told.append(name))
     saving = run_monitor.Saving(cast("Any", line), cast("Any", printer), receipt(SAVED_SAVING))
     for lasts_s, saved in story:
         end_s = clock.now_s + lasts_s

@@ -112,10 +112,10 @@ def shown(number: int) -> TimedEvent:
 
 def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     backlog = Backlog()
-    backlog.put([(0, StartedEvent(1, 2)), shown(0)])
-    backlog.put(shown(number) for number in range(1, 10 * MOST_EVENTS))
-    backlog.put([(0, FaultEvent(1, 2, 3, 4))])
-    found = [backlog.take()[1] for _ in range(len(backlog))]
+    backlog.add_events([(0, StartedEvent(1, 2)), shown(0)])
+    backlog.add_events(shown(number) for number in range(1, 10 * MOST_EVENTS))
+    backlog.add_events([(0, FaultEvent(1, 2, 3, 4))])
+    found = [backlog.take_event()[1] for _ in range(len(backlog))]
     assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
     assert found[-1].name == "FAULT" and len(found) == MOST_EVENTS + 1
     assert found[-2] == ShownEvent(10 * MOST_EVENTS - 1, 0), "the newest is there"
@@ -125,11 +125,11 @@ def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
 
 def test_what_has_room_is_not_missed() -> None:
     backlog = Backlog()
-    backlog.put(shown(number) for number in range(MOST_EVENTS))
-    assert [backlog.take()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
+    backlog.add_events(shown(number) for number in range(MOST_EVENTS))
+    assert [backlog.take_event()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
 
 
 def test_a_robot_that_only_tells_how_programs_end_is_bounded_too() -> None:
     backlog = Backlog()
-    backlog.put((number, DoneEvent(number)) for number in range(5 * MOST_EVENTS))
+    backlog.add_events((number, DoneEvent(number)) for number in range(5 * MOST_EVENTS))
     assert len(backlog) == MOST_EVENTS + 1

@@ -206,7 +206,7 @@ class LinkLine(LinkConnection):
 
     robot = None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         pass
 
 
@@ -218,7 +218,7 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
     line.is_echoed = True
     assert reason_of(line, Reply(LOST)) == FOREIGN
     for language, word in (("en", "It sends: "), ("es", "Envía: "), ("pt", "Envia: ")):
-        answer = RobotLink(line, language)._failure(Reply(LOST))
+        answer = RobotLink(line, language)._failure_data(Reply(LOST))
         assert answer["failure"] == FOREIGN
         assert word + recording.said[:20] in answer["said"] and answer["advice"]
 

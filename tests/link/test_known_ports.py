@@ -19,11 +19,11 @@ for number in range({PORTS}):
 def test_commands_at_once_lose_no_port() -> None:
     running = [subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)]
     assert [process.wait() for process in running] == [0] * COMMANDS
-    assert len(known_ports.remembered_ports().names) == COMMANDS * PORTS
+    assert len(known_ports.remembered_ports().name_by_port) == COMMANDS * PORTS
 
 
 def test_a_school_has_more_than_a_hundred_robots() -> None:
     for number in range(150):
         known_ports.remember(f"socket://10.0.0.{number}:1", f"R{number}", is_used=False)
-    names = known_ports.remembered_ports().names
+    names = known_ports.remembered_ports().name_by_port
     assert len(names) == 150 and next(iter(names.values())) == "R149"

@@ -63,7 +63,7 @@ def test_every_event_comes_through_a_shared_port() -> None:
     for each in told:
         values = protocol.to_json_values(event_fields(each))
         message = {"event": each.name, "ms": 5, "values": values}
-        [read] = reader.put(protocol.encode_message(message))
+        [read] = reader.read_messages(protocol.encode_message(message))
         assert protocol.read_event(read) == (5, each)
 
 

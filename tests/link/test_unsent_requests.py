@@ -142,7 +142,7 @@ def two_steps() -> Exchange[EmptyReply]:
 def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> None:
     """HELLO was sent for it, or PING, and then the robot says that it was stopped."""
     session, robot = running()
-    request = session._add(two_steps())
+    request = session._queue_exchange(two_steps())
     assert session.poll(robot.now_ms)  # nobody hears it
     stopped = robot.step(flags=1) + robot.wait(100)
     session.receive(stopped, robot.now_ms)

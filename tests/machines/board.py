@@ -163,16 +163,19 @@ class Simulated:
         self.level(0, robot.board.start_button, True)  # by its pull-up
 
     def bit(self, pin: int) -> Bit:
-        return self.avr.bits[pin]
+        return self.avr.bit_by_pin[pin]
 
     def watch(self, pin: int) -> None:
         """Watch what the sketch writes to a pin."""
         self.watched.add(PORTS[self.bit(pin).port])
-        if pin in self.avr.compares:
-            self.watched |= {CONTROLS[self.avr.compares[pin].timer], self.compare_address(pin)}
+        if pin in self.avr.compare_by_pin:
+            self.watched |= {
+                CONTROLS[self.avr.compare_by_pin[pin].timer],
+                self.compare_address(pin),
+            }
 
     def compare_address(self, pin: int) -> int:
-        timer, channel = self.avr.compares[pin]
+        timer, channel = self.avr.compare_by_pin[pin]
         number = "abc".index(channel)
         return CONTROLS[timer] + (3 + number if timer in (0, 2) else 8 + 2 * number)
 
@@ -286,8 +289,8 @@ class Board(Simulated):
         port, bit = self.bit(pin)
         if not self.register(PORTS[port] - 1, ms) >> bit & 1:
             return "pull-up" if self.register(PORTS[port], ms) >> bit & 1 else "in"
-        if pin in self.avr.compares:
-            timer, channel = self.avr.compares[pin]
+        if pin in self.avr.compare_by_pin:
+            timer, channel = self.avr.compare_by_pin[pin]
             if self.register(CONTROLS[timer], ms) & CONNECTIONS[channel]:
                 return f"pwm {self.register(self.compare_address(pin), ms)}"
         return "high" if self.register(PORTS[port], ms) >> bit & 1 else "low"
@@ -306,7 +309,7 @@ class Board(Simulated):
         """Return whether all motor pins are low outputs without PWM."""
         for pin in self.motor_pins():
             port, bit = self.bit(pin)
-            compare = self.avr.compares.get(pin)
+            compare = self.avr.compare_by_pin.get(pin)
             if registers[PORTS[port]] >> bit & 1 or not registers[PORTS[port] - 1] >> bit & 1:
                 return False
             if compare and registers[CONTROLS[compare.timer]] & CONNECTIONS[compare.channel]:
@@ -326,7 +329,7 @@ class Board(Simulated):
             for pin in self.motor_pins():
                 port, bit = self.bit(pin)
                 wrote = change.address == PORTS[port] and change.value >> bit & 1
-                compare = self.avr.compares.get(pin)
+                compare = self.avr.compare_by_pin.get(pin)
                 has_pwm = (
                     compare is not None
                     and change.address == CONTROLS[compare.timer]

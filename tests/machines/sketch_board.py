@@ -110,8 +110,8 @@ class SketchBoard(boards.Simulated):
     def _level(self, now: dict[int, int], pin: int) -> int:
         """Return 0 to 255: what a pin does on the average."""
         port, bit = self.bit(pin)
-        if pin in self.avr.compares:
-            timer, channel = self.avr.compares[pin]
+        if pin in self.avr.compare_by_pin:
+            timer, channel = self.avr.compare_by_pin[pin]
             if now.get(CONTROLS[timer], 0) & CONNECTIONS[channel]:
                 return now.get(self.compare_address(pin), 0)
         return 255 if now.get(PORTS[port], 0) >> bit & 1 else 0

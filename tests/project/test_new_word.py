@@ -31,7 +31,7 @@ from tiniscript.library.text_fitting import find_misfits
 from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.semantics import ir
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import format_source
@@ -155,7 +155,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     form = read_blocks(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
     assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())
-    assert print_blocks(form).text == PROGRAM
+    assert format_blocks(form).text == PROGRAM
     compiled = compile_text(PROGRAM, KIT)
     assert compiled.program is not None
     sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
@@ -189,11 +189,11 @@ from tools.builds.page_texts import page_texts
 from tools.generate import text_tables
 texts = [page_texts(language) for language in ("en", "es")]
 labels = [each["block/HORN"] for each in texts] + [block_kinds.SAYS["CHIME"]]
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript import robots
 form = read_blocks("SI|WIGGLE(X + 2)", robots.load("tinibot").kit)
-blocks = [(each.kind, each.word, each.values) for each in form.body], print_blocks(form).text
+blocks = [(each.kind, each.word, each.values) for each in form.body], format_blocks(form).text
 print(json.dumps([block_kinds.table_data(), labels, text_tables.words_tables("a test"), blocks]))
 """
 
@@ -235,7 +235,7 @@ import json
 from tiniscript import robots
 from tiniscript.robots.text_levels import LEVELS
 from tiniscript.studio import block_kinds
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tools.generate import documents, poster, text_tables
 form = read_blocks("SI|LAMP(50)", robots.load("tinibot").kit)
@@ -243,7 +243,7 @@ lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line
 print(json.dumps({
     "lacked": [LAMP.text in level.lacks for level in LEVELS.values()],
     "tables": text_tables.words_tables("a test"),
-    "block": [form.body[0].kind, print_blocks(form).text, block_kinds.SAYS[LAMP.text]],
+    "block": [form.body[0].kind, format_blocks(form).text, block_kinds.SAYS[LAMP.text]],
     "says": lines[lines.index(LAMP.example) + 1],
     "reference": documents.language_document("docs/es/language.md", "es"),
 }))

@@ -56,7 +56,7 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
 )
 def test_each_order_of_a_sentence_is_written(program: str, orders: str, example: str) -> None:
     (diagnostic,) = check(program)
-    assert diagnostic.code is codes.SEVERAL_ORDERS
+    assert diagnostic.code is codes.SEVERAL_INSTRUCTIONS
     assert (diagnostic.values["fix"], diagnostic.values["example"]) == (orders, example)
     assert not check(apply_edits(program, edits_of(diagnostic) or []))
     assert repair_program(program, check).text == program or not example, "an example is a guess"

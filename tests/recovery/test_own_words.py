@@ -81,7 +81,7 @@ def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
 
 RENAMED = [
     word for word, its in WORDS.items()
-    if word not in VERSION_OF_WORD and its.role.name != "setup" and not its.role.is_of_blocks
+    if word not in VERSION_OF_WORD and its.role.name != "setup" and not its.role.belongs_to_blocks
 ]  # fmt: skip
 
 
@@ -118,7 +118,7 @@ def test_no_word_becomes_the_name_of_a_def(word: str) -> None:
             text = f"{before}\nDEF {word}(A, K)\nF(A, K)\nEND_DEF\n{after}"
             mistakes = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
             assert mistakes, text
-            if WORDS[word].role.is_of_blocks and word not in VERSION_OF_WORD:
+            if WORDS[word].role.belongs_to_blocks and word not in VERSION_OF_WORD:
                 name, edits = renamed(text)
                 assert apply_edits(text, edits) == text.replace(f"DEF {word}", f"DEF {name}")
 

@@ -54,7 +54,7 @@ def wrong() -> list[str]:
     return sorted(found)
 
 
-_OF_BLOCKS = {word for word, row in WORDS.items() if row.role.is_of_blocks} | {"SI", "SB"}
+_OF_BLOCKS = {word for word, row in WORDS.items() if row.role.belongs_to_blocks} | {"SI", "SB"}
 
 
 @pytest.mark.sampled("seed", keep=IN_CI // 3)

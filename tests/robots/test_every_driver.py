@@ -70,9 +70,9 @@ def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
         plan = SketchPlan(robot._replace(board=board), str, is_exact=True)
         with pytest.raises(LookupError, match="robots/drivers has no driver new"):
             if board.sensors:
-                plan.reader(0, "d0", "readD0")
+                plan.reader_code(0, "d0", "readD0")
             else:
-                plan.setter(0, "setD0")
+                plan.setter_code(0, "setD0")
 
 
 @pytest.mark.parametrize("motors", MOTORS)
@@ -171,7 +171,7 @@ def test_a_driver_without_a_sketch_cannot_be_made() -> None:
         used_by = "sensors number"
         pins = ()
 
-        def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+        def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
             return []
 
     with pytest.raises(TypeError, match=r"Half.*sketch"):

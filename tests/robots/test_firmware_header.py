@@ -49,7 +49,7 @@ def test_pins_are_where_the_core_has_them(board: str) -> None:
         pin: Bit(port[1].lower(), int(re.sub(r"\D", "", mask)))
         for pin, (port, mask) in enumerate(zip(ports, masks, strict=True))
     }
-    assert dict(AVRS[board].bits) == found
+    assert dict(AVRS[board].bit_by_pin) == found
 
 
 @needs_core
@@ -60,7 +60,7 @@ def test_pwm_is_where_the_core_has_it(board: str) -> None:
         for pin, name in enumerate(table(board, "digital_pin_to_timer_PGM"))
         if name != "NOT_ON_TIMER"
     }
-    assert dict(AVRS[board].compares) == found
+    assert dict(AVRS[board].compare_by_pin) == found
     assert {pin: compare.timer for pin, compare in found.items()} == dict(
         CHIPS[board].timer_of_pwm_pin
     )
@@ -69,9 +69,9 @@ def test_pwm_is_where_the_core_has_it(board: str) -> None:
 @pytest.mark.parametrize("board", sorted(AVRS))
 def test_every_pin_of_the_profile_check_has_its_registers(board: str) -> None:
     chip, avr = CHIPS[board], AVRS[board]
-    assert chip.digital_pins <= set(avr.bits)
-    assert set(chip.timer_of_pwm_pin) == set(avr.compares)
-    assert chip.echo_pins <= set(avr.interrupts)
+    assert chip.digital_pins <= set(avr.bit_by_pin)
+    assert set(chip.timer_of_pwm_pin) == set(avr.compare_by_pin)
+    assert chip.echo_pins <= set(avr.interrupt_by_pin)
 
 
 # -- the header

@@ -52,7 +52,7 @@ class Holder:
         self._limit_s = seconds
 
     def sendall(self, data: bytes) -> None:
-        for message in self._reader.put(data):
+        for message in self._reader.read_messages(data):
             if message["do"] == "beat":
                 self.beats += 1
                 self.says({"beat": True}, self._answer_s())

@@ -57,7 +57,7 @@ class SteppedLine:
     def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
 
-    def tell(self, event: Event) -> None:
+    def post_event(self, event: Event) -> None:
         """Of this process alone."""
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
@@ -106,7 +106,7 @@ class Client:
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
-            self.heard += cast(list[Json], self.reader.put(self.socket.recv(1 << 20)))
+            self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
     def answered(self) -> int:
         return sum("status" in each for each in self.heard)

@@ -43,7 +43,7 @@ class FakeLine:
     def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
 
-    def tell(self, event: Event) -> None:
+    def post_event(self, event: Event) -> None:
         self._on_events([(0, event)])
 
     def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
@@ -125,7 +125,7 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     until(lambda: line.withdrawn == line.asked, "they are withdrawn")
     line.asked[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # it was under way
     line.is_running = True
-    line.tell(event("SHOW"))
+    line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
 
@@ -135,7 +135,7 @@ def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
 ) -> None:
     asks(command, line)
     line.begin_run()
-    line.tell(event("SHOW"))
+    line.post_event(event("SHOW"))
     heard(command, "SHOW")
     command.close()
     until(lambda: line.halted == [7], "its run is ended")
@@ -149,11 +149,11 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
     """A stop, and an upload right after it: the server's thread may see both at once."""
     asks(command, line)
     line.begin_run()
-    line.tell(DoneEvent(6) if end == "DONE" else event(end))
+    line.post_event(DoneEvent(6) if end == "DONE" else event(end))
     heard(command, end)
     assert server.has_run
     line.is_running = False
-    line.tell(DoneEvent(7) if end == "DONE" else event(end))
+    line.post_event(DoneEvent(7) if end == "DONE" else event(end))
     heard(command, end)
     line.is_running = True  # the same number again, of somebody else
     assert not server.has_run

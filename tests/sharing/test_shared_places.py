@@ -32,7 +32,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     with shared as (pty_robot, _):
         client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
         assert client and other
-        client.tell_places()
+        client.enable_place_events()
         assert client.wait(client.begin(lambda session: session.hello())).status == OK
         request = client.begin(lambda session: session.upload(image, saves=False))
         assert client.wait(request).status == OK
@@ -49,8 +49,8 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
 
 def test_who_takes_no_events_keeps_the_newest_place_alone() -> None:
     backlog = Backlog()
-    backlog.put((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
-    backlog.put([(0, ShownEvent(1, 0))])
-    assert backlog.take() == (2 * MOST_EVENTS - 1, PlaceEvent(1, 2, 2 * MOST_EVENTS - 1))
-    assert backlog.take()[1] == ShownEvent(1, 0)
+    backlog.add_events((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
+    backlog.add_events([(0, ShownEvent(1, 0))])
+    assert backlog.take_event() == (2 * MOST_EVENTS - 1, PlaceEvent(1, 2, 2 * MOST_EVENTS - 1))
+    assert backlog.take_event()[1] == ShownEvent(1, 0)
     assert not backlog

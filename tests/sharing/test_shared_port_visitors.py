@@ -99,7 +99,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
     with shared as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
         reader = protocol.MessageReader(protocol.LINE_BYTES)
-        found = reader.put(peer.recv(65536))
+        found = reader.read_messages(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
             shared.server._on_events([(k, ShownEvent(k, 0))])
@@ -108,7 +108,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
         while not any(message.get("event") == "DONE" for message in found):
             data = peer.recv(65536)
             assert data, "it was let go"
-            found += reader.put(data)
+            found += reader.read_messages(data)
         found = found[: [message.get("event") for message in found].index("DONE")]
         missed = [message for message in found if message.get("event") == "MISSED"]
         shown = sum(message.get("event") == "SHOW" for message in found)

@@ -29,7 +29,7 @@ from tiniscript.studio.block_form import (
     size_of,
 )
 from tiniscript.studio.block_kinds import KINDS
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.worker import MOST_BLOCKS, answer
 from tiniscript.syntax.formatter import format_source
@@ -60,18 +60,18 @@ def check(text: str, kit: Kit) -> None:
     for form in (read_blocks(text, kit), touched(read_blocks(text, kit))):
         check_form(form, text, kit, before.image)
     if "///" not in text and not text.startswith("PING"):
-        assert print_blocks(read_blocks(text, kit)).text == format_source(Source(text)), text
+        assert format_blocks(read_blocks(text, kit)).text == format_source(Source(text)), text
 
 
 def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
     assert "grey" not in [block.kind for block in in_order(form.body)], text
-    printed = print_blocks(from_data(json.loads(json.dumps(data_of(form)))))
+    printed = format_blocks(from_data(json.loads(json.dumps(data_of(form)))))
     after = compile_text(printed.text, kit)
     assert after.is_right and after.image == image, printed.text
     assert format_source(Source(printed.text)) == printed.text
     assert comments(printed.text) == comments(text), printed.text
     again = read_blocks(printed.text, kit)
-    assert print_blocks(again).text == printed.text
+    assert format_blocks(again).text == printed.text
     found = zip(in_order(again.body), printed.places, strict=True)
     for block, place in found:
         if block.kind != "comment":
@@ -85,7 +85,7 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
     if compile_text(program.text, kit).is_right:
         check(program.text, kit)
     else:
-        print_blocks(read_blocks(program.text, kit))
+        format_blocks(read_blocks(program.text, kit))
 
 
 @pytest.mark.sampled("first")
@@ -103,16 +103,16 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
         theirs, kit = KITS[seed % len(KITS)]
         text = oracle_programs.broken(rng, oracle_programs.program(rng, theirs))
         if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
-            print_blocks(read_blocks(text, kit))
+            format_blocks(read_blocks(text, kit))
         else:
-            assert words(print_blocks(read_blocks(text, kit)).text) == words(text), text
+            assert words(format_blocks(read_blocks(text, kit)).text) == words(text), text
 
 
 def test_what_pupils_write_becomes_blocks_and_text() -> None:
     for text in sorted({entry.program for entry in corpus.entries()}):
         form = read_blocks(text, TINIBOT)
-        again = print_blocks(read_blocks(print_blocks(form).text, TINIBOT)).text
-        assert print_blocks(read_blocks(again, TINIBOT)).text == again, text
+        again = format_blocks(read_blocks(format_blocks(form).text, TINIBOT)).text
+        assert format_blocks(read_blocks(again, TINIBOT)).text == again, text
         assert not text.strip() or form.body or form.start or ";" in text, text
 
 
@@ -153,7 +153,7 @@ def of_word(word: str) -> str:
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
     check(text, TINIBOT)
-    printed = print_blocks(read_blocks(text, TINIBOT)).text
+    printed = format_blocks(read_blocks(text, TINIBOT)).text
     assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
     assert sorted(words(printed)) == sorted(words(text))
 
@@ -227,7 +227,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     ],
 )  # fmt: skip
 def test_what_blocks_are_as_text(text: str, printed: str) -> None:
-    assert print_blocks(touched(read_blocks(text, TINIBOT))).text == printed
+    assert format_blocks(touched(read_blocks(text, TINIBOT))).text == printed
 
 
 def touched(form: Form) -> Form:
@@ -252,7 +252,7 @@ def test_who_changes_a_block_changes_its_line_alone() -> None:
     block["bodies"][0][0]["values"][0] = [["NUMBER", "3"]]
     block["bodies"][0][0]["said"] = []
     block["said"] = [block["said"][0], "", block["said"][2]]
-    assert print_blocks(from_data(data)).text == (
+    assert format_blocks(from_data(data)).text == (
         "IF(1.50 > (X));  // a\n  F(3, 80);\nELSEIF(X > 2);  // b\n  S;\n"
         "ELSE;  // c\nENDIF;  // d\n"
     )
@@ -265,18 +265,18 @@ def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
         ("grey", "F(1; 80)"), ("grey", "¿qué? // hm")
     ]  # fmt: skip
     assert [block.kind for block in form.body] == ["move", "grey", "grey", "if"]
-    printed = print_blocks(form)
+    printed = format_blocks(form)
     assert printed.text == (
         "SI|F(2, 80);\nF(1; 80)\n¿qué? // hm\nIF(DISTANCE < 10);\n  S;\nENDIF;\n"
     )
     assert printed.places[:3] == ((1, 4, 1, 12), (2, 1, 2, 9), (3, 1, 3, 12))
-    assert print_blocks(read_blocks(printed.text, TINIBOT)).text == printed.text
+    assert format_blocks(read_blocks(printed.text, TINIBOT)).text == printed.text
 
 
 @pytest.mark.parametrize("text", ["F(1)", "S(2)", "S UNTIL(TRUE)", "HOP(1, 2)", "F(1, 2, 3)"])
 def test_what_no_block_has_room_for_is_grey(text: str) -> None:
     assert kinds(text) == ["grey"]
-    printed = print_blocks(read_blocks(f"{text} // no", TINIBOT)).text
+    printed = format_blocks(read_blocks(f"{text} // no", TINIBOT)).text
     assert printed.split() == [*text.split(), "//", "no"]
 
 
@@ -297,7 +297,7 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
         ["move", "if"], [], ["assign"]
     ]  # fmt: skip
     assert form.loose[1].value == (("SENSOR", "DISTANCE"), ("NUMBER", "10"), ("LT", ""))
-    assert print_blocks(form).text == text.replace("SI|S\n", "SI|S\n")
+    assert format_blocks(form).text == text.replace("SI|S\n", "SI|S\n")
     assert format_source(Source(text)) == text
 
 
@@ -305,14 +305,14 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
 def test_other_comments_with_three_signs_stay_comments(text: str) -> None:
     form = read_blocks(text, TINIBOT)
     assert form.loose == () and form.body[0].kind == "comment"
-    assert comments(print_blocks(form).text) == comments(text)
+    assert comments(format_blocks(form).text) == comments(text)
 
 
 def test_what_is_typed_into_a_field_stays_in_its_line() -> None:
     body = (Block("comment", "a\r\nS"), Block("assign", "X\n", ((("NUMBER", "1"),),)),
             Block("stop", "S", note="b\nF(1, 80)\0"), Block("grey", "  \n "),
             Block("grey", "a\nb"))  # fmt: skip
-    assert print_blocks(Form("SI", "", False, body, ())).text == (
+    assert format_blocks(Form("SI", "", False, body, ())).text == (
         "// a S\nSI|X  = 1;\nS;  // b F(1, 80)\n//\na b\n"
     )
 
@@ -320,7 +320,7 @@ def test_what_is_typed_into_a_field_stays_in_its_line() -> None:
 def test_empty_places_are_said_by_the_compiler() -> None:
     nothing = (("NOTHING", ""),)
     body = (Block("if", "", (nothing,), ((),)), Block("move", "F", (nothing, nothing)))
-    text = print_blocks(Form("SI", "", False, body, ())).text
+    text = format_blocks(Form("SI", "", False, body, ())).text
     assert text == "SI|IF();\nENDIF;\nF(, );\n"
     assert compile_text(text, TINIBOT).diagnostics
 

@@ -13,7 +13,7 @@ import pytest
 from tiniscript import robots
 from tiniscript.studio import page_together
 from tiniscript.studio.block_form import data_of, from_data, in_order
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks as read_blocks
 from tiniscript.together.form import Change as Made
 from tiniscript.together.form import Delete, Insert, Place, Replace, change_of
@@ -131,12 +131,12 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     rng = Random(seed)
     program = program_of()
     ana = Ana(program)
-    before = {id: node.copy() for id, node in program.tree.nodes.items()}
+    before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
     touched: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
         touched |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    want = print_blocks(from_data(ana.form)).text
+    want = format_blocks(from_data(ana.form)).text
     answer = ana.writes()
     assert ana.text == want == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]

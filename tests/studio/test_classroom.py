@@ -894,10 +894,10 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
 
 def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
     rate = Rate(1, 0)
-    assert rate.take("a", 0) and not rate.take("a", 0)
+    assert rate.take_amount("a", 0) and not rate.take_amount("a", 0)
     for k in range(rate_of.MOST_NAMES):
-        assert rate.take(f"b{k}", 0)
-    assert rate.take("a", 0)
+        assert rate.take_amount(f"b{k}", 0)
+    assert rate.take_amount("a", 0)
 
 
 def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.MonkeyPatch) -> None:

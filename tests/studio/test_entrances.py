@@ -155,7 +155,7 @@ def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
     made = serving.Server(serving.files(tmp_path), 0, answer)
     with serves(made) as server:
         own = f"{serving.HOST}:{server.server_port}"
-        code = server.entrance(is_for_here=True).rpartition("=")[2]
+        code = server.entrance(is_for_this_computer=True).rpartition("=")[2]
         assert enter(own, code) == (200, {"failure": "host_used"})
         assert post(own, server.entrances.token, {"do": "ports"})[0] == 403
     assert asked == []

@@ -111,7 +111,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
             before = len(robot.meant)
             news = robot.tells()
             told[robot.driver] += robot.meant[before:]
-            runs.tell(robot.driver, [news])
+            runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
         found = page.looks()
         places = [each["at"] for each in found if each["event"] == "PLACE"]
@@ -189,13 +189,13 @@ def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs = GroupRuns(lambda: 0.0)
     begin = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}
-    runs.tell("ana", [begin, value, {"event": "DONE"}])
+    runs.add_news("ana", [begin, value, {"event": "DONE"}])
     assert Page(runs, "teo").looks() == []
-    runs.tell("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
+    runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
     heard = [each["event"] for each in Page(runs, "eva").looks()]
     assert heard == ["STARTED", "SHOW", "PLACE"]
     other = GroupRuns(lambda: 0.0)
-    other.tell("ana", [begin])
+    other.add_news("ana", [begin])
     page = Page(runs, "luz")
     page.looks()
     page.runs = other  # after a crash of the class
@@ -205,14 +205,14 @@ def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
 @pytest.mark.parametrize("known", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
 def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
     runs = GroupRuns(lambda: 0.0)
-    runs.tell("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
+    runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
     assert [each["event"] for each in runs.news_after(known, "teo")[1]] == ["STARTED"]
 
 
 def test_news_have_the_time_of_their_run() -> None:
     now = [10.0]
     runs = GroupRuns(lambda: now[0])
-    runs.tell("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
+    runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
     now[0] += 0.25
-    runs.tell("ana", [{"event": "SHOW", "value": "5"}])
+    runs.add_news("ana", [{"event": "SHOW", "value": "5"}])
     assert [each["ms"] for each in Page(runs, "teo").looks()] == [0, 250]

@@ -296,7 +296,7 @@ def has_held(school: School, member: Member, count: int) -> bool:
 def members_hold(school: School, member: Member) -> int:
     group = school.made._groups.group_of(member.token)
     assert group is not None
-    return group.members[member.token].hold_count
+    return group.member_by_token[member.token].hold_count
 
 
 def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
@@ -598,7 +598,7 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
             school.now_s += chance.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
         made = school.made
-        for pupil in made._pupils.values():
+        for pupil in made._pupil_by_token.values():
             mates = made._mates(pupil)
             turns = [turn for turn in map(made._turn, mates) if turn is not None]
             waiting = [mate for mate in mates if mate.queue_number is not None]
@@ -641,7 +641,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
     stops = 0
     for _ in range(12):
         member = chance.choice(members)
-        turn = school.made._turn_of(school.made._mates(school.made._pupils[member.token]))
+        turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
         before = robot.stopped
@@ -670,7 +670,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
 
 
 def page_of(school: School, member: Member) -> str:
-    return school.made._pupils[member.token].hosting_page
+    return school.made._pupil_by_token[member.token].hosting_page
 
 
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:

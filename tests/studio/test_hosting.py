@@ -418,8 +418,8 @@ def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) ->
 
 def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
-    robot.attending.tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
-    robot.attending.tell([{"event": "DONE"}])
+    robot.attending.queue_news([{"event": "SHOW", "value": str(k)} for k in range(3000)])
+    robot.attending.queue_news([{"event": "DONE"}])
     news = robot.attending.on_beat([], 0)
     assert len(news) == attending.MOST_KEPT_NEWS and news[-1]["event"] == "DONE"
     robot.join(HANGS_S)

@@ -67,7 +67,7 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
         _, wrong = catalogue.answers(folder)
         choose(page, number)
         said = check(page, wrong[0].program)
-        assert said == ("failed", [wrong[0].sentences["en"], *rest(page)]), number
+        assert said == ("failed", [wrong[0].sentence_by_language["en"], *rest(page)]), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
 

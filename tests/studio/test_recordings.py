@@ -42,8 +42,10 @@ def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
-    is_by_button = text.startswith("SB|")
-    played = play(prepare(decode(file(*events, text=text, is_by_button=is_by_button))))
+    was_started_by_button = text.startswith("SB|")
+    played = play(
+        prepare(decode(file(*events, text=text, was_started_by_button=was_started_by_button)))
+    )
     assert played.divergence is not None
     return played.divergence
 
@@ -148,7 +150,7 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
 def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
-    played = play(prepare(decode(file(*events, text=text, is_by_button=True))))
+    played = play(prepare(decode(file(*events, text=text, was_started_by_button=True))))
     assert played.divergence is not None and played.divergence.what == "same"
     assert played.robot.now_ms < 8700
 

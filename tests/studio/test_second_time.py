@@ -242,7 +242,9 @@ class HeldClient:
 
     def __init__(self, *_: object, **__: object) -> None:
         self.connection = SimpleNamespace(
-            holder_verb="upload", tell_places=lambda: None, event=lambda limit_s: sleep(limit_s)
+            holder_verb="upload",
+            enable_place_events=lambda: None,
+            event=lambda limit_s: sleep(limit_s),
         )
 
     def meet(self, is_patient: object) -> SimpleNamespace:

@@ -43,7 +43,7 @@ class Keys(KeyRing):
     def _stored_keys(self) -> list[RobotKey]:
         return self.stored_keys
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         self.stored_keys = change(self.stored_keys)
         return True
 

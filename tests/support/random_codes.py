@@ -49,7 +49,7 @@ def operand_bytes(rng: random.Random, op: Op) -> bytes:
             value = rng.randint(max(kind.low, -3), 12)
         else:
             value = rng.choice((kind.low, kind.high, rng.randint(kind.low, kind.high)))
-        parts += value.to_bytes(kind.size, "little", signed=kind.signed and value < 0)
+        parts += value.to_bytes(kind.size, "little", signed=kind.is_signed and value < 0)
     return parts
 
 

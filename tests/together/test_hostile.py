@@ -72,7 +72,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
     came: Counter[str] = Counter()
     for k in range(1, SENT + 1):
         operation = an_operation(chance)
-        uid = f"m:{program.last_counts.get('m', 0) + 1}"
+        uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
         sent = json.loads(json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))}))
         try:
             change = change_of(sent)
@@ -84,7 +84,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
         if k % 10 == 0:
             tree = program.tree
             assert parse_tree(text_of(tree)).shape() == tree.shape()
-            assert sorted(tree.subtree_ids()) == sorted(tree.nodes)
+            assert sorted(tree.subtree_ids()) == sorted(tree.node_by_id)
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
             assert not page.is_astray
@@ -110,13 +110,13 @@ def test_deep_and_long_programs_are_refused() -> None:
     for k in range(1, 100):
         wrap = {"do": "wrap", "ids": ["i.1"], "node": {"id": f"m.{k}", "text": "LOOP(2)"}}
         program.submit([change_of({"uid": f"m:{k}", "ops": [wrap]})])
-    assert len(program.tree.nodes) < 50
+    assert len(program.tree.node_by_id) < 50
     for k in range(100, 200):
         nodes = [{"id": f"m.{k}00{j}", "text": "BEEP(1, 440)"} for j in range(40)]
         insert = {"do": "insert", "at": ["root", "start"], "nodes": nodes}
         program.submit([change_of({"uid": f"m:{k}", "ops": [insert]})])
     assert len(text_of(program.tree)) <= 20_000
-    assert {why for _, why in program.refusals["m"]} == {UNPARSED, TOO_LONG}
+    assert {why for _, why in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
 
 
 def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
@@ -131,8 +131,10 @@ def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
         ]
         program.submit([change_of({"uid": f"m:{k}", "ops": changes})])
         page.receive(program.news("z", page.number, "e"))
-    assert len(program.tree.former_places) == MOST_FORMER_PLACES
-    assert list(page.base.former_places.items()) == list(program.tree.former_places.items())
+    assert len(program.tree.former_place_by_id) == MOST_FORMER_PLACES
+    assert list(page.base.former_place_by_id.items()) == list(
+        program.tree.former_place_by_id.items()
+    )
 
 
 def test_a_change_counts_once_and_in_its_order() -> None:

@@ -28,14 +28,14 @@ def begun(path: Path) -> tuple[Journal, SharedProgram]:
 
 def changed(program: SharedProgram, value: int, page: str = "a") -> bool:
     """Change the program, or be refused where the value is 0."""
-    uid = f"{page}:{program.last_counts.get(page, 0) + 1}"
+    uid = f"{page}:{program.last_count_by_page.get(page, 0) + 1}"
     operation = Replace("i.8", (("text", f"W({value})"),)) if value else Unwrap("i.99")
     return program.submit([Change(uid, (operation,))])
 
 
 def same(one: SharedProgram, other: SharedProgram) -> bool:
-    return (one.number, one.last_counts, one.refusals, one.tree.checksum()) == (
-        other.number, other.last_counts, other.refusals, other.tree.checksum()
+    return (one.number, one.last_count_by_page, one.refusals_by_page, one.tree.checksum()) == (
+        other.number, other.last_count_by_page, other.refusals_by_page, other.tree.checksum()
     )  # fmt: skip
 
 
@@ -45,18 +45,18 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     path, chance = tmp_path / "journal", Random(seed)
     journal, program = begun(path)
     sizes = [path.stat().st_size]
-    seen = [(program.number, dict(program.last_counts))]
+    seen = [(program.number, dict(program.last_count_by_page))]
     for k in range(12):
         changed(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
         sizes.append(path.stat().st_size)
-        seen.append((program.number, dict(program.last_counts)))
+        seen.append((program.number, dict(program.last_count_by_page)))
     journal.close()
     cut = chance.randint(sizes[0], sizes[-1])
     os.truncate(path, cut)
     again = Journal(path).resume("e2")
     assert again is not None
     last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (again.number, again.last_counts) == seen[last]
+    assert (again.number, again.last_count_by_page) == seen[last]
     assert again.epoch == "e2"
     changed(again, 2000)
     whole = Journal(path).resume("e3")

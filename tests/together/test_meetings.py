@@ -288,7 +288,7 @@ def data(page: Page) -> Any:
 
 
 def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
-    two.ana.base.nodes[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever has done that
+    two.ana.base.node_by_id[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever has done that
     two.hears(two.ana)
     assert two.ana.is_astray
     two.ana.receive(two.program.news("a", -1, two.ana.epoch))

@@ -17,7 +17,7 @@ from typing import Any
 from tests.together.pupils import Pupil
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks as read_blocks
 from tiniscript.syntax.ast import Break, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.formatter import format_source
@@ -80,7 +80,7 @@ class World:
         self.all_taken: list[TakenChange] = []
         self.program = SharedProgram(parse_tree(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
         self._snapshot = self._travelled(self.program.snapshot())
-        self.first = set(self.program.tree.nodes)
+        self.first = set(self.program.tree.node_by_id)
         tree = self.program.tree
         self.typed = {said for id in self.first for said in (tree[id].text, tree[id].note)}
         names = "abcd"[:pages]
@@ -140,12 +140,12 @@ class World:
         for row in sent:
             change, program = change_of(row), self.program
             page, _ = page_and_count(change.uid)
-            decided, before = program.last_counts.get(page, 0), program.tree
+            decided, before = program.last_count_by_page.get(page, 0), program.tree
             if program.submit([change]):
                 self.all_taken.append(program.taken_changes[-1])
                 self._count_unseen(before, page, change.seen_number)
-            elif program.last_counts.get(page, 0) > decided:
-                self.why[program.refusals[page][-1][1]] += 1
+            elif program.last_count_by_page.get(page, 0) > decided:
+                self.why[program.refusals_by_page[page][-1][1]] += 1
 
     def _count_unseen(self, before: Tree, page: str, since: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
@@ -182,9 +182,9 @@ class World:
         self.program = program_of(self._snapshot, self._keep)
         self.program.replay(self._rows)
         assert self.program.tree.checksum() == before.tree.checksum()
-        assert (self.program.number, self.program.last_counts) == (
+        assert (self.program.number, self.program.last_count_by_page) == (
             before.number,
-            before.last_counts,
+            before.last_count_by_page,
         )
         self.happened["crashes"] += 1
         self.program.epoch = f"e{self.happened['crashes']}"
@@ -214,15 +214,15 @@ class World:
         self._check_instructions(tree, text, parsed.program.body)
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks say the same program.
-        again = print_blocks(read_blocks(text, KIT)).text
+        again = format_blocks(read_blocks(text, KIT)).text
         one, other = compile_text(_whole(text), KIT), compile_text(_whole(again), KIT)
         assert one.image and one.image == other.image, (text, again, one.diagnostics)
         # Nobody's values were mixed; nothing is there twice.
-        for node in tree.nodes.values():
+        for node in tree.node_by_id.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text
             assert not node.note or node.note in self.typed, node.note
         ids = tree.subtree_ids()
-        assert len(ids) == len(set(ids)) == len(tree.nodes)
+        assert len(ids) == len(set(ids)) == len(tree.node_by_id)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
         twice = [said for said, times in numbered.items() if times > 1]
         assert not twice, twice
@@ -257,7 +257,7 @@ class World:
                     alive -= set(each.ids)
                 elif isinstance(each, Unwrap):
                     alive.discard(each.id)
-        assert alive == set(self.program.tree.nodes)
+        assert alive == set(self.program.tree.node_by_id)
 
 
 def _added(operation: Operation) -> set[str]:

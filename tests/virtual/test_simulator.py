@@ -114,7 +114,7 @@ def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
     """On a bad line, whose bytes come late."""
     for _ in range(3):
         assert REST not in heard_by_a_client(simulator, 1)
-        simulator.from_robot.put(REST, simulator.robot.now_ms + late_ms)
+        simulator.from_robot.send_bytes(REST, simulator.robot.now_ms + late_ms)
     assert REST not in heard_by_a_client(simulator, 2 * late_ms)
 
 

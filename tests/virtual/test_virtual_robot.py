@@ -14,7 +14,7 @@ from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
+from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.messages import (
     KEY_OWNER,
     LARGE_FRAME,
@@ -248,9 +248,9 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 
     def wait() -> None:
         now_ms = robot.now_ms + 1
-        there.put(session.poll(now_ms), now_ms)
-        back.put(robot.step(now_ms, there.take(now_ms)), now_ms)
-        session.receive(back.take(now_ms), now_ms)
+        there.send_bytes(session.poll(now_ms), now_ms)
+        back.send_bytes(robot.step(now_ms, there.take_arrived(now_ms)), now_ms)
+        session.receive(back.take_arrived(now_ms), now_ms)
 
     long = "SI|" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 31)) + "S"
     image = unpack(compile_text(long, KIT).image)
@@ -269,8 +269,8 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
     def through(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))
-        line.put(bytes(range(256)) * 8, 0)
-        return line.take(10_000_000)
+        line.send_bytes(bytes(range(256)) * 8, 0)
+        return line.take_arrived(10_000_000)
 
     assert through(0, 1) == bytes(range(256)) * 8
     assert through(20, 1) == through(20, 1) != through(20, 2)
@@ -364,8 +364,8 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
     if status == "OK":
         assert [key.uses_seals for key in keys.stored_keys] == [True]
         robot.power_cycle()
-        assert owner_of(Talk(robot, 6)) == OF_ANOTHER
-        assert owner_of(Talk(robot, 7, keys)) == YOUR_OWN
+        assert owner_of(Talk(robot, 6)) == OWNED_BY_OTHER
+        assert owner_of(Talk(robot, 7, keys)) == OWNED_BY_YOU
 
 
 def test_it_is_seen_and_heard_which_one_it_is() -> None:

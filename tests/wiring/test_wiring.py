@@ -512,7 +512,7 @@ def test_the_longest_names_stay_in_the_finished_drawing() -> None:
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:
-    return _FinishedDrawing(plan).at(place.x_cm, place.y_cm)
+    return _FinishedDrawing(plan).position(place.x_cm, place.y_cm)
 
 
 def test_left_is_left_and_ahead_is_up() -> None:

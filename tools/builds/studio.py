@@ -92,7 +92,7 @@ def why_stale(page: Path = PAGE) -> str:
     """Return why the page that is there cannot be used, or nothing."""
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
-    if not building.is_of_sources(page):
+    if not building.is_built_from_sources(page):
         return f"the page is out of date: the sources have changed. Build it again:  {COMMAND}"
     return ""
 

@@ -23,7 +23,7 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     if not 2 < len(word) <= 40:
         return None
     most_edits = 1 if len(word) <= 5 else 2
-    best, best_edit_count = None, most_edits + 1
+    best_word, best_edit_count = None, most_edits + 1
     letters = set(word)
     for candidate in candidates:
         is_too_different = (
@@ -35,8 +35,8 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
             if edit_count == 1 and len(word) <= 3 and len(candidate) == len(word):
                 edit_count += sorted(word) != sorted(candidate)
             if edit_count < best_edit_count:
-                best, best_edit_count = candidate, edit_count
-    return best
+                best_word, best_edit_count = candidate, edit_count
+    return best_word
 
 
 def is_slip(word: str, intended: str) -> bool:
@@ -44,17 +44,17 @@ def is_slip(word: str, intended: str) -> bool:
     return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edit_count(word, intended) == 1
 
 
-def _edit_count(word: str, other: str) -> int:
+def _edit_count(word: str, other_word: str) -> int:
     """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
     row_before_last: list[int] = []
-    last_row = list(range(len(other) + 1))
+    last_row = list(range(len(other_word) + 1))
     for i, letter in enumerate(word, 1):
         row = [i]
-        for k, other_letter in enumerate(other, 1):
+        for k, other_letter in enumerate(other_word, 1):
             least_edit_count = min(
                 last_row[k] + 1, row[k - 1] + 1, last_row[k - 1] + (letter != other_letter)
             )
-            if i > 1 and k > 1 and letter == other[k - 2] and other_letter == word[i - 2]:
+            if i > 1 and k > 1 and letter == other_word[k - 2] and other_letter == word[i - 2]:
                 least_edit_count = min(least_edit_count, row_before_last[k - 2] + 1)
             row.append(least_edit_count)
         row_before_last, last_row = last_row, row
@@ -125,18 +125,24 @@ def _deletions(word: str) -> Iterator[str]:
         yield word[:k] + word[k + 1 :]
 
 
-def _is_one_edit_away(word: str, other: str) -> bool:
+def _is_one_edit_away(word: str, other_word: str) -> bool:
     """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
     k = 0
-    while k < min(len(word), len(other)) and word[k] == other[k]:
+    while k < min(len(word), len(other_word)) and word[k] == other_word[k]:
         k += 1
-    word, other = word[k:], other[k:]
-    if len(word) == len(other) and word[:2] == other[1::-1] and word[2:] == other[2:]:
+    word, other_word = word[k:], other_word[k:]
+    if (
+        len(word) == len(other_word)
+        and word[:2] == other_word[1::-1]
+        and word[2:] == other_word[2:]
+    ):
         return True
-    if min(len(word), len(other)) + k < _LEAST_SLIP_LETTERS:  # `AVNZA`: a vowel that nobody texts
+    if (
+        min(len(word), len(other_word)) + k < _LEAST_SLIP_LETTERS
+    ):  # `AVNZA`: a vowel that nobody texts
         return (
-            len(other) + k >= _LEAST_SLIP_LETTERS
-            and other[:1] in tuple("AEIOU")
-            and word == other[1:]
+            len(other_word) + k >= _LEAST_SLIP_LETTERS
+            and other_word[:1] in tuple("AEIOU")
+            and word == other_word[1:]
         )
-    return word[1:] in (other, other[1:]) or word == other[1:]
+    return word[1:] in (other_word, other_word[1:]) or word == other_word[1:]

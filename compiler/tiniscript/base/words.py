@@ -31,8 +31,8 @@ class Role(NamedTuple):
     is_instruction: bool = False  # a robot does something at it
     lasts: bool = False  # for a time, or until something is so
     is_move: bool = False  # with a power, and a time or a way
-    is_of_blocks: bool = False
-    is_of_values: bool = False
+    belongs_to_blocks: bool = False
+    belongs_to_values: bool = False
     begins: bool = True  # something in a line
     is_offered: bool = True  # no other spelling, and no word of later versions
 
@@ -72,8 +72,8 @@ ROLES = {role.name: role for role in (
     Role("move", is_instruction=True, lasts=True, is_move=True),
     Role("wait", is_instruction=True, lasts=True),
     *(Role(name, is_instruction=True) for name in ("motors", "beep", "show", "stop", "fixed")),
-    *(Role(name, is_of_blocks=True) for name in ("block", "arm", "end")),
-    *(Role(name, is_of_values=True, begins=False) for name in ("value", "operator", "function")),
+    *(Role(name, belongs_to_blocks=True) for name in ("block", "arm", "end")),
+    *(Role(name, belongs_to_values=True, begins=False) for name in ("value", "operator", "function")),
     *(Role(name, is_offered=False) for name in ("alias", "later")),
     Role("setup", begins=False), *map(Role, ("start", "until", "forever", "break", "unit", "actuator")),
 )}

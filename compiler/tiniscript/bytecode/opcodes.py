@@ -30,7 +30,7 @@ class OperandKind(NamedTuple):
 
     name: str
     size: int
-    signed: bool
+    is_signed: bool
     low: int
     high: int
     meaning: str
@@ -371,7 +371,9 @@ _FORMAT_CHARS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h
 _LAYOUTS = {
     op.code: Struct(
         "<"
-        + "".join(_FORMAT_CHARS[operand.kind.size, operand.kind.signed] for operand in op.operands)
+        + "".join(
+            _FORMAT_CHARS[operand.kind.size, operand.kind.is_signed] for operand in op.operands
+        )
     )
     for op in OPS
 }

@@ -62,8 +62,8 @@ def _main(arguments: list[str]) -> int:
     except OSError as error:  # files have sentences of their own; this is the output
         if _is_closed_pipe(error):
             raise BrokenPipeError from None
-        why = str(error.strerror or error)
-        say_aside("full", language, why=why)
+        cause = str(error.strerror or error)
+        say_aside("full", language, why=cause)
         _drop_output()
         return 2
     except Exception as bug:

@@ -42,14 +42,14 @@ def _value_text(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 
-def unwritable_error(key_and_option: str, file: str, why: str | Exception) -> CommandError:
+def unwritable_error(key_and_option: str, file: str, cause: str | Exception) -> CommandError:
     """Return what is said of a file; the sentence's key may be followed by the option it names."""
     key, _, option = key_and_option.partition(" ")
-    return CommandError(2, key, file=file, why=why, option=option)
+    return CommandError(2, key, file=file, why=cause, option=option)
 
 
-def missing_package_error(key: str, why: Exception) -> CommandError:
+def missing_package_error(key: str, error: Exception) -> CommandError:
     """Return what is said where the packages of a virtual robot are missing."""
     from tiniscript.library import install_advice
 
-    return CommandError(2, key, why=why, how=install_advice.command(install_advice.VIRTUAL))
+    return CommandError(2, key, why=error, how=install_advice.command(install_advice.VIRTUAL))

@@ -155,5 +155,5 @@ def _failure(step_text: str, log: str) -> CommandError:
     files.keep(log_path, log.encode("utf-8", "replace"))  # else the sentence has to do
     key_patterns = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in key_patterns if pattern.search(log)), "fetch_failed")
-    why = printable_name(children.reason(log))
-    return CommandError(2, key, doing=step_text, why=why, log=printable_name(str(log_path)))
+    cause = printable_name(children.reason(log))
+    return CommandError(2, key, doing=step_text, why=cause, log=printable_name(str(log_path)))

@@ -24,9 +24,9 @@ def prepare(options: Namespace, language: str) -> None:
     """Build the page where it is missing, and tell where it is stale. Raises CommandError."""
     if not serving.is_built():
         build(options, language)
-    elif not building.is_of_sources(serving.PAGE):
-        how = " ".join(map(install_advice.quote, (sys.executable, str(building.BUILDER))))
-        say_aside("studio_stale", language, how=how)
+    elif not building.is_built_from_sources(serving.PAGE):
+        build_command = " ".join(map(install_advice.quote, (sys.executable, str(building.BUILDER))))
+        say_aside("studio_stale", language, how=build_command)
 
 
 def build(options: Namespace, language: str) -> None:

@@ -67,12 +67,12 @@ def check(options: Namespace, language: str) -> None:
                     other=output.path,
                 )
     for input_path in _input_paths(options, language):
-        identity = _identity(input_path, may_be_device=input_path.dest in ("port", "ports"))
+        identity = _identity(input_path, includes_devices=input_path.dest in ("port", "ports"))
         for output, output_identity in zip(outputs, identities, strict=True):
             if output.dest == input_path.dest:
                 continue  # in place
             if input_path.dest in ("port", "ports"):
-                output_identity = _identity(output, may_be_device=True)
+                output_identity = _identity(output, includes_devices=True)
             if identity is not None and identity == output_identity:
                 raise CommandError(2, "over_input", option=output.label, file=output.path,
                                    what=input_path.label, other=input_path.path)  # fmt: skip
@@ -154,7 +154,7 @@ def _is_shipped(dest: str, name: str) -> bool:
     return False
 
 
-def _identity(named_path: NamedPath, may_be_device: bool = False) -> tuple[object, ...] | None:
+def _identity(named_path: NamedPath, includes_devices: bool = False) -> tuple[object, ...] | None:
     """Return a key that is the same for all names of a file, or None for a device such as a tty.
 
     The key of a missing file is its folder and its name without regard to capitals, because its
@@ -163,7 +163,9 @@ def _identity(named_path: NamedPath, may_be_device: bool = False) -> tuple[objec
     try:
         stat_result = os.fstat(0) if named_path.dest == "stdin" else os.stat(named_path.path)  # noqa: PTH116
         is_device = stat.S_ISCHR(stat_result.st_mode)
-        return None if is_device and not may_be_device else (stat_result.st_dev, stat_result.st_ino)
+        return (
+            None if is_device and not includes_devices else (stat_result.st_dev, stat_result.st_ino)
+        )
     except (FileNotFoundError, NotADirectoryError):
         folder, name = os.path.split(os.path.realpath(named_path.path))
         with suppress(OSError):

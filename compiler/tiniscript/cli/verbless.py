@@ -86,7 +86,7 @@ def refuse_program(name: str) -> None:
     if name.lower().endswith((*PROGRAM_ENDINGS, ".bin")) or _is_file(name):
         raise CommandError(2, "file_without_verb", found=_quote(name))
     if "(" in name or "|" in name:
-        raise CommandError(2, "text_without_verb", found=_quote(name, always=True))
+        raise CommandError(2, "text_without_verb", found=_quote(name, is_always_quoted=True))
 
 
 def _is_file(name: str) -> bool:
@@ -96,10 +96,10 @@ def _is_file(name: str) -> bool:
         return False
 
 
-def _quote(name: str, always: bool = False) -> str:
+def _quote(name: str, is_always_quoted: bool = False) -> str:
     """Return a name as it can be copied into a command."""
     shown_name = printable_name(name)
-    return f'"{shown_name}"' if always or " " in shown_name else shown_name
+    return f'"{shown_name}"' if is_always_quoted or " " in shown_name else shown_name
 
 
 MOST_VERBS = 5  # verbs in an answer

@@ -43,22 +43,22 @@ class LoweredCode(NamedTuple):
     locations: tuple[SourceLocation, ...]
 
 
-def lower(program: ir.Program, plain: bool = False) -> LoweredCode:
+def lower(program: ir.Program, is_plain: bool = False) -> LoweredCode:
     """Return the code bytes of a program, and where in the text they come from.
 
-    `plain` code is made from a program as it is written, not from an optimised one.
+    `is_plain` code is made from a program as it is written, not from an optimised one.
     """
-    lowering = _Lowering(plain, len(program.procedures))
+    lowering = _Lowering(is_plain, len(program.procedures))
     called_numbers = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
     pending_routines: list[tuple[ir.Procedure | ir.Task, int | None]] = [
         *((program.procedures[k], k) for k in called_numbers),
         *((task, None) for task in program.tasks),
     ]
-    if plain:
+    if is_plain:
         pending_routines.sort(key=lambda routine: routine[0].span)
     pending_routines.reverse()
     for statement in program.body:
-        while pending_routines and (not plain or pending_routines[-1][0].span < statement.span):
+        while pending_routines and (not is_plain or pending_routines[-1][0].span < statement.span):
             lowering.routine(*pending_routines.pop())
         lowering.statement(statement)
     while pending_routines:
@@ -72,9 +72,9 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self, plain: bool, procedure_count: int) -> None:
-        self.plain = plain
-        self.emitter = Emitter(plain)
+    def __init__(self, is_plain: bool, procedure_count: int) -> None:
+        self.plain = is_plain
+        self.emitter = Emitter(is_plain)
         # the label of each DEF's first instruction
         self.def_labels = [self.emitter.new_label() for _ in range(procedure_count)]
         self.open_loops: list[_LoopEnd] = []
@@ -362,4 +362,4 @@ def _write(code: bytearray, item: Item, target: int | None) -> None:
         operands = (*operands, min(distance, item.op.operands[-1].kind.high))
     code += item.op.opcode
     for operand, value in zip(item.op.operands, operands, strict=True):
-        code += value.to_bytes(operand.kind.size, "little", signed=operand.kind.signed)
+        code += value.to_bytes(operand.kind.size, "little", signed=operand.kind.is_signed)

@@ -33,8 +33,8 @@ class Item(NamedTuple):
 class Emitter:
     """Collects instructions and labels."""
 
-    def __init__(self, plain: bool = False) -> None:
-        self.plain = plain
+    def __init__(self, is_plain: bool = False) -> None:
+        self.is_plain = is_plain
         self.items: list[Item] = []
         self.labels: list[int] = []  # the index of the item that each label stands before
         self.span = Span(0, 0)
@@ -58,7 +58,7 @@ class Emitter:
 
     def take_back_read(self, sensor: int) -> bool:
         """Take back `READ sensor` if it is the last instruction and no jump ends after it."""
-        if self.plain or not self.items or self._last_mark == len(self.items):
+        if self.is_plain or not self.items or self._last_mark == len(self.items):
             return False
         last_item = self.items[-1]
         if (last_item.op, last_item.operands) != _shortest_op("READ", sensor):
@@ -158,7 +158,7 @@ def add_value(emitter: Emitter, expression: Expression) -> None:
         if term.op in _LEFT_OPS:
             end = _matching_index(expression, range(k + 1, len(expression)), _LEFT_OPS, _JOIN_OPS)
             right = expression[k + 1 : end]
-            if not emitter.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
+            if not emitter.is_plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
                 joins.append(emitter.new_label())
@@ -175,7 +175,7 @@ def add_value(emitter: Emitter, expression: Expression) -> None:
 
 def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
     """Add branches to the label `target` that are taken where `condition` is FALSE."""
-    if emitter.plain:
+    if emitter.is_plain:
         add_value(emitter, condition)
         emitter.add("IF", label=target)
         return
@@ -196,7 +196,7 @@ def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
 
 def emit_until(emitter: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
-    comparison = None if emitter.plain else _comparison_to_constant(condition)
+    comparison = None if emitter.is_plain else _comparison_to_constant(condition)
     if comparison is None:
         add_value(emitter, condition)
         emitter.add("UNTIL")

@@ -18,30 +18,32 @@ MACHINE_VERSION = 5  # of the form; grows when a reader of the file, or a machin
 
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, as the specification hashes them, and how fast it is;
-    `readings` are thousandths by the number of the sensor; times are milliseconds. A `slow` sensor
-    has a period, and from when to when in each it is not ready. `every_ms` has one for each wait,
+    `readings_by_sensor` are thousandths by the number of the sensor; times are milliseconds. A slow
+    sensor has a period, and from when to when in each it is not ready. `every_ms` has one for each
+    wait,
     the last for all that follow. A machine may lack what a case `needs`, as images say it."""
 
     name: str
     devices: tuple[str, ...]
     image: bytes
-    readings: dict[int, tuple[int, ...]]
+    readings_by_sensor: dict[int, tuple[int, ...]]
     seed: int
     begin_ms: int
     every_ms: tuple[int, ...]
     until_ms: int
     needs: int
     answer: tuple[str, ...]
-    slow: dict[int, tuple[int, int, int]]
+    delays_by_sensor: dict[int, tuple[int, int, int]]
 
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
         reading_rows = [
             " ".join(("readings", str(number), *map(str, values)))
-            for number, values in sorted(self.readings.items())
+            for number, values in sorted(self.readings_by_sensor.items())
         ]
         slow_rows = [
-            f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow
+            f"slow {number} {' '.join(map(str, self.delays_by_sensor[number]))}"
+            for number in self.delays_by_sensor
         ]
         rows = (
             *self.devices,

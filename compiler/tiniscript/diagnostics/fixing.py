@@ -21,7 +21,7 @@ _SHOWN_GAPS = ("fix", "right", "near")  # the first of them that a diagnostic ha
 _GAPS_BY_CODE: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.WANTS_CONDITION,
                      codes.MIXED_COMPARE, codes.NAMED_ARGUMENT, codes.NAME_WITH_SPACE,
-                     codes.WORDS_AFTER, codes.SEVERAL_ORDERS, codes.REPEATED), _SHOWN_GAPS),
+                     codes.WORDS_AFTER, codes.SEVERAL_INSTRUCTIONS, codes.REPEATED), _SHOWN_GAPS),
     **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
                      codes.QUESTION_AFTER, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
                      codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,

@@ -26,7 +26,7 @@ from tiniscript.diagnostics.codes import CODES, Diagnostic
 
 CATALOGUE = "messages"
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
-COLUMNS_BEFORE = 40  # of that window, before the place
+MOST_COLUMNS_ON_LEFT = 40  # of that window, before the place
 ROW_CHARACTERS = 110  # a longer message has what to try in a row of its own
 VALUE_CHARACTERS = 60  # of a program's text within a message
 FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
@@ -61,7 +61,7 @@ _COPIED_GAPS = frozenset(("fix", "right", "whole", "made", "note", "after", "beg
 _SUPPLEMENT_GAPS = ("lost", "sample", "samples")
 
 
-def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
+def message(diagnostic: Diagnostic, source: Source, language: str) -> Message:
     """Return what is said of a diagnostic, and where."""
     number = diagnostic.code.number
     start, end = _shown_range(source.text, diagnostic.span)
@@ -70,17 +70,17 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
-    fix = _format_text(f"{number}/try", diagnostic.values, lang)
+    fix = _format_text(f"{number}/try", diagnostic.values, language)
     for gap in _SECONDARY_GAPS:
         if diagnostic.values.get(gap):
             values = {**diagnostic.values, "made": diagnostic.values.get("fix", ""), "fix": fix}
-            fix = _format_text(f"label/{gap}", values, lang)
-    message_text = _format_text(f"{number}/message", diagnostic.values, lang)
+            fix = _format_text(f"label/{gap}", values, language)
+    message_text = _format_text(f"{number}/message", diagnostic.values, language)
     for gap in _SUPPLEMENT_GAPS:
         if diagnostic.values.get(gap):
             sentence = message_text if message_text[-1:] in (".", "?", "!") else message_text + "."
             values = {**diagnostic.values, "said": sentence}
-            message_text = _format_text(f"label/{gap}", values, lang)
+            message_text = _format_text(f"label/{gap}", values, language)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -98,29 +98,29 @@ def as_json(messages: Iterable[Message]) -> list[dict[str, object]]:
     return [message._asdict() for message in messages]
 
 
-def as_text(message: Message, source: Source, lang: str, color: bool = False) -> str:
+def as_text(message: Message, source: Source, language: str, color: bool = False) -> str:
     """Return a message with its line of the program above, as a terminal shows it."""
     is_warning = message.severity == "warning"
     mark, dim, plain = (_YELLOW if is_warning else _RED, _DIM, _PLAIN) if color else ("", "", "")
     rows = []
     if source.text:
-        label = f"{_label('line', lang)} {message.line}:  "
+        label = f"{_label('line', language)} {message.line}:  "
         line = source.line_text(message.line)
         end = message.end_column - 1 if message.end_line == message.line else len(line)
         line_shown, blank_count, caret_count = _line_window(line, message.column - 1, end)
         rows.append((label + line_shown).rstrip())
         rows.append(" " * (len(label) + blank_count) + mark + "^" * caret_count + plain)
-    text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
+    text = f"{_label('warns', language)} {message.message}" if is_warning else message.message
     code = f"   {dim}[{message.code}]{plain}"
     if not message.fix:
         return "\n".join((*rows, text + code))
-    fix = f"{_label('try', lang)}  {message.fix}"
+    fix = f"{_label('try', language)}  {message.fix}"
     fits_in_row = len(text) + len(fix) + len(message.code) <= ROW_CHARACTERS
     rows += [f"{text}   {fix}{code}"] if fits_in_row else [text, fix + code]
     return "\n".join(rows)
 
 
-def explain(code: str, lang: str) -> str | None:
+def explain(code: str, language: str) -> str | None:
     """Return the longer explanation of a code (`TS017`, `ts017` or `017`), None for no code."""
     from textwrap import indent
 
@@ -128,42 +128,42 @@ def explain(code: str, lang: str) -> str | None:
     number = number if number.startswith("TS") else "TS" + number
     if number not in CODES:
         return None
-    severity = _label("mistake" if CODES[number].is_mistake else "warning", lang)
+    severity = _label("mistake" if CODES[number].is_mistake else "warning", language)
     parts = [
-        f"{number} ({severity}): {_text(f'{number}/title', lang)}",
-        _text(f"{number}/more", lang),
+        f"{number} ({severity}): {_text(f'{number}/title', language)}",
+        _text(f"{number}/more", language),
     ]
     for part in ("wrong", "right"):
-        if program := languages.find_text(CATALOGUE, f"{number}/{part}", lang):
-            parts.append(_label(part, lang) + "\n\n" + indent(program, "    "))
+        if program := languages.find_text(CATALOGUE, f"{number}/{part}", language):
+            parts.append(_label(part, language) + "\n\n" + indent(program, "    "))
     return "\n\n".join(parts)
 
 
-def titles(lang: str) -> list[tuple[str, str]]:
+def titles(language: str) -> list[tuple[str, str]]:
     """Return every code with its diagnostic in general words."""
-    return [(number, _text(f"{number}/title", lang)) for number in sorted(CODES)]
+    return [(number, _text(f"{number}/title", language)) for number in sorted(CODES)]
 
 
 # -- words --------------------------------------------------------------------------------------
 
 
-def _text(key: str, lang: str) -> str:
-    return languages.text(CATALOGUE, key, lang)
+def _text(key: str, language: str) -> str:
+    return languages.text(CATALOGUE, key, language)
 
 
-def _label(name: str, lang: str) -> str:
-    return _text(f"label/{name}", lang)
+def _label(name: str, language: str) -> str:
+    return _text(f"label/{name}", language)
 
 
-def _term(word: str, lang: str) -> str | None:
-    return languages.find_text(CATALOGUE, f"term/{word}", lang)
+def _term(word: str, language: str) -> str | None:
+    return languages.find_text(CATALOGUE, f"term/{word}", language)
 
 
-def _templates(key: str, lang: str) -> Iterator[str]:
+def _templates(key: str, language: str) -> Iterator[str]:
     """Yield the texts of which one is taken."""
-    yield _text(key, lang)
+    yield _text(key, language)
     for number in count(2):
-        text = languages.find_text(CATALOGUE, f"{key}/{number}", lang)
+        text = languages.find_text(CATALOGUE, f"{key}/{number}", language)
         if text is None:
             return
         yield text
@@ -176,34 +176,36 @@ def names_found(diagnostic: Diagnostic) -> bool:
     return ("", "found") in _GAP.findall(template)
 
 
-def _first_usable_template(key: str, values: Mapping[str, str], lang: str) -> str:
+def _first_usable_template(key: str, values: Mapping[str, str], language: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
     template = ""
-    for template in _templates(key, lang):
+    for template in _templates(key, language):
         if all(values.get(name) for _, name in _GAP.findall(template)):
             break
     return template
 
 
-def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
-    template = _first_usable_template(key, values, lang)
+def _format_text(key: str, values: Mapping[str, str], language: str) -> str:
+    template = _first_usable_template(key, values, language)
 
     def fill_gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in _COPIED_GAPS else VALUE_CHARACTERS
         if match[2] == "said":
             return values["said"]  # a message, which is short as it is
-        return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
+        return _value_text(values.get(match[2], ""), match[1] == "@", language, longest)
 
     return _GAP.sub(fill_gap, template)
 
 
-def _value_text(value: str, should_translate: bool, lang: str, most_characters: int) -> str:
+def _value_text(value: str, should_translate: bool, language: str, most_characters: int) -> str:
     """Return a value as a message can hold it: translated, short, in one row, printable."""
-    term = _term(value.removeprefix("@"), lang) if should_translate or value[:1] == "@" else None
+    term = (
+        _term(value.removeprefix("@"), language) if should_translate or value[:1] == "@" else None
+    )
     if term is not None:
         return term
     if should_translate:
-        value = _TERM_WORD.sub(lambda match: _term(match[0], lang) or match[0], value)
+        value = _TERM_WORD.sub(lambda match: _term(match[0], language) or match[0], value)
     value = " ".join(value[: most_characters * 4].split())
     if len(value) > most_characters:
         value = value[:most_characters] + "…"
@@ -240,7 +242,7 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     left, right = 0, len(cells)
     if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
         left, columns_used = start_cell, 0
-        while left and columns_used + cells[left - 1][1] <= COLUMNS_BEFORE:
+        while left and columns_used + cells[left - 1][1] <= MOST_COLUMNS_ON_LEFT:
             left -= 1
             columns_used += cells[left][1]
         right = start_cell

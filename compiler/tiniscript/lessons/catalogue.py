@@ -47,7 +47,7 @@ def _numbers(lesson: Lesson) -> Iterator[tuple[str, float]]:
 
 
 def _numbers_of(criterion: Criterion, lesson: Lesson) -> Iterator[tuple[str, float]]:
-    yield from criterion.numbers.items()
+    yield from criterion.number_by_key.items()
     if criterion.kind == "order":
         yield "times", criterion.words.count(criterion.words[0])
     if criterion.area:
@@ -95,16 +95,16 @@ def load(folder: Path) -> Lesson:
     return read(text, worlds.read(world, name, LessonRefused), name)
 
 
-def page(folder: Path, who: str, language: str) -> str:
+def page(folder: Path, audience: str, language: str) -> str:
     """Return a page of a lesson as it is printed, as Markdown. Raises LessonRefused."""
-    return printed_part(whole_page(folder, who, language))
+    return printed_part(whole_page(folder, audience, language))
 
 
-def whole_page(folder: Path, who: str, language: str, form: str = TEXT) -> str:
+def whole_page(folder: Path, audience: str, language: str, form: str = TEXT) -> str:
     """Return a page of a lesson with its numbers and its marks, for those who see programs in a
     form. Raises LessonRefused.
     """
-    paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE_LANGUAGE)]
+    paths = [folder / f"{audience}.{item}.md" for item in (language, SOURCE_LANGUAGE)]
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": printable_value(paths[0].name)}))

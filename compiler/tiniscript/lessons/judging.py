@@ -122,7 +122,7 @@ def _ends_at_rest(run: Run) -> bool:
 def _judge_collisions(criterion: Criterion, task: Task) -> Finding | None:
     collisions = task.run.collisions
     if criterion.places:
-        place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
+        place, within_cm = task.point(criterion), criterion.number_by_key["within_cm"]
         arrivals_ms = (
             point.ms
             for point in points_between(task.run.track)
@@ -140,7 +140,7 @@ def _judge_collisions(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
-    run, within_cm = task.run, criterion.numbers["within_cm"]
+    run, within_cm = task.run, criterion.number_by_key["within_cm"]
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
     segments = [segment for line in run.world.lines for segment in join_points(list(line.points))]
@@ -161,7 +161,7 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
             off_ms = ms
             break
         points_left = {point for point in points_left if math.dist(point, (x, y)) > within_cm}
-    least_cm = criterion.numbers["at_least_cm"]
+    least_cm = criterion.number_by_key["at_least_cm"]
     followed_cm = (point_count - len(points_left)) * SAMPLE_CM
     values = {"cm": in_cm(followed_cm, least_cm), "least": f"{least_cm:g}"}
     if off_ms is not None:
@@ -176,7 +176,7 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
-    low_cm, high_cm = criterion.numbers["at_least_cm"], criterion.numbers["at_most_cm"]
+    low_cm, high_cm = criterion.number_by_key["at_least_cm"], criterion.number_by_key["at_most_cm"]
     driven_cm = task.run.driven_cm
     if low_cm <= driven_cm <= high_cm:
         return None
@@ -204,7 +204,10 @@ def _standstills(run: Run) -> list[tuple[int, int]]:
 
 
 def _judge_pauses(criterion: Criterion, task: Task) -> Finding | None:
-    least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
+    least_s, times = (
+        criterion.number_by_key["at_least_seconds"],
+        int(criterion.number_by_key["times"]),
+    )
     standstills = _standstills(task.run)
     long_pauses = [
         standstill
@@ -228,7 +231,11 @@ def _paused_at(criterion: Criterion, task: Task, pauses: list[tuple[int, int]]) 
     poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in pauses]
     seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in pauses]
     return _first_missed_place(
-        criterion, task, poses, {"least": f"{criterion.numbers['at_least_seconds']:g}"}, seconds
+        criterion,
+        task,
+        poses,
+        {"least": f"{criterion.number_by_key['at_least_seconds']:g}"},
+        seconds,
     )
 
 
@@ -240,7 +247,7 @@ def _first_missed_place(
     seconds: Sequence[str],
 ) -> Finding | None:
     """Return the first place of a criterion that none of the poses is near, or None."""
-    within_cm = criterion.numbers.get("within_cm", 0.0)  # none where it has no places
+    within_cm = criterion.number_by_key.get("within_cm", 0.0)  # none where it has no places
     kind = criterion.kind
     key = f"{kind}/place" if len(criterion.places) == 1 else f"{kind}/places"
     for number in range(len(criterion.places)):
@@ -329,9 +336,12 @@ def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]
 
 
 def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
-    run, times = task.run, int(criterion.numbers["times"])
+    run, times = task.run, int(criterion.number_by_key["times"])
     sensor_name = criterion.words[0] if criterion.words else ""
-    expected_number, tolerance = criterion.numbers["value"], criterion.numbers["tolerance"] * ONE
+    expected_number, tolerance = (
+        criterion.number_by_key["value"],
+        criterion.number_by_key["tolerance"] * ONE,
+    )
     values = {"times": str(times), "found": str(len(run.shown_values)), "what": sensor_name}
     if not run.shown_values:
         return Finding("shows", "shows/nothing", values)
@@ -374,7 +384,7 @@ def _stopped_ms(shown_value: ShownValue, run: Run) -> int:
 
 def _judge_beeps(criterion: Criterion, task: Task) -> Finding | None:
     beeps = task.run.beeps
-    times, pitches = int(criterion.numbers["times"]), int(criterion.numbers["pitches"])
+    times, pitches = int(criterion.number_by_key["times"]), int(criterion.number_by_key["pitches"])
     pitch_count = len({beep.hertz for beep in beeps})
     values = {"times": str(times), "found": str(len(beeps)), "pitches": str(pitches),
               "different": str(pitch_count)}  # fmt: skip
@@ -389,7 +399,7 @@ def _judge_beeps(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _judge_blinks(criterion: Criterion, task: Task) -> Finding | None:
-    run, (actuator_name,), times = task.run, criterion.words, int(criterion.numbers["times"])
+    run, (actuator_name,), times = task.run, criterion.words, int(criterion.number_by_key["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
     switches = [switch for switch in run.switched_on if names[switch.actuator] == actuator_name]
     moving_count = sum(switch.is_moving for switch in switches)

@@ -35,13 +35,13 @@ class Place(NamedTuple):
 class Criterion(NamedTuple):
     """What a run or a program must be like. `kind` is a row of `criteria.KINDS`.
 
-    `numbers` has the numbers of that row by their keys, `words` its words, `places` its places.
+    `number_by_key` has the numbers of that row by their keys, `words` its words, `places` its places.
     `labels[language]` is what a place is called in sentences. `area` is around a place: from and
     to, along x and y, in centimetres.
     """
 
     kind: str
-    numbers: Mapping[str, float]
+    number_by_key: Mapping[str, float]
     words: tuple[str, ...]
     places: tuple[Place, ...]
     labels: Mapping[str, str]
@@ -80,7 +80,7 @@ class Lesson(NamedTuple):
 
     name: str
     robot: str
-    titles: Mapping[str, str]
+    title_by_language: Mapping[str, str]
     seconds: float
     world_count: int
     noise: float
@@ -91,7 +91,7 @@ class Lesson(NamedTuple):
     presses: tuple[Press, ...] = ()
 
     def title(self, language: str, form: str = TEXT) -> str:
-        return in_form(self.titles[language], form)
+        return in_form(self.title_by_language[language], form)
 
 
 class Answer(NamedTuple):
@@ -102,8 +102,8 @@ class Answer(NamedTuple):
     """
 
     program: str
-    labels: Mapping[str, str]
-    sentences: Mapping[str, str]
+    label_by_language: Mapping[str, str]
+    sentence_by_language: Mapping[str, str]
 
 
 LARGEST_NUMBER = 10_000.0  # of any number

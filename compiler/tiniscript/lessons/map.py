@@ -89,7 +89,7 @@ def _goals(lesson: Lesson) -> list[str]:
         for number, place in enumerate(criterion.places, 1):
             x, y = point_of(place, lesson.world, False)
             y = lesson.world.height_cm - y
-            within_cm = criterion.numbers["within_cm"]
+            within_cm = criterion.number_by_key["within_cm"]
             goals.append(
                 f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{within_cm:g}" fill="none" stroke="#777"/>'
             )

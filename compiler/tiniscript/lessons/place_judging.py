@@ -43,7 +43,7 @@ def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bo
 
 def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
     place, run = task.point(criterion), task.run
-    within_cm = criterion.numbers["within_cm"]
+    within_cm = criterion.number_by_key["within_cm"]
     start, end = run.world.start, _end_pose(run)
     away_cm = math.dist(place, end[:2])
     is_missed = away_cm > within_cm
@@ -78,7 +78,7 @@ def _came_back(gaps_cm: list[float], within_cm: float) -> bool:
 def _judge_places(criterion: Criterion, task: Task) -> Finding | None:
     order = range(len(criterion.places))
     count, finding = _count_reached(criterion, task, order)
-    if finding is not None and criterion.numbers["either_way"]:
+    if finding is not None and criterion.number_by_key["either_way"]:
         count_backwards, other_finding = _count_reached(criterion, task, order[::-1])
         finding = other_finding if count_backwards > count else finding
     return finding
@@ -108,7 +108,7 @@ def _count_reached(
     criterion: Criterion, task: Task, order: Sequence[int]
 ) -> tuple[int, Finding | None]:
     """Return how many of its places the robot has reached in this order, and what is missing."""
-    within_cm = criterion.numbers["within_cm"]
+    within_cm = criterion.number_by_key["within_cm"]
     track_points = points_between(task.run.track)
     points = iter(track_points)
     point = track_points[0]
@@ -152,7 +152,7 @@ def _overshoot_cm(
 
 
 def _judge_length(criterion: Criterion, point: TrackPoint) -> Finding | None:
-    limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
+    limit_s, limit_cm = criterion.number_by_key["by_seconds"], criterion.number_by_key["by_cm"]
     if point.ms > limit_s * 1000:
         values = {"seconds": in_seconds(point.ms), "limit": f"{limit_s:g}"}
         return Finding("reaches", "reaches/late", values, criterion.labels)
@@ -209,7 +209,7 @@ def _is_approaching(track_points: list[TrackPoint], place: Point) -> bool:
 
 
 def _judge_area(criterion: Criterion, task: Task) -> Finding | None:
-    place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
+    place, within_cm = task.point(criterion), criterion.number_by_key["within_cm"]
     for ms, pose in task.run.track:
         is_out = math.dist(place, pose[:2]) > within_cm
         if criterion.area:
@@ -244,7 +244,7 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
     if criterion.places:
         obstacles = shape_of(criterion.places[0], run.world, task.is_flipped)
     gap_cm = nearest_seen(obstacles, eye, heading_radians, CONE_RADIANS)
-    low_cm, high_cm = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
+    low_cm, high_cm = criterion.number_by_key["low_cm"], criterion.number_by_key["high_cm"]
     values = {"low": f"{low_cm:g}", "high": f"{high_cm:g}"}
     if gap_cm is None:
         key = "other" if criterion.places else "nothing"
@@ -257,11 +257,11 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
 
 
 def _judge_heading(criterion: Criterion, task: Task) -> Finding | None:
-    expected_degrees = criterion.numbers["heading"]
+    expected_degrees = criterion.number_by_key["heading"]
     if task.is_flipped:
         expected_degrees = -expected_degrees
     off_degrees = (_end_pose(task.run).heading - expected_degrees + 180) % 360 - 180
-    if abs(off_degrees) <= criterion.numbers["within_degrees"]:
+    if abs(off_degrees) <= criterion.number_by_key["within_degrees"]:
         return None
     key = "left" if off_degrees > 0 else "right"  # it looks too far to the left
     if abs(off_degrees) > OTHER_WAY_DEGREES:

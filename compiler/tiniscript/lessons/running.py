@@ -119,11 +119,11 @@ class Trial:
         if self._is_ping:
             return
         self._computer = _upload(robot, image)
-        self._witness.look()
+        self._witness.record_state()
         end_ms = robot.now_ms + BRINGING_MS
         while self._witness.started_ms is None and robot.now_ms < end_ms:
             robot.step(robot.now_ms + 1)
-            self._witness.look()
+            self._witness.record_state()
         assert self._witness.started_ms is not None, "the program does not begin"
         self._limit_ms = self._witness.started_ms + round(lesson.seconds * 1000)
 
@@ -140,7 +140,7 @@ class Trial:
             if robot.now_ms >= until_ms:
                 return None
             self.step(min(robot.now_ms + STEP_MS, self._limit_ms))
-            witness.look()
+            witness.record_state()
             if witness.events > MOST_EVENTS:
                 robot.rest()
                 return witness.run(BUSY)
@@ -200,7 +200,7 @@ class _Witness:
         self._event_words: list[str] = []
         self._is_moving = False
 
-    def look(self) -> None:
+    def record_state(self) -> None:
         """Take what has happened since the last time."""
         robot = self.robot
         pose = robot.pose

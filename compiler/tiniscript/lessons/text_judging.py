@@ -135,7 +135,7 @@ def _question(robot: str) -> str:
 
 def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     words = _words(tokens)
-    times, word_counts = int(criterion.numbers.get("times", 1)), Counter(words)
+    times, word_counts = int(criterion.number_by_key.get("times", 1)), Counter(words)
     if "UNTIL" in criterion.words and word_counts["UNTIL"] - kept.count_unasked(tokens) < times:
         if word_counts["UNTIL"] >= times:
             return Finding("uses", "uses/unasked")
@@ -166,7 +166,7 @@ def _def_names(words: Sequence[str]) -> list[str]:
 
 def _uncalled_words(words: Sequence[str]) -> list[str]:
     """Return the words of DEF that nothing calls, or only such a word."""
-    bodies: dict[str, set[str]] = {name: set() for name in _def_names(words)}
+    words_by_def: dict[str, set[str]] = {name: set() for name in _def_names(words)}
     main_words, name = set[str](), ""
     for previous, word in pairwise(["", *words]):
         if previous == "DEF":
@@ -174,16 +174,16 @@ def _uncalled_words(words: Sequence[str]) -> list[str]:
         elif ALIASES.get(word, word) == BLOCK_ENDS["DEF"]:
             name = ""
         else:
-            (bodies[name] if name else main_words).add(word)
+            (words_by_def[name] if name else main_words).add(word)
     names_called: set[str] = set()
-    newly_called = main_words & bodies.keys()
+    newly_called = main_words & words_by_def.keys()
     while newly_called:
         names_called |= newly_called
         newly_called = (
-            set().union(*(bodies[name_called] for name_called in newly_called))
-            & bodies.keys() - names_called
+            set().union(*(words_by_def[name_called] for name_called in newly_called))
+            & words_by_def.keys() - names_called
         )
-    return [body for body in bodies if body not in names_called]
+    return [body for body in words_by_def if body not in names_called]
 
 
 def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
@@ -203,7 +203,10 @@ def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
 
 
 def _judge_moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
-    most_moves, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
+    most_moves, is_ahead = (
+        int(criterion.number_by_key["at_most"]),
+        bool(criterion.number_by_key["ahead"]),
+    )
     move_count = (
         kept.count_ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
     )

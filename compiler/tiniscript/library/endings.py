@@ -19,7 +19,7 @@ class End(NamedTuple):
     fault: int | None = None
 
     @property
-    def is_by_program(self) -> bool:
+    def was_caused_by_program(self) -> bool:
         """Whether the program has ended by itself, by a fault of its own too."""
         return self.name == DONE or (self.fault is not None and self.fault < FIRST_LINK_FAULT)
 

@@ -143,10 +143,12 @@ def _open_connection(
         except PortError as error:
             raise port_error(port, error, language) from None
         cleanup.callback(opened_port.close)
-        if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
+        if directory.belongs_to_another(
+            address
+        ):  # asked of who has let us in, before anything is sent
             raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
-        keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
+        keys = KeyFile(serves_virtual_robots=is_virtual(address), accepts_all=verb == "set owner")
         canonical_port = port_names.canonical_port(
             port
         )  # an address may be another robot's tomorrow

@@ -135,16 +135,16 @@ def has_words_of_other_robots(diagnostics: list[Diagnostic]) -> bool:
 
 def _other_kits() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
-    kits: dict[str, Kit] = {}
+    kit_by_robot: dict[str, Kit] = {}
     for name in robots.names():
         kit = robots.load(name).kit
-        if kit not in kits.values():  # robots on other boards may have the kit of one
-            kits[name] = kit
+        if kit not in kit_by_robot.values():  # robots on other boards may have the kit of one
+            kit_by_robot[name] = kit
     for path, robot in given.profiles():
         try:
             shorter_path = min(path, os.path.relpath(path), key=len)
         except ValueError:  # Windows: the path is on another drive
             shorter_path = path
         if len(shorter_path) <= SHOWN_CHARACTERS and " " not in shorter_path:
-            kits[shorter_path] = robot.kit
-    return kits
+            kit_by_robot[shorter_path] = robot.kit
+    return kit_by_robot

@@ -28,7 +28,7 @@ from tiniscript.virtual.world import WorldRefused
 
 MOST_NOISE = 0.5
 MIN_SPEEDUP, MAX_SPEEDUP = 0.1, 10_000
-LEAST_MOTOR, MOST_MOTOR = 10, 200  # percent
+LEAST_MOTOR_PERCENT, MOST_MOTOR_PERCENT = 10, 200  # percent
 
 
 def virtual_robot(
@@ -57,7 +57,7 @@ def virtual_robot(
     checked_number("noise", noise, 0, MOST_NOISE, language)
     left, right = motors
     for motor in (left, right):
-        checked_number("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
+        checked_number("motors", motor, LEAST_MOTOR_PERCENT, MOST_MOTOR_PERCENT, language)
     reading_lists = thousandths(sensors or {}, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=(left, right), given_readings=reading_lists)
     simulated = SimulatedRobot(

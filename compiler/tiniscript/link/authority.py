@@ -22,7 +22,7 @@ NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
 )
 MOST_PENDING_KEYS = 1  # keys before a new one: each that is shown takes time
 HOLD_PAUSE_MS = 200  # while the button is not held down
-FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
+FREE, OWNED_BY_YOU, OWNED_BY_OTHER = "free", "yours", "other"
 
 
 class RobotKey(NamedTuple):
@@ -57,11 +57,11 @@ class KeyRing:
         """Return all keys."""
         raise NotImplementedError
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         """Keep what is made of all keys; return whether that was possible."""
         raise NotImplementedError
 
-    def of_robot(self, robot_id: int | None) -> list[RobotKey]:
+    def keys_of_robot(self, robot_id: int | None) -> list[RobotKey]:
         """Return the keys of a robot, or of all."""
         return [key for key in self._stored_keys() if robot_id in (None, key.id)]
 
@@ -80,7 +80,7 @@ class KeyRing:
                 key,
             ]
 
-        return key if self._change(with_key_added) else None
+        return key if self._change_keys(with_key_added) else None
 
     def robot_at(self, place: str) -> int | None:
         """Return the robot of ours that has proved at a place who it is."""
@@ -93,7 +93,7 @@ class KeyRing:
         """Return whether a robot may answer in the place of one of ours."""
         return False
 
-    def settle(self, key: RobotKey) -> None:
+    def settle_key(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
         settled_key = key._replace(is_pending=False, is_stale=False)
 
@@ -102,32 +102,34 @@ class KeyRing:
                 return keys
             return [*(robot_key for robot_key in keys if robot_key.slot != key.slot), settled_key]
 
-        self._change(with_key_settled)
+        self._change_keys(with_key_settled)
 
     def mark_stale(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
-        self._change(lambda before: [
+        self._change_keys(lambda before: [
             item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
         ])  # fmt: skip
 
-    def drop(self, key: RobotKey) -> None:
+    def drop_key(self, key: RobotKey) -> None:
         """The robot has not taken, or no longer has, this key."""
-        self._change(lambda before: [robot_key for robot_key in before if robot_key.key != key.key])
+        self._change_keys(
+            lambda before: [robot_key for robot_key in before if robot_key.key != key.key]
+        )
 
 
 def ownership_of(robot: DeviceInfo) -> str:
-    """Return whether a robot is FREE, YOUR_OWN or OF_ANOTHER."""
+    """Return whether a robot is FREE, OWNED_BY_YOU or OWNED_BY_OTHER."""
     features = robot.values.features
     if not features & OWNED:
         return FREE
-    return YOUR_OWN if features & YOURS else OF_ANOTHER
+    return OWNED_BY_YOU if features & YOURS else OWNED_BY_OTHER
 
 
 def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
     """Return whether our keys say that a robot seals; where none is known, whether any does."""
     if ring is None:
         return False
-    keys = ring.of_robot(None if robot is None else robot.id)
+    keys = ring.keys_of_robot(None if robot is None else robot.id)
     return any(key.uses_seals and not key.is_pending for key in keys)
 
 
@@ -135,7 +137,7 @@ def is_impostor(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
     """Return whether somebody answers in the place of a robot of ours that seals: where that one
     has answered before, or with its name. One whose key we have too has to prove itself.
     """
-    our_keys = [] if ring is None else ring.of_robot(None)
+    our_keys = [] if ring is None else ring.keys_of_robot(None)
     our_keys = [key for key in our_keys if key.uses_seals and not key.is_pending]
     if ring is None or any(key.id == robot.id for key in our_keys) or ring.accepts(robot.id):
         return False
@@ -157,7 +159,7 @@ def show_keys(
     it `is_needed`, since showing it takes time.
     """
     reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
-    keys = [] if ring is None else ring.of_robot(robot.id)
+    keys = [] if ring is None else ring.keys_of_robot(robot.id)
     for key in sorted(keys, key=_key_order):
         if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
@@ -169,7 +171,7 @@ def show_keys(
                 is_pending=False, is_stale=False, uses_seals=_can_seal(robot) or key.uses_seals
             )
             if proven_key != key:
-                ring.settle(proven_key)
+                ring.settle_key(proven_key)
         if ring is not None and reply.status == WRONG_KEY:
             ring.mark_stale(key)  # kept all the same: the robot is not known to have said so
         if reply.status != WRONG_KEY:
@@ -215,9 +217,9 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
             request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply
         )
     if reply.status == OK:
-        ring.settle(key._replace(uses_seals=_can_seal(robot)))
+        ring.settle_key(key._replace(uses_seals=_can_seal(robot)))
     elif reply.status not in ACCEPTING_STATUSES:
-        ring.drop(key)
+        ring.drop_key(key)
     return reply
 
 
@@ -226,7 +228,7 @@ def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]
     request = Request("CLAIM", {"which": which, "key": b""})
     reply = yield from requests.save_and_confirm(request, EmptyReply)
     if reply.status == OK:
-        for key in ring.of_robot(robot.id):
+        for key in ring.keys_of_robot(robot.id):
             if key.which == which:
-                ring.drop(key)
+                ring.drop_key(key)
     return reply

@@ -237,7 +237,7 @@ class LinkConnection:
         """Return the next event and its arrival time (ms), or None after the time limit."""
         raise NotImplementedError
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         """Have PLACE events come from now on, from a robot that tells where its program is."""
         raise NotImplementedError
 

@@ -97,7 +97,7 @@ class Handshake:
                 return Reply(UNPROVEN)
             self.is_open = True
             if self._boot != reply.values.nonce:
-                self._state.reset()
+                self._state.note_reset()
             self.robot = device_info
             self._state.state = reply.values.state
             is_owned = bool(device_info.values.features & OWNED)

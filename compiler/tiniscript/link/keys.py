@@ -47,15 +47,18 @@ class KeyFile(KeyRing):
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
     def __init__(
-        self, path: Path | None = None, is_for_virtual: bool = False, accepts_all: bool = False
+        self,
+        path: Path | None = None,
+        serves_virtual_robots: bool = False,
+        accepts_all: bool = False,
     ) -> None:
-        """`is_for_virtual`: whoever answers may be a virtual robot that begins anew each time, with
-        the same id and without the owner that it had. `accepts_all`: any robot may answer where
-        another one did.
+        """`serves_virtual_robots`: whoever answers may be a virtual robot that begins anew each
+        time, with the same id and without the owner that it had. `accepts_all`: any robot may
+        answer where another one did.
         """
         self._accepts_all = accepts_all
         self.path = path or files.settings_folder() / "keys.json"
-        self._is_for_virtual = is_for_virtual
+        self._serves_virtual_robots = serves_virtual_robots
 
     def all(self) -> list[RobotKey]:
         """Return all keys. Raises BadKeys where the file is none."""
@@ -78,13 +81,13 @@ class KeyFile(KeyRing):
             other_keys = [key for key in stored_keys if key.is_pending or key.slot not in new_keys]
             changed_keys = [key for key in new_keys.values() if key not in stored_keys]
             if changed_keys:
-                self._write([*other_keys, *new_keys.values()])
+                self._write_keys([*other_keys, *new_keys.values()])
             return len(changed_keys)
 
     def forget(self, robot_id: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
         with self._locked():
-            self._write([key for key in self.all() if key.id != robot_id])
+            self._write_keys([key for key in self.all() if key.id != robot_id])
 
     def accept(self, robot_id: int) -> None:
         """Let a robot answer where another one did, or with its name. Raises BadKeys."""
@@ -100,7 +103,7 @@ class KeyFile(KeyRing):
             robot_keys = self.all()
             return (
                 [key._replace(uses_seals=False) for key in robot_keys]
-                if self._is_for_virtual
+                if self._serves_virtual_robots
                 else robot_keys
             )
         return []
@@ -113,7 +116,7 @@ class KeyFile(KeyRing):
         return met_robots.read_met_robots(self._met_robots_path).id_by_place.get(place)
 
     def remember_robot(self, place: str, robot_id: int) -> None:
-        if not self._is_for_virtual:
+        if not self._serves_virtual_robots:
             met_robots.remember_robot(self._met_robots_path, place, robot_id)
 
     def accepts(self, robot_id: int) -> bool:
@@ -122,13 +125,13 @@ class KeyFile(KeyRing):
             or robot_id in met_robots.read_met_robots(self._met_robots_path).accepted_ids
         )
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
             with self._locked():
                 old_keys = self.all()
                 new_keys = change(old_keys)
                 if new_keys != old_keys:
-                    self._write(new_keys)
+                    self._write_keys(new_keys)
         except BadKeys:
             return False
         return True
@@ -148,7 +151,7 @@ class KeyFile(KeyRing):
         self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         self.path.parent.chmod(0o700)
 
-    def _write(self, keys: list[RobotKey]) -> None:
+    def _write_keys(self, keys: list[RobotKey]) -> None:
         if len(keys) > MOST_KEYS:
             raise TooManyKeys
         try:

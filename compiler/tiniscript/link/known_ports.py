@@ -20,10 +20,10 @@ MOST_PORTS = 2000  # ports; the oldest go first
 
 
 class KnownPorts(NamedTuple):
-    """`names` maps ports to robots' names, the newest first; a name may be empty."""
+    """`name_by_port` maps ports to robots' names, the newest first; a name may be empty."""
 
     last_port: str | None
-    names: dict[str, str]
+    name_by_port: dict[str, str]
 
 
 def remembered_ports() -> KnownPorts:
@@ -31,10 +31,10 @@ def remembered_ports() -> KnownPorts:
     try:
         fields = json.loads(read_limited(_path(), FILE_BYTES))
         last_port = fields["last"]
-        names = {str(port): printable(str(name)) for port, name in fields["ports"]}
+        name_by_port = {str(port): printable(str(name)) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return KnownPorts(None, {})
-    return KnownPorts(last_port if isinstance(last_port, str) else None, names)
+    return KnownPorts(last_port if isinstance(last_port, str) else None, name_by_port)
 
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
@@ -44,17 +44,17 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with files.lock_file(path):  # other commands do the same
             known_ports = remembered_ports()
-            newest = next(iter(known_ports.names.items()), None)
+            newest = next(iter(known_ports.name_by_port.items()), None)
             if newest == (port, name) and (known_ports.last_port == port or not is_used):
                 return
             others = {
                 value: name
-                for value, name in known_ports.names.items()
+                for value, name in known_ports.name_by_port.items()
                 if not _is_same(value, port)
             }
-            names = {port: name, **others}
+            name_by_port = {port: name, **others}
             last_port = port if is_used else known_ports.last_port
-            fields = {"last": last_port, "ports": list(names.items())[:MOST_PORTS]}
+            fields = {"last": last_port, "ports": list(name_by_port.items())[:MOST_PORTS]}
             files.replace(path, json.dumps(fields).encode())
 
 

@@ -157,15 +157,15 @@ class Backlog:
     def __len__(self) -> int:
         return len(self._events) + (self._missed_count > 0)
 
-    def put(self, timed_events: Iterable[TimedEvent]) -> None:
+    def add_events(self, timed_events: Iterable[TimedEvent]) -> None:
         for timed_event in timed_events:
             if timed_event[1].name == "PLACE":  # the newest one says all
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
             self._events.append(timed_event)
             if len(self._events) > MOST_EVENTS:
-                self._drop()
+                self._drop_event()
 
-    def take(self) -> TimedEvent:
+    def take_event(self) -> TimedEvent:
         """Return the next event. Raises IndexError if there is none."""
         if self._missed_count:
             event = MissedEvent(self._missed_count)
@@ -173,7 +173,7 @@ class Backlog:
             return (self._events[0][0] if self._events else 0), event
         return self._events.popleft()
 
-    def _drop(self) -> None:
+    def _drop_event(self) -> None:
         self._missed_count += 1
         for number, (_, event) in enumerate(self._events):
             if event.name in DROPPABLE_EVENTS:

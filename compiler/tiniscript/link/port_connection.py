@@ -101,7 +101,7 @@ class PortConnection(LinkConnection):
             self._bell.wait(limit_s)
         with self._session_lock:
             if self._events:
-                return self._events.take()
+                return self._events.take_event()
             if self._end_reason is not None:
                 raise self._bug or ConnectionLost(self._end_reason)
         return None
@@ -124,13 +124,13 @@ class PortConnection(LinkConnection):
         with self._session_lock:
             self.session.withdraw(request)
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self._takes_places = self.session.tells_places = True
 
-    def tell(self, event: Event) -> None:
+    def post_event(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
         with self._session_lock:
-            self._events.put([(self._now_ms(), event)])
+            self._events.add_events([(self._now_ms(), event)])
             self._bell.ring()
 
     def fail(self, bug: Exception) -> None:
@@ -225,7 +225,7 @@ class PortConnection(LinkConnection):
             for timed_event in timed_events
             if self._takes_places or timed_event[1].name != "PLACE"
         ]
-        self._events.put(own_events)
+        self._events.add_events(own_events)
         self._bell.ring()
         if self._listener is not None and (timed_events or finished_requests):
             self._listener(timed_events)

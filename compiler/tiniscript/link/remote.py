@@ -54,11 +54,15 @@ class RemoteControl:
     """Each who speaks has a number."""
 
     def __init__(self) -> None:
-        self._states: dict[int, RemoteState] = {}  # the newest word last
-        self._until_ms: dict[int, int | None] = {}  # None: from the next look at the clock on
+        self._state_by_speaker: dict[int, RemoteState] = {}  # the newest word last
+        self._until_ms_by_speaker: dict[
+            int, int | None
+        ] = {}  # None: from the next look at the clock on
         self._sent_state, self._sent_ms = NOTHING_PRESSED, _LONG_AGO_MS
         self._unanswered_count = 0
-        self._waiting_requests: dict[int, PendingRequest[EmptyReply]] = {}  # of each, not sent yet
+        self._waiting_request_by_speaker: dict[
+            int, PendingRequest[EmptyReply]
+        ] = {}  # of each, not sent yet
         self._sent_requests: list[PendingRequest[EmptyReply]] = []
 
     def press(self, speaker: int, state: RemoteState) -> PendingRequest[EmptyReply]:
@@ -67,22 +71,22 @@ class RemoteControl:
         What he has said before, and nothing of which was sent, is replaced: CANCELLED.
         """
         assert state.is_sound, state
-        self._states.pop(speaker, None)
+        self._state_by_speaker.pop(speaker, None)
         if state != NOTHING_PRESSED:
-            self._states[speaker], self._until_ms[speaker] = state, None
-        earlier_request = self._waiting_requests.pop(speaker, None)
+            self._state_by_speaker[speaker], self._until_ms_by_speaker[speaker] = state, None
+        earlier_request = self._waiting_request_by_speaker.pop(speaker, None)
         if earlier_request is not None:
             earlier_request.outcome = Reply(CANCELLED)
         request: PendingRequest[EmptyReply] = PendingRequest()
         if self.combined_state == self._sent_state == NOTHING_PRESSED:
             request.outcome = Reply(OK, 0, EmptyReply())
         else:
-            self._waiting_requests[speaker] = request
+            self._waiting_request_by_speaker[speaker] = request
         return request
 
     def let_go(self, status: int = CANCELLED) -> None:
         """The robot has let all go, or hears nothing: nothing is held before somebody says so."""
-        self._states.clear()
+        self._state_by_speaker.clear()
         self._sent_state, self._unanswered_count = NOTHING_PRESSED, 0
         self._note_sent()
         self._finish_sent(Reply(status))
@@ -91,7 +95,7 @@ class RemoteControl:
     def combined_state(self) -> RemoteState:
         """All keys that somebody holds, and the pad of who has moved his last."""
         combined = NOTHING_PRESSED
-        for state in self._states.values():
+        for state in self._state_by_speaker.values():
             pad = (state.x, state.y) if state.x or state.y else (combined.x, combined.y)
             combined = RemoteState(combined.keys | state.keys, *pad)
         return combined
@@ -100,8 +104,8 @@ class RemoteControl:
         """Return when to look again, or None."""
         times = [
             until_ms
-            for speaker in self._states
-            if (until_ms := self._until_ms[speaker]) is not None
+            for speaker in self._state_by_speaker
+            if (until_ms := self._until_ms_by_speaker[speaker]) is not None
         ]
         combined_state = self.combined_state
         if combined_state != self._sent_state:
@@ -121,48 +125,48 @@ class RemoteControl:
 
     def expire_and_check_due(self, now_ms: int) -> bool:
         """Whether to say something now. Who has said nothing for HOLD_MS holds nothing."""
-        for speaker in list(self._states):
-            until_ms = self._until_ms[speaker]
+        for speaker in list(self._state_by_speaker):
+            until_ms = self._until_ms_by_speaker[speaker]
             if until_ms is None:
-                self._until_ms[speaker] = now_ms + HOLD_MS
+                self._until_ms_by_speaker[speaker] = now_ms + HOLD_MS
             elif now_ms >= until_ms:
-                del self._states[speaker]
+                del self._state_by_speaker[speaker]
         due_ms = self.due_ms()
         return due_ms is not None and now_ms >= due_ms
 
-    def say(self, now_ms: int) -> dict[str, int | bytes]:
+    def take_message(self, now_ms: int) -> dict[str, int | bytes]:
         """Return the newest word, which is sent now."""
         self._sent_state, self._sent_ms = self.combined_state, now_ms
         self._unanswered_count += 1
         self._note_sent()
-        return self.word()
+        return self.newest_message()
 
-    def word(self) -> dict[str, int | bytes]:
+    def newest_message(self) -> dict[str, int | bytes]:
         """Return the newest word as the message has it."""
         return dict(self.combined_state._asdict())
 
-    def answer(self, outcome: Reply[Any]) -> None:
+    def take_answer(self, outcome: Reply[Any]) -> None:
         """Take the robot's answer. One that takes no keys is not told of them again."""
         self._unanswered_count = 0
         if outcome.status == OK:
             self._finish_sent(Reply(OK, 0, EmptyReply()))
             return
-        self._states.clear()
+        self._state_by_speaker.clear()
         self._sent_state = NOTHING_PRESSED
         self._note_sent()
         self._finish_sent(Reply(outcome.status, outcome.detail))
 
-    def hear(self) -> None:
+    def note_answered(self) -> None:
         """An earlier word was answered."""
         self._unanswered_count = max(0, self._unanswered_count - 1)
 
-    def miss(self) -> None:
+    def note_unanswered(self) -> None:
         """No answer has come in time."""
         self._finish_sent(Reply(LOST))
 
     def _note_sent(self) -> None:
-        self._sent_requests += self._waiting_requests.values()
-        self._waiting_requests.clear()
+        self._sent_requests += self._waiting_request_by_speaker.values()
+        self._waiting_request_by_speaker.clear()
 
     def _finish_sent(self, reply: Reply[EmptyReply]) -> None:
         for pending_request in self._sent_requests:

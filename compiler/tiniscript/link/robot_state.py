@@ -84,7 +84,7 @@ class RobotState:
     def is_latched(self) -> bool:
         return self.state > STATE_RUNNING
 
-    def reset(self) -> None:
+    def note_reset(self) -> None:
         """Note that the robot was reset: its counters start again."""
         self.has_reset_ended_run = self._is_going or self._is_end_asked
         self._is_going = self._is_end_asked = False
@@ -102,7 +102,7 @@ class RobotState:
             return False
         return values.state <= STATE_RUNNING or self.run not in (None, values.run)
 
-    def learn(self, values: SentReply, epoch: int) -> bool:
+    def take_reply(self, values: SentReply, epoch: int) -> bool:
         """Take a reply of an epoch; return whether it tells of the end of our run, of which no
         event has."""
         self._learn_program(values, epoch)
@@ -165,7 +165,7 @@ class RobotState:
     def note_replaced(self) -> list[Event]:
         """Note that a program which waits to be started has ended our run; return what tells so."""
         is_going, run = self._is_going, self.run
-        self.clear()
+        self.forget_run()
         if not is_going or run is None:
             return []
         self.end()
@@ -183,7 +183,7 @@ class RobotState:
             return [earlier_place._replace(at=-1)]
         return [self._last_place] if self._last_place and self._last_place != earlier_place else []
 
-    def take(self, event: Event) -> None:
+    def take_event(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
             self._last_place = self.halt_event = None  # who is told of the end needs no more
         if isinstance(event, HaltedEvent):
@@ -197,13 +197,13 @@ class RobotState:
                 self.state = STATE_IDLE
                 self._is_going = self._is_end_asked = False
 
-    def begin(self, run: int) -> None:
+    def note_begun(self, run: int) -> None:
         """Note that a run has begun, unless its end arrived before its receipt."""
         if run != self._ended_run:
             self.state = STATE_RUNNING
             self._is_going = True
 
-    def clear(self) -> None:
+    def forget_run(self) -> None:
         """Note that the latch is released or the robot is lost."""
         self.state = STATE_IDLE
         self._last_place = self.halt_event = None

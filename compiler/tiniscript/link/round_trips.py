@@ -24,7 +24,7 @@ class RoundTrips:
         self._is_certain = False  # an answer belonged to one sending for certain
         self._doublings = 0
 
-    def learn(self, took_ms: int, byte_count: int, is_certain: bool) -> None:
+    def add_round_trip(self, took_ms: int, byte_count: int, is_certain: bool) -> None:
         """Take how long an answer took that has, with its request, `byte_count` bytes.
 
         `is_certain` where it was one of several sendings that was answered: where it was not, that

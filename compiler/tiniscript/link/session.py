@@ -231,7 +231,7 @@ class Session(Requester):
 
         The event STOPPED follows when the robot confirms, LOST if it does not within CONFIRM_MS.
         """
-        self._cancel(CANCELLED)
+        self._cancel_requests(CANCELLED)
         self._stop.begin(now_ms)
 
     def end_run(self, run: int, now_ms: int) -> None:
@@ -294,19 +294,19 @@ class Session(Requester):
             return b""
         assert self._pending
         if now_ms >= self._pending.deadline_ms:
-            self._lose(now_ms)
+            self._give_up_request(now_ms)
             return b""
         if not self._transmission.is_due(now_ms):
             return b""
         if self._transmission.is_of("KEYS"):
             keys = BY_NAME["KEYS"].request
-            self._transmission.fill(encode_payload(keys, self._remote.say(now_ms)))
+            self._transmission.set_payload(encode_payload(keys, self._remote.take_message(now_ms)))
         seal = self._transmission.seal
         if seal is not None and seal.is_spent:
             self._authenticate_again(now_ms)
             return b""
         if self._transmission.tries >= TRIES:
-            self._lose(now_ms)
+            self._give_up_request(now_ms)
             return b""
         self._talked_ms = now_ms
         if self._unanswered_since_ms is None and any(
@@ -375,7 +375,7 @@ class Session(Requester):
         """Send what is held now, if that is due; a word that was not answered is not sent again."""
         if self._transmission.is_of("KEYS") and self._transmission.is_late(now_ms):
             self._round_trips.back_off()
-            self._remote.miss()
+            self._remote.note_unanswered()
             self._end_press()
         if not self._may_press() or not self._remote.expire_and_check_due(now_ms):
             return
@@ -392,7 +392,7 @@ class Session(Requester):
         assert self.robot
         if not has_remote(self.robot):
             return Reply(STATUSES["NO_REMOTE"])
-        return (yield from send_single(Request("KEYS", self._remote.word()), PingReply))
+        return (yield from send_single(Request("KEYS", self._remote.newest_message()), PingReply))
 
     def _end_press(self) -> None:
         """Go on with what was under way before a key was pressed."""
@@ -456,9 +456,9 @@ class Session(Requester):
         self._pending = None
         self._transmission.end()
         if pending.presses_keys:
-            self._remote.answer(outcome)
+            self._remote.take_answer(outcome)
         if pending.interrupted is None:
-            self._finish(pending, outcome)
+            self._finish_request(pending, outcome)
             self._end_orphan(now_ms)
         elif pending.ends_orphan or pending.presses_keys:
             self._go_on(pending.interrupted)
@@ -570,7 +570,7 @@ class Session(Requester):
             return b""
         if self._stop.is_over(now_ms):
             self._stop.end()
-            self._close()
+            self._end_connection()
             self._is_lost = False  # its zeros keep no run alive
             return b""
         self._talked_ms = now_ms
@@ -585,7 +585,7 @@ class Session(Requester):
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
             return
-        self._doubt(frame)
+        self._doubt_epoch(frame)
         self._sealing.seal = None
         self._handshake.is_open = False
         self._advance(Reply(_STALE_STATUS if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
@@ -605,7 +605,7 @@ class Session(Requester):
             return
         if self._pending and reply.status not in (OK, *ACCEPTING_STATUSES):
             self._pending.is_midway = False  # it was refused
-        self._transmission.learn(frame, now_ms)
+        self._transmission.learn_round_trip(frame, now_ms)
         self._unanswered_since_ms = None
         if not self.is_running:
             self._talked_ms = now_ms  # who asks again after an answer finds the line free
@@ -620,20 +620,20 @@ class Session(Requester):
             return
         values = reply.values if reply.status == OK else None
         if isinstance(values, HelloReply):
-            self._settle(values, frame)
+            self._settle_epoch(values, frame)
         else:
-            self._doubt(frame)
+            self._doubt_epoch(frame)
         if reply.status == _STALE_STATUS:
             self._handshake.is_open = False  # a new HELLO tells the robot's state
         if message.name in UNSEALED_MESSAGES and reply.status != OK:
             self._sealing.seal = None
         if values is not None:
-            is_other_epoch = self._handshake.is_in_doubt and not self._try_to_settle(values)
+            is_other_epoch = self._handshake.is_in_doubt and not self._try_to_settle_epoch(values)
             if message.name == "CLEAR":
-                self._state.clear()
+                self._state.forget_run()
             if message.name == "STOP" and self._pending and self._pending.ends_orphan:
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
-            has_ended = self._state.learn(values, frame.epoch)
+            has_ended = self._state.take_reply(values, frame.epoch)
             if self.tells_places:
                 self._events += self._state.update_place(values)
             if has_ended and not is_other_epoch and isinstance(values, StatusReply):
@@ -649,12 +649,12 @@ class Session(Requester):
         """An answer to an earlier word of a remote control: the robot is there."""
         if frame.number == BY_NAME["KEYS"].number:
             self._unanswered_since_ms = None
-            self._remote.hear()
+            self._remote.note_answered()
 
     # An epoch ends with a stop, a fault or a reset, or when another session begins. A stop alone
     # voids what was asked for before it.
 
-    def _doubt(self, frame: Frame) -> None:
+    def _doubt_epoch(self, frame: Frame) -> None:
         """The robot may have another epoch, which no event has announced."""
         if frame.epoch != self._epoch and self._handshake.doubted_epoch is None:
             self._handshake.doubted_epoch = self._epoch
@@ -668,7 +668,7 @@ class Session(Requester):
     def _is_one_fault(self, state: int, epoch: int) -> bool:
         return state == STATE_FAULTED and self._is_next_epoch(epoch)
 
-    def _try_to_settle(self, values: SentReply) -> bool:
+    def _try_to_settle_epoch(self, values: SentReply) -> bool:
         """Whether a reply tells all that must be known of the epoch before for now."""
         if isinstance(values, (PingReply, StatusReply)):
             has_gap = self._handshake.is_open and not self._is_next_epoch(self._epoch)
@@ -681,14 +681,16 @@ class Session(Requester):
             return True  # what needs to know more says HELLO
         self._handshake.doubted_epoch = None
         if is_stop:
-            self._void()
+            self._void_requests()
         return True
 
-    def _settle(self, robot: HelloReply, frame: Frame) -> None:
+    def _settle_epoch(self, robot: HelloReply, frame: Frame) -> None:
         """Find out from HELLO what has ended the epoch that is in doubt."""
         is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
         if is_same and self._handshake.is_open:
-            self._doubt(frame)  # somebody has asked for HELLO, which is the first to notice it
+            self._doubt_epoch(
+                frame
+            )  # somebody has asked for HELLO, which is the first to notice it
         self._epoch = frame.epoch
         if not is_same:
             self._told_stop_epoch = None  # its epochs begin anew
@@ -700,10 +702,10 @@ class Session(Requester):
             if robot.state == STATE_STOPPED or (
                 is_same and (not is_fault or self._handshake.is_unproven)
             ):
-                self._void(frame.epoch if is_same else None)
+                self._void_requests(frame.epoch if is_same else None)
         self._handshake.doubted_epoch = None
 
-    def _void(self, began_epoch: int | None = None) -> None:
+    def _void_requests(self, began_epoch: int | None = None) -> None:
         """The robot was stopped: do nothing that was asked for before. Questions are answered.
 
         `began_epoch`: the one that has begun so, if what was asked for in it is known to be later.
@@ -716,7 +718,7 @@ class Session(Requester):
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
         if not self.is_latched:
-            self._state.take(event)
+            self._state.take_event(event)
             self._events.append(event)
 
     def _note_progress(self, reply: Reply[SentReply], now_ms: int) -> None:
@@ -742,15 +744,15 @@ class Session(Requester):
         if reply.status == OK:
             assert isinstance(reply.values, NextReply) and self._pending
             next_offset = reply.values.next
-        return not self._transmission.take(frame, next_offset, now_ms)
+        return not self._transmission.take_reply(frame, next_offset, now_ms)
 
     def _queue_requery(self, has_ended: bool, is_other_epoch: bool) -> None:
         if is_other_epoch:
             self._handshake.is_open = False  # if this is lost, what is asked next finds out
-        exchange = self._requery(has_ended, is_other_epoch)
+        exchange = self._query_again(has_ended, is_other_epoch)
         self._queue.appendleft(PendingExchange(exchange, DEAF_MS, is_own=True))
 
-    def _requery(self, has_ended: bool, is_other_epoch: bool) -> Exchange[StatusReply]:
+    def _query_again(self, has_ended: bool, is_other_epoch: bool) -> Exchange[StatusReply]:
         """Ask who the robot is now that another epoch has begun, and how a run has ended."""
         run = self._state.run
         if is_other_epoch:
@@ -801,7 +803,7 @@ class Session(Requester):
             if self._stop.due_ms is not None:
                 if not self._confirms_stop(event, frame):
                     self._take_end(event, frame)
-                    self._state.take(event)
+                    self._state.take_event(event)
                     return
                 self._stop.end()
             elif frame.epoch == self._told_stop_epoch or (
@@ -815,7 +817,7 @@ class Session(Requester):
             self._take_end(event, frame)
         # by a reply to STATUS
         is_told = isinstance(event, (DoneEvent, FaultEvent)) and self._state.has_ended(event.run)
-        self._state.take(event)
+        self._state.take_event(event)
         if not is_told:
             self._events.append(event)
 
@@ -847,7 +849,7 @@ class Session(Requester):
 
     def _take_end(self, event: StoppedEvent | FaultEvent, frame: Frame) -> None:
         """Take the event that announces another epoch."""
-        self._doubt(frame)
+        self._doubt_epoch(frame)
         is_orphan_end = (
             event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.ends_orphan
         )
@@ -855,7 +857,7 @@ class Session(Requester):
             is_other_epoch = self._handshake.is_in_doubt and not self._is_next_epoch(frame.epoch)
             self._handshake.doubted_epoch = None
             if not is_orphan_end:
-                self._void()
+                self._void_requests()
             if is_other_epoch and self._handshake.is_open:  # a reset may have come before this stop
                 self._queue_requery(has_ended=False, is_other_epoch=True)
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
@@ -868,12 +870,12 @@ class Session(Requester):
         """Have the robot say under seal that it was stopped, if it was we who did that."""
         if self._stop.is_sent:
             self._stop.end()
-            self._queue.append(PendingExchange(self._proof(event), DEAF_MS, is_own=True))
+            self._queue.append(PendingExchange(self._prove_stop(event), DEAF_MS, is_own=True))
 
-    def _proof(self, event: StoppedEvent) -> Exchange[StatusReply]:
+    def _prove_stop(self, event: StoppedEvent) -> Exchange[StatusReply]:
         reply = yield from self._handshake.prove_stopped(lambda: self._sealing.seal is not None)
         if reply.status == OK:
-            self._state.take(event)
+            self._state.take_event(event)
             self._events.append(event)
         else:
             self._lose_robot()
@@ -898,9 +900,9 @@ class Session(Requester):
             exchange = self._handshake.with_key(make)
         else:
             exchange = self._handshake.open_then(make)
-        return self._add(exchange, starts, name in _RUN_ENDING_REQUESTS)
+        return self._queue_exchange(exchange, starts, name in _RUN_ENDING_REQUESTS)
 
-    def _add(
+    def _queue_exchange(
         self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
     ) -> PendingExchange[T]:
         pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
@@ -913,7 +915,7 @@ class Session(Requester):
         asks = PLACE_QUESTION if self.tells_places and self._has_places else b""
         return self._handshake.with_key(lambda: ping(asks))
 
-    def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
+    def _finish_request(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
         pending.outcome = outcome
         if outcome.status == OK and pending.ends_runs:
             self._orphan_run = None
@@ -924,9 +926,9 @@ class Session(Requester):
         receipt: ReceiptReply = outcome.values
         if self.tells_starts:
             self._events.append(StartedEvent(receipt.run, receipt.program))
-        self._state.begin(receipt.run)
+        self._state.note_begun(receipt.run)
 
-    def _lose(self, now_ms: int) -> None:
+    def _give_up_request(self, now_ms: int) -> None:
         """Give up: the robot does not answer, or is not ready."""
         assert self._pending
         pending, self._pending = self._pending.target, None
@@ -939,10 +941,10 @@ class Session(Requester):
         self._unanswered_since_ms = None
         pending.outcome = Reply(pending.waiting_status if is_there else LOST)
         if pending.is_own:
-            self._close()
+            self._end_connection()
 
-    def _close(self) -> None:
-        self._cancel(LOST)
+    def _end_connection(self) -> None:
+        self._cancel_requests(LOST)
         self._lose_robot()
 
     def _lose_robot(self) -> None:
@@ -952,10 +954,10 @@ class Session(Requester):
         self._is_lost = True
         self._remote.let_go(LOST)
         self._handshake.is_open = False
-        self._state.clear()
+        self._state.forget_run()
         self._events.append(LostEvent())
 
-    def _cancel(self, status: int) -> None:
+    def _cancel_requests(self, status: int) -> None:
         if self._pending:
             target = self._pending.target
             is_midway = status == CANCELLED and target.is_midway

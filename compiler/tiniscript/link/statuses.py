@@ -34,10 +34,10 @@ def name_of(status: int) -> str:
     return name_by_number.get(status, str(status))
 
 
-def status_text(status: int, detail: int, lang: str) -> StatusText:
+def status_text(status: int, detail: int, language: str) -> StatusText:
     """Return the sentence for a status and its detail number."""
     name = name_of(status)
-    if languages.find_text(CATALOGUE, f"{name}/said", lang) is not None:
+    if languages.find_text(CATALOGUE, f"{name}/said", language) is not None:
         key = name
     elif 0 < status < FIRST_STATUS:
         key = "IMAGE" if status < FIRST_RULE else "RULE"
@@ -49,6 +49,6 @@ def status_text(status: int, detail: int, lang: str) -> StatusText:
         "version": f"{detail >> 8}.{detail & 0xFF}",
         "name": name,
     }
-    message = languages.text(CATALOGUE, f"{key}/said", lang)
-    advice = languages.find_text(CATALOGUE, f"{key}/try", lang) or ""
+    message = languages.text(CATALOGUE, f"{key}/said", language)
+    advice = languages.find_text(CATALOGUE, f"{key}/try", language) or ""
     return StatusText(message.format(**values), advice.format(**values))

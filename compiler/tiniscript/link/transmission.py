@@ -71,7 +71,7 @@ class Transmission:
             )
             self.epoch = epoch
 
-    def fill(self, payload: bytes) -> None:
+    def set_payload(self, payload: bytes) -> None:
         """Send this, of which no byte was sent."""
         assert self.frame is not None and not self.is_sent
         self.frame = self.frame._replace(payload=payload)
@@ -102,12 +102,12 @@ class Transmission:
             own_frame.seq,
         )
 
-    def learn(self, reply: Frame, now_ms: int) -> None:
+    def learn_round_trip(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes."""
         if self.tries == 0:
             return  # nothing of it was sent: it answers something else
         byte_count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
-        self._round_trips.learn(now_ms - self._began_ms, byte_count, self.tries == 1)
+        self._round_trips.add_round_trip(now_ms - self._began_ms, byte_count, self.tries == 1)
 
     def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
@@ -211,12 +211,12 @@ class Window(Transmission):
             piece.seq == frame.seq for piece in (*self._sent_pieces, *self._lost_pieces)
         )
 
-    def learn(self, reply: Frame, now_ms: int) -> None:
+    def learn_round_trip(self, reply: Frame, now_ms: int) -> None:
         """Learn from an answer how long one takes: each sending has a number of its own."""
         for piece in (*self._lost_pieces, *self._sent_pieces):
             if piece.seq == reply.seq:
                 took_ms = now_ms - piece.sent_ms
-                self._round_trips.learn(took_ms, piece.wire_bytes, is_certain=True)
+                self._round_trips.add_round_trip(took_ms, piece.wire_bytes, is_certain=True)
                 is_quick = took_ms <= (self._round_trips.least_ms or 0) + SLOW_MS
                 self._room_bytes = max(
                     0, self._room_bytes + (piece.wire_bytes if is_quick else -piece.wire_bytes)
@@ -238,13 +238,13 @@ class Window(Transmission):
             self._sent_offset += length
             wire_bytes = len(frame.payload) + FRAME_BYTES + REPLY_BYTES
             self._sent_pieces.append(SentPiece(frame.seq, self._sent_offset, now_ms, wire_bytes))
-        self._wait(now_ms)
+        self._set_due_time(now_ms)
         if not wire:
             return b""
         is_repeated, self._is_repeated = self._is_repeated, False
         return sender.prepare_frames(wire, now_ms, is_repeated)
 
-    def take(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
+    def take_reply(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
         """Take the reply to a frame that was sent; return whether all has arrived.
 
         `next_offset` of None: the robot has not looked at the frame, as a later one came before it.
@@ -262,7 +262,7 @@ class Window(Transmission):
             self._go_back()  # this one, or one before it, was not taken
         elif not has_come:
             return False  # late, and known
-        self._wait(now_ms)
+        self._set_due_time(now_ms)
         if self._next_bytes() > 0:
             self.due_ms = now_ms
         return self._next_offset >= len(self._data)
@@ -305,7 +305,7 @@ class Window(Transmission):
         """Return how many bytes are under way, with their answers."""
         return sum(piece.wire_bytes for piece in self._sent_pieces)
 
-    def _wait(self, now_ms: int) -> None:
+    def _set_due_time(self, now_ms: int) -> None:
         wait_ms = self._round_trips.wait_ms(self._count_bytes_under_way())
         self._lost_ms = self.due_ms = now_ms + wait_ms
 

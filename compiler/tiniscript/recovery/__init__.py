@@ -28,9 +28,9 @@ The laws, from which no row and no reader is exempt, and where each is kept:
   written (`blocks`). - What follows from a mistake that is told is not told beside it
   (`consequences`), and what is wrong at several places is told once (`dedupe`). - A mistake points
   at what its message names (`pointing`), and a sign that nobody sees has a name (`invisible`). - A
-  word alone never says what a line says together: SI before orders is the beginning (`setup`), two
-  motors are one M (`motors`), a line of Logo is one loop (`logo`), signs that are named are written
-  (`writing`). - What the comment sign of another language begins is a note, and nothing in it is
-  read (`notes`). - A question in brackets that a word has not is asked before it, and a value there
-  is named (`bracketed`).
+  word alone never says what a line says together: SI before instructions is the beginning
+  (`setup`), two motors are one M (`motors`), a line of Logo is one loop (`logo`), signs that are
+  named are written (`writing`). - What the comment sign of another language begins is a note, and
+  nothing in it is read (`notes`). - A question in brackets that a word has not is asked before it,
+  and a value there is named (`bracketed`).
 """

@@ -27,14 +27,14 @@ def amount_values(text: str, span: Span, own_names: Container[str] = ()) -> dict
     All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
     `X = mucho` are shown alone.
     """
-    before = text[max(0, span.start - _CALL_REACH) : span.start]
+    text_before = text[max(0, span.start - _CALL_REACH) : span.start]
     amount = text[slice(*span)]
-    if match := _COMPARED_WORD.search(before):
+    if match := _COMPARED_WORD.search(text_before):
         name = meant_by(match[1].upper()) or match[1].upper()
         sample = _SAMPLE_CM if name == "DISTANCE" else _SAMPLE_NUMBER
         return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
     call_start, call_end = (
-        _CALL_START.search(before),
+        _CALL_START.search(text_before),
         _CALL_END.match(text[span.end : span.end + _CALL_REACH]),
     )
     word = WORDS.get(call_start[1].upper()) if call_start else None

@@ -99,7 +99,7 @@ class Matching:
         ]
         self.items.append((len(lines), Item("", "", 0, 0)))
         self.open_blocks: list[_Block] = []
-        self.edits: dict[int, list[Edit]] = {}
+        self.edits_by_line: dict[int, list[Edit]] = {}
         self.ends_on_line: dict[int, list[str]] = {}
         self.ends_below: dict[int, list[str]] = {}
         self.is_sure = True
@@ -131,11 +131,11 @@ class Matching:
             )
         return True
 
-    def edit_item(self, old_count: int, *new_lexemes: str) -> None:
-        self.edit_tokens(self.item.start, old_count, [make_token(item) for item in new_lexemes])
+    def edit_item(self, old_count: int, *new_texts: str) -> None:
+        self.edit_tokens(self.item.start, old_count, [make_token(text) for text in new_texts])
 
-    def edit_tokens(self, start: int, old_count: int, new_lexemes: list[Lexeme]) -> None:
-        self.edits.setdefault(self.k, []).append(Edit(start, old_count, new_lexemes))
+    def edit_tokens(self, start: int, old_count: int, new_tokens: list[Lexeme]) -> None:
+        self.edits_by_line.setdefault(self.k, []).append(Edit(start, old_count, new_tokens))
 
     def close_below(self, k: int, block: _Block) -> None:
         self.ends_below.setdefault(k, []).append(" " * block.indent + block.end)
@@ -211,11 +211,11 @@ class Matching:
         if item.word != "WHILE" or not self.open_blocks or not self.open_blocks[-1].asks_at_end:
             return False
         condition = self.line.reading.tokens[item.start + 2 : item.end - 1]
-        new_lexemes = [make_token("IF"), make_token("("), *negate(condition), make_token(")")]
-        new_lexemes += map(
+        new_tokens = [make_token("IF"), make_token("("), *negate(condition), make_token(")")]
+        new_tokens += map(
             make_token, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"])
         )
-        self.edit_tokens(item.start, item.end - item.start, new_lexemes)
+        self.edit_tokens(item.start, item.end - item.start, new_tokens)
         self.open_blocks.pop()
         return True
 

@@ -51,7 +51,7 @@ _PERCENT_AT_END = re.compile(r"[ \t]*%$")
 _TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
 _UNIT_PATTERN = rf"(?P<unit>{'|'.join(EXTENTS)})"
-_UNIT_BEFORE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
+_UNIT_BEFORE_VALUE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
 _STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(EXTENTS)})")
 
 
@@ -171,7 +171,7 @@ def _unit_diagnostic(call: _Call) -> Diagnostic | None:
     """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
     unit = UNIT_OF.get(call.word.text, "")
     values = [value for value in call.values if value.upper() != unit]
-    unit_match = _UNIT_BEFORE.fullmatch(values[0]) if values else None
+    unit_match = _UNIT_BEFORE_VALUE.fullmatch(values[0]) if values else None
     if unit_match and unit_match["unit"].upper() == unit and len(values) == len(call.values):
         values[0] = unit_match["value"]
     elif len(values) != len(call.values) - 1:
@@ -195,11 +195,11 @@ def _thousands_diagnostic(call: _Call) -> Diagnostic | None:
     joined_text = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
     arguments_text = joined_text.partition("(")[2].rpartition(")")[0]
     values = _split_values(arguments_text)
-    is_of_time = any(
+    is_time_joined = any(
         argument.unit == "s" and value not in call.values
         for argument, value in zip(arguments, values, strict=False)
     )
-    if len(values) != len(arguments) or is_of_time:
+    if len(values) != len(arguments) or is_time_joined:
         return None
     fix = call.with_values(values)
     return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=number_match[0])
@@ -262,14 +262,14 @@ def likely_word(word: str, text: str) -> str:
     numbers = [number for number in map(_NUMBER.match, values) if number]
     if not values or len(numbers) != len(values):
         return ""
-    is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
+    is_frequency = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     expansions, similar_word = (
         expand_short(word),
         "" if lexicon_concept(word) else heard_as(word) or "",
     )
     if similar_word in CALL_WORDS:
         likely = similar_word
-    elif is_tone:
+    elif is_frequency:
         likely = "BEEP" if word[:1] == "B" or "BEEP" in expansions else ""
     elif len(expansions) == 1:
         likely = expansions[0]
@@ -278,15 +278,15 @@ def likely_word(word: str, text: str) -> str:
     return likely if likely in WORDS and len(WORDS[likely].arguments) == len(values) else ""
 
 
-def usage_of_number(word: str, number: str) -> str:
+def usage_of_number(word: str, number_text: str) -> str:
     """Return how a word is written with the one number that is there, "" where that may be other.
 
     So much of a turn is degrees; of a way it may be a power.
     """
     word_row = WORDS.get(word)
-    is_long_time = float(number) >= LONG_TIME_S
+    is_long_time = float(number_text) >= LONG_TIME_S
     if word_row is None or not word_row.is_call or (is_long_time and word not in ("L", "R")):
         return ""
     names = [argument.name for argument in word_row.arguments][1:]
     unit = f" {UNIT_OF[word]}" if is_long_time else ""
-    return f"{word}({', '.join((number + unit, *names))})" if word_row.role.lasts else ""
+    return f"{word}({', '.join((number_text + unit, *names))})" if word_row.role.lasts else ""

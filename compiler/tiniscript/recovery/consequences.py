@@ -82,10 +82,10 @@ def _uses_of_a_reserved_word(
         if starts and instruction_at(diagnostic.span, source)[0] in starts:
             yield diagnostic
             continue
-        is_of_word = (
+        uses_word = (
             diagnostic.code is codes.NO_VALUE and diagnostic.values.get("word") in explainers
         )
-        if is_of_word or diagnostic.span in renamed_spans:
+        if uses_word or diagnostic.span in renamed_spans:
             yield diagnostic
 
 

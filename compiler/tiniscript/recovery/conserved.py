@@ -157,7 +157,7 @@ def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
     additions = [
         word
         for word in _DRIVING_WORDS
-        if repaired.sure_words[word] > statement.possible_words[word]
+        if repaired.sure_word_counts[word] > statement.possible_word_counts[word]
     ]
     additions = additions if len(additions) > statement.unknown_word_count else []
     additions += [
@@ -399,8 +399,8 @@ class _Statement:
         self.body_text = self._without_frame("\n".join(body for body, _ in parts))
         lines = [lexemes(self._separated_numbers(line)) for line in self.body_text.split("\n")]
         self.names = Names(lines, kit)
-        self.tokens = [lexeme for line in lines for lexeme in (*self._join_words(line), _END)]
-        self.line_of_token = [0, *accumulate(lexeme is _END for lexeme in self.tokens)]
+        self.tokens = [token for line in lines for token in (*self._join_words(line), _END)]
+        self.line_of_token = [0, *accumulate(token is _END for token in self.tokens)]
         self._concepts_of_text: dict[str, set[str]] = {}
         self._name_ends = {row[-1] for row in self.names.spaced_names}  # of `mi velocidad`
         # what has no unit counts something of its own: 50 % of light is no 50
@@ -408,14 +408,14 @@ class _Statement:
             "TIME": "s"
         }
         self.units |= self._units_of_names()
-        self.sure_words: Counter[str] = Counter()  # that it surely says
-        self.possible_words: Counter[str] = Counter()  # that it may say
+        self.sure_word_counts: Counter[str] = Counter()  # that it surely says
+        self.possible_word_counts: Counter[str] = Counter()  # that it may say
         self.source_of_word: dict[str, str] = {}
         self.amounts: list[Amount] = []
         self.loose_units: list[
             tuple[str, str]
         ] = []  # units after no number, and how they are written
-        self.foreign_words: Counter[str] = Counter()  # of those, in words of another language
+        self.foreign_word_counts: Counter[str] = Counter()  # of those, in words of another language
         self.unknown_word_count = 0  # words of other languages, or of none
         self._read()
 
@@ -443,26 +443,26 @@ class _Statement:
 
     def _join_words(self, line: list[Lexeme]) -> list[Lexeme]:
         """Return a line in which words are one that the language, or the repair, has as one."""
-        joined_lexemes: list[Lexeme] = []
+        joined_tokens: list[Lexeme] = []
         for token in line:
-            last_token = joined_lexemes[-1] if joined_lexemes else _END
+            last_token = joined_tokens[-1] if joined_tokens else _END
             word_before = (
-                joined_lexemes[-2]
-                if last_token.text in ("-", "_", ".") and len(joined_lexemes) > 1
+                joined_tokens[-2]
+                if last_token.text in ("-", "_", ".") and len(joined_tokens) > 1
                 else last_token
             )
             joined_word = f"{word_before.text}_{token.text}"
             if word_before.kind is token.kind is WORD and joined_word in self.other_words:
-                joined_lexemes[
-                    joined_lexemes.index(word_before, -2 if word_before is not last_token else -1) :
+                joined_tokens[
+                    joined_tokens.index(word_before, -2 if word_before is not last_token else -1) :
                 ] = [token._replace(text=joined_word)]
             elif last_token.text == "ELSE" and token.text == "IF":
-                joined_lexemes[-1] = token._replace(text="ELSEIF")
+                joined_tokens[-1] = token._replace(text="ELSEIF")
             else:
-                joined_lexemes.append(token)
-        while joined_line := join_one_name(joined_lexemes, self.names):
-            joined_lexemes = joined_line[0]
-        return joined_lexemes
+                joined_tokens.append(token)
+        while joined_line := join_one_name(joined_tokens, self.names):
+            joined_tokens = joined_line[0]
+        return joined_tokens
 
     # -- what each word is -----------------------------------------------------------------------
 
@@ -510,19 +510,19 @@ class _Statement:
             if token.kind is WORD and not self._is_label(k):
                 self._count_word(k, len(open_brackets) > 1)
             k += 1
-        self.sure_words["ELSE"] += self._count_arms_in_brackets()
+        self.sure_word_counts["ELSE"] += self._count_arms_in_brackets()
 
     def _is_lone_one(self, k: int) -> bool:
         """Whether a 1 alone is asked for yes: `while (1)`."""
         header, bracket = self.tokens[max(0, k - 2)], self.tokens[k - 1]
-        is_alone = (bracket.text, self.tokens[k].text, self._next_lexeme(k).text) == ("(", "1", ")")
+        is_alone = (bracket.text, self.tokens[k].text, self._next_token(k).text) == ("(", "1", ")")
         return is_alone and bool(self._possible_words(header) & ASKING_WORDS)
 
     def _count_word(self, k: int, is_in_brackets: bool) -> None:
         token, previous, following = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
-            self._next_lexeme(k),
+            self._next_token(k),
         )
         if self._is_loose_unit(k):
             self.loose_units.append(
@@ -530,7 +530,7 @@ class _Statement:
             )
             return
         word = self._sure_word(token)
-        neighbours = {previous.text, following.text}
+        neighbour_texts = {previous.text, following.text}
         is_name_part = token.text in self._name_ends
         is_times_sign = (
             token.text == "X" and previous.kind is NUMBER and following.kind in (NUMBER, WORD)
@@ -544,25 +544,27 @@ class _Statement:
             word == "OR" and previous.text in _COMPARISON_SENSES
         )
         is_repetition |= (
-            following.text == "." and self._next_lexeme(k + 1).kind is WORD
+            following.text == "." and self._next_token(k + 1).kind is WORD
         )  # `random.randint`
         is_repetition |= (
             word in MOVES and following.kind is WORD and word == self._sure_word(following)
         )
-        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbours)
-        is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
-            word == "TIME" and not neighbours & _COMPARISON_SENSES.keys()
+        is_equal = any(
+            text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbour_texts
         )
-        self.possible_words.update(self._possible_words(token))
+        is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
+            word == "TIME" and not neighbour_texts & _COMPARISON_SENSES.keys()
+        )
+        self.possible_word_counts.update(self._possible_words(token))
         self.unknown_word_count += token.text not in WORDS and not self.names.is_name(token.text)
         if is_name_part or is_times_sign or is_joint or is_repetition or is_needless:
             return
         if word in _COUNTED_WORDS or (word and word not in WORDS):
-            self.sure_words[word] += 1
-            self.foreign_words[word] += word != token.text
+            self.sure_word_counts[word] += 1
+            self.foreign_word_counts[word] += word != token.text
             self.source_of_word.setdefault(word, token.source or token.text)
 
-    def _next_lexeme(self, k: int) -> Lexeme:
+    def _next_token(self, k: int) -> Lexeme:
         return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
 
     def _is_label(self, k: int) -> bool:
@@ -575,10 +577,7 @@ class _Statement:
             self._possible_words(token) & BLOCK_ENDS.keys()
         )
         return (
-            is_end
-            and is_block
-            and previous.kind is WORD
-            and self._next_lexeme(k).text in (";", "(")
+            is_end and is_block and previous.kind is WORD and self._next_token(k).text in (";", "(")
         )
 
     # -- numbers ---------------------------------------------------------------------------------
@@ -592,11 +591,11 @@ class _Statement:
 
     def _add_amount(self, k: int, value: float, slot_unit: str) -> int:
         """Keep the number at a place with its sign and its unit; return where to read on."""
-        token, following = self.tokens[k], self._next_lexeme(k)
+        token, following = self.tokens[k], self._next_token(k)
         is_minus = self._is_minus(k)
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
-            number_index = k + 1 + bool(lexicon_meaning(self._next_lexeme(k).text, "and"))
+            number_index = k + 1 + bool(lexicon_meaning(self._next_token(k).text, "and"))
             next_number = (
                 self._number_of(self.tokens[number_index])
                 if number_index < len(self.tokens)
@@ -627,7 +626,7 @@ class _Statement:
 
     def _unit_after(self, k: int) -> tuple[str, float] | None:
         """Return the unit after a number, and how many thousandths of it one is."""
-        token, next_text = self._next_lexeme(k), self._next_lexeme(k + 1).text
+        token, next_text = self._next_token(k), self._next_token(k + 1).text
         if token.text == "%" and next_text in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
         meaning = lexicon_meaning(token.text, "unit")
@@ -643,7 +642,7 @@ class _Statement:
         token, previous, following = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
-            self._next_lexeme(k),
+            self._next_token(k),
         )
         kinds = {item.kind for item in lexicon().get(token.text, ())}
         ends_argument = (
@@ -717,8 +716,8 @@ class _Statement:
     def count_calls(self, name: str) -> int:
         """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
         count = 0
-        for k, (previous, lexeme) in enumerate(pairwise([_END, *self.tokens])):
-            count += lexeme.text == name and not (
+        for k, (previous, token) in enumerate(pairwise([_END, *self.tokens])):
+            count += token.text == name and not (
                 "DEF" in self._possible_words(previous) or self._is_label(k)
             )
         return count
@@ -735,14 +734,14 @@ class _Statement:
                 continue
             lexemes_before = self.tokens[max(0, k - 4) : k]
             if lexicon_meaning(token.text, "unless") or any(
-                self._possible_words(lexeme) & ASKING_WORDS for lexeme in lexemes_before
+                self._possible_words(token) & ASKING_WORDS for token in lexemes_before
             ):
                 negations.append(token.source or token.text)
         return negations
 
     def count_sum_signs(self) -> Counter[str]:
         """Count the signs between two values, of which one at least is no plain number."""
-        sums: Counter[str] = Counter()
+        sign_counts: Counter[str] = Counter()
         tokens_after = (*self.tokens[3:], _END)
         for left, sign, right, token_after in zip(
             self.tokens, self.tokens[1:], self.tokens[2:], tokens_after, strict=False
@@ -751,8 +750,8 @@ class _Statement:
             is_other_value = self._has_value(token_after if right.text == "(" else right)
             is_plain = left.kind is NUMBER and right.kind is NUMBER
             if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
-                sums[sign.text] += 1
-        return sums
+                sign_counts[sign.text] += 1
+        return sign_counts
 
     def _has_value(self, token: Lexeme) -> bool:
         """Whether a token is a number, or a name that has a value."""
@@ -765,7 +764,7 @@ class _Statement:
     def count_empty_branches(self) -> int:
         """Return how many branches have nothing in them."""
         tokens_left = [
-            lexeme for lexeme in self.tokens if lexeme is not _END and lexeme.text not in (";", "{")
+            token for token in self.tokens if token is not _END and token.text not in (";", "{")
         ]
         count = 0
         for k, token in enumerate(tokens_left):
@@ -789,14 +788,13 @@ class _Statement:
         """Return how many IFs have two branches in their brackets: `IF(question, F, B)`."""
         count = 0
         for k, token in enumerate(self.tokens[:-1]):
-            end = brackets_end(self.tokens, k + 1) if self._next_lexeme(k).text == "(" else 0
+            end = brackets_end(self.tokens, k + 1) if self._next_token(k).text == "(" else 0
             if end and "IF" in self._possible_words(token):
                 inner_pairs = pairwise(self.tokens[k + 2 : end - 1])
                 first_tokens = [b for a, b in inner_pairs if a.text in (",", ";")]
                 count += (
                     sum(
-                        bool(self._possible_words(lexeme) & _DRIVING_WORDS)
-                        for lexeme in first_tokens
+                        bool(self._possible_words(token) & _DRIVING_WORDS) for token in first_tokens
                     )
                     > 1
                 )
@@ -909,13 +907,13 @@ def _thousandths(value: float) -> int:
     return round(value * 1000)
 
 
-def _are_same(old: Amount, new: Amount) -> bool:
-    if (old.unit, new.unit) == ("turns", "°"):
-        return _thousandths(old.value * FULL_TURN) == _thousandths(new.value)
-    units = {*new.unit.split("/")} - {""}
-    is_unit = not old.unit or units <= {*old.unit.split("/")}
-    is_unit |= units == {_STORED_UNIT} and old.unit not in _WAY_UNITS
-    return is_unit and _thousandths(old.value) == _thousandths(new.value)
+def _are_same(old_amount: Amount, new_amount: Amount) -> bool:
+    if (old_amount.unit, new_amount.unit) == ("turns", "°"):
+        return _thousandths(old_amount.value * FULL_TURN) == _thousandths(new_amount.value)
+    units = {*new_amount.unit.split("/")} - {""}
+    is_unit = not old_amount.unit or units <= {*old_amount.unit.split("/")}
+    is_unit |= units == {_STORED_UNIT} and old_amount.unit not in _WAY_UNITS
+    return is_unit and _thousandths(old_amount.value) == _thousandths(new_amount.value)
 
 
 def _digit_runs(text: str) -> Iterator[tuple[float, list[float]]]:
@@ -951,16 +949,18 @@ def _lost_words(statement: _Statement, repaired: _Statement) -> Iterator[str]:
     """Give the words that are gone, and are not in a note."""
     noted_words = repaired.note_words - statement.note_words
     is_turned = _count_senses(statement) != _count_senses(repaired)
-    for word, count in statement.sure_words.items():
-        missing_count = count - repaired.sure_words[word]
+    for word, count in statement.sure_word_counts.items():
+        missing_count = count - repaired.sure_word_counts[word]
         replaced_count = max(
             (
-                repaired.sure_words[replacement] - statement.sure_words[replacement]
+                repaired.sure_word_counts[replacement] - statement.sure_word_counts[replacement]
                 for replacement in _COUNTED_AS.get(word, ())
             ),
             default=0,
         )
-        replaced_count = max(replaced_count, min(noted_words[word], statement.foreign_words[word]))
+        replaced_count = max(
+            replaced_count, min(noted_words[word], statement.foreign_word_counts[word])
+        )
         if missing_count > replaced_count and not (word == "NOT" and is_turned):
             yield statement.source_of_word.get(word, word)
 
@@ -970,7 +970,7 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
     lost_senses = _count_senses(statement) - (repaired.note_words - statement.note_words)
     new_senses = _count_senses(repaired)
     turner_counts = (
-        {word: each.sure_words[word] for word in _QUESTION_TURNERS}
+        {word: each.sure_word_counts[word] for word in _QUESTION_TURNERS}
         for each in (statement, repaired)
     )
     negations = (statement.negations, repaired.negations)
@@ -988,7 +988,7 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
 
 
 def _count_senses(statement: _Statement) -> Counter[str]:
-    senses: Counter[str] = Counter()
+    sense_counts: Counter[str] = Counter()
     open_brackets = [False]
     for left, sign, right in zip(
         statement.tokens, statement.tokens[1:], statement.tokens[2:], strict=False
@@ -1007,5 +1007,5 @@ def _count_senses(statement: _Statement) -> Counter[str]:
             and not open_brackets[-1]
             and left.text not in CALL_WORDS
         ):
-            senses[_COMPARISON_SENSES[sign.text]] += 1
-    return senses
+            sense_counts[_COMPARISON_SENSES[sign.text]] += 1
+    return sense_counts

@@ -59,8 +59,8 @@ def counter_diagnostics(source: Source) -> list[Diagnostic]:
             ].count(counter.name)
             is_used = words[counter.name] > uses_in_header + ends[counter.name]
             header = row[counter.start_index : counter.end_index]
-            is_of_c = any(token.text == ";" for token in header) and not row[counter.end_index :]
-            if is_used or is_of_c or any(lexicon_meaning(token.text, "each") for token in header):
+            is_c_loop = any(token.text == ";" for token in header) and not row[counter.end_index :]
+            if is_used or is_c_loop or any(lexicon_meaning(token.text, "each") for token in header):
                 span = Span(spans[counter.start_index].start, spans[counter.end_index - 1].end)
                 diagnostics.append(
                     _counter_diagnostic(

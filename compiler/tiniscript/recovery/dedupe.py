@@ -41,7 +41,7 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
     diagnostics = _merge_quotes([diagnostics[k] for k in sorted(quote_indexes)], source) + [
         diagnostic for k, diagnostic in enumerate(diagnostics) if k not in quote_indexes
     ]
-    groups: dict[object, list[Diagnostic]] = {}
+    diagnostics_by_key: dict[object, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
         code, values = diagnostic.code, diagnostic.values
         key: object = diagnostic.span
@@ -62,8 +62,10 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
                 values.get(gap_name, "").upper()
                 for gap_name in (values if gap_names is None else gap_names)
             )
-        groups.setdefault((code, key), []).append(diagnostic)
-    return codes.in_order([_merge_diagnostics(group, source) for group in groups.values()])
+        diagnostics_by_key.setdefault((code, key), []).append(diagnostic)
+    return codes.in_order(
+        [_merge_diagnostics(group, source) for group in diagnostics_by_key.values()]
+    )
 
 
 def _removes_quotes(diagnostic: Diagnostic, source: Source) -> bool:

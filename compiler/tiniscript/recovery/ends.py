@@ -41,12 +41,12 @@ def candidates_text(candidates: Sequence[str]) -> str:
     """Return places for a message, nothing for one alone: that is no guess."""
     if len(candidates) < 2:
         return ""
-    shown = (
+    shown_lines = (
         [*candidates[: _MOST_CANDIDATES - 1], "...", candidates[-1]]
         if len(candidates) > _MOST_CANDIDATES
         else candidates
     )
-    return ", ".join(shown)
+    return ", ".join(shown_lines)
 
 
 def added_end_index(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -> int | None:

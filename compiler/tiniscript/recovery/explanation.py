@@ -55,7 +55,7 @@ _CODES_SHOWN_WHOLE = frozenset((
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _ARM_CODES = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
-_WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
+_WORD, _WORD_AT_END = re.compile(r"\w+"), re.compile(r"\w+\Z")
 _SECOND_WORD = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
 _WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
@@ -227,7 +227,7 @@ class _Explainer:
         start, end = span
         if start < end:
             line_start = self.program.rfind("\n", 0, start) + 1
-            word_start = _WORD_BEFORE.search(self.program, line_start, start + 1)
+            word_start = _WORD_AT_END.search(self.program, line_start, start + 1)
             word_end = _WORD.match(self.program, end - 1)
             start -= len(word_start[0]) - 1 if word_start else 0
             end += len(word_end[0]) - 1 if word_end else 0
@@ -301,14 +301,21 @@ class _Explainer:
         new_tokens: Sequence[Lexeme],
     ) -> list[Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
-        steps: dict[int, list[Step]] = {}
+        steps_by_instruction: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
-            before, after = (instructions(tokens) for tokens in step[1:])
-            if len(before) != len(after) or step.code is codes.ASKED_AFTER:
+            instructions_before, instructions_after = (instructions(tokens) for tokens in step[1:])
+            if (
+                len(instructions_before) != len(instructions_after)
+                or step.code is codes.ASKED_AFTER
+            ):
                 return []
-            pairs = enumerate(zip(before, after, strict=True))
-            n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(before) - 1)
-            steps.setdefault(n, []).append(Step(step.code, before[n], after[n]))
+            pairs = enumerate(zip(instructions_before, instructions_after, strict=True))
+            n = next(
+                (n for n, (a, b) in pairs if texts(a) != texts(b)), len(instructions_before) - 1
+            )
+            steps_by_instruction.setdefault(n, []).append(
+                Step(step.code, instructions_before[n], instructions_after[n])
+            )
         old_instructions, new_instructions = instructions(old_tokens), instructions(new_tokens)
         notes = (split_note(line)[1] for line in (old_text, own_text))
         if (
@@ -332,8 +339,12 @@ class _Explainer:
                 edit = trimmed_edit(span.start, text, new_text)
                 if edit.span.start == span.end:
                     edit = Edit(span, new_text)  # an end that is missing comes behind all of it
-                changes.append(Change(span, edit, steps.get(n, []), instruction, new_instruction))
-                if not steps.get(n) and text.isascii():
+                changes.append(
+                    Change(
+                        span, edit, steps_by_instruction.get(n, []), instruction, new_instruction
+                    )
+                )
+                if not steps_by_instruction.get(n) and text.isascii():
                     return []
         has_all_texts = all(change.new_tokens for change in changes)
         is_separate_line = not self.candidate.is_whole and has_all_texts  # others are not read
@@ -564,7 +575,9 @@ def _is_closed(tokens: Sequence[Lexeme]) -> bool:
     return texts(tokens).count("(") == texts(tokens).count(")")
 
 
-def trimmed_edit(start: int, old: str, new: str) -> Edit:
+def trimmed_edit(start: int, old_text: str, new_text: str) -> Edit:
     """Return the edit of what differs."""
-    head, tail = common_lengths(old, new)
-    return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
+    head, tail = common_lengths(old_text, new_text)
+    return Edit(
+        Span(start + head, start + len(old_text) - tail), new_text[head : len(new_text) - tail]
+    )

@@ -32,9 +32,9 @@ def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
         return [], []
     tokens = scan(text).tokens
     names = {following.text for token, following in pairwise(tokens) if token.text == "DEF"}
-    calls: dict[str, list[Span]] = {}
+    call_spans_by_name: dict[str, list[Span]] = {}
     for name, k in _value_calls(tokens, names):
-        calls.setdefault(name, []).append(_call_span(tokens, k))
+        call_spans_by_name.setdefault(name, []).append(_call_span(tokens, k))
     diagnostics: list[Diagnostic] = []
     edits: list[Edit] = []
     diagnosed_names: set[str] = set()
@@ -43,15 +43,15 @@ def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
         if _RESULT_NAME not in names_in(text)
         else next(numbered_names(text, _RESULT_NAME))
     )
-    for name, word_token, value_span in _returns(tokens, {*calls}):
-        calls_of_name = calls.get(name, [])
+    for name, word_token, value_span in _returns(tokens, {*call_spans_by_name}):
+        calls_of_name = call_spans_by_name.get(name, [])
         values = {"word": name, "back": text[slice(*value_span)]}
         values |= {"call": text[slice(*calls_of_name[0])]} if calls_of_name else {}
         edits.append(Edit(Span(word_token.start, value_span.start), f"{result_name} = "))
         if name not in diagnosed_names:
             diagnostics.append(Diagnostic(codes.NO_VALUE, word_token.span, values))
         diagnosed_names.add(name)
-    for name, spans in calls.items():
+    for name, spans in call_spans_by_name.items():
         if name not in diagnosed_names:
             name_span = Span(spans[0].start, spans[0].start + len(name))
             values = {"word": name, "called": name, "call": text[slice(*spans[0])]}
@@ -130,8 +130,11 @@ def _returns(tokens: Sequence[Token], called_names: set[str]) -> Iterator[tuple[
 
 def _placeholder(text: str, span: Span) -> str:
     """Return a value that may stand for a call: a yes where that is a whole question."""
-    before, after = text[: span.start].rstrip(), text[span.end :].lstrip()
-    word = before.removesuffix("(").rstrip()[-6:].upper()
-    is_condition = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
-    is_joined = before.upper().endswith(_YES_NO_WORDS) or after[:3].upper() in ("AND", "OR ")
-    return "TRUE" if (is_condition and after.startswith(")")) or is_joined else "1"
+    text_before, text_after = text[: span.start].rstrip(), text[span.end :].lstrip()
+    word = text_before.removesuffix("(").rstrip()[-6:].upper()
+    is_condition = text_before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
+    is_joined = text_before.upper().endswith(_YES_NO_WORDS) or text_after[:3].upper() in (
+        "AND",
+        "OR ",
+    )
+    return "TRUE" if (is_condition and text_after.startswith(")")) or is_joined else "1"

@@ -18,9 +18,13 @@ def name_invisible_sign(diagnostic: Diagnostic, text: str) -> Diagnostic:
     pairs = pairs or [(text[slice(*diagnostic.span)], "")] * (
         diagnostic.code is codes.ODD_CHARACTER
     )
-    if not pairs or not all(old != new == _visible_text(old) for old, new in pairs):
+    if not pairs or not all(
+        old_text != new_text == _visible_text(old_text) for old_text, new_text in pairs
+    ):
         return diagnostic
-    sign = next(character for old, _ in pairs for character in old if _is_invisible(character))
+    sign = next(
+        character for old_text, _ in pairs for character in old_text if _is_invisible(character)
+    )
     return diagnostic._replace(
         code=codes.ODD_CHARACTER, values={"found": f"U+{ord(sign):04X}", "fix": ""}
     )

@@ -1,8 +1,9 @@
 """Keys and the stick of a remote control in a pupil's own words: `botón A`, `palanca izquierda`.
 
 Each leads to one of the readings that a robot has of them, and a key that there is not to all of
-these. Where an order is given to a key, `flecha arriba = F(1, 60)`, the key is asked. A side of the
-stick, `PAD LEFT`, is a number below or above 0, and may be meant as the arrow: both are shown.
+these. Where an instruction is given to a key, `flecha arriba = F(1, 60)`, the key is asked. A side
+of the stick, `PAD LEFT`, is a number below or above 0, and may be meant as the arrow: both are
+shown.
 """
 
 from __future__ import annotations
@@ -33,10 +34,13 @@ _INSTRUCTION_AND_BAR = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE_PATTERN = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
 _WORD_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
 _EQUAL_SIGNS = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
-_ORDER_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
+_INSTRUCTION_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _ASSIGNMENT = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
 _LINK_KINDS = ("the", "of", "to", "is", "filler", "small", "pressed")
-_TEXTS_BEFORE, _TEXTS_AFTER = ("(", "AND", "OR", "NOT"), (")", "AND", "OR")  # what is asked alone
+_TEXTS_LEFT_OF_KEY, _TEXTS_RIGHT_OF_KEY = (
+    ("(", "AND", "OR", "NOT"),
+    (")", "AND", "OR"),
+)  # what is asked alone
 
 
 class _Piece(NamedTuple):
@@ -78,7 +82,7 @@ def key_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
             diagnostics += _Instruction(
                 match[1], line_start + match.start(), names, own_names
             ).diagnostics(depth > 0)
-            words = [lexeme.text for lexeme in lexemes(match[1])]
+            words = [token.text for token in lexemes(match[1])]
             depth += sum(
                 (concept in BLOCK_ENDS) - (concept in WORD_OF_END)
                 for concept in map(names.meant, words)
@@ -121,8 +125,8 @@ class _Instruction:
 
     def diagnostics(self, is_in_block: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
-        if order := self._assigned_key():
-            yield self._order_diagnostic(*order, "IF" if is_in_block else "WHEN")
+        if instruction := self._assigned_key():
+            yield self._instruction_diagnostic(*instruction, "IF" if is_in_block else "WHEN")
             return
         asking_positions = (
             k for k, piece in enumerate(self.pieces) if self._concept_of(piece) in ASKING_WORDS
@@ -160,19 +164,19 @@ class _Instruction:
             repair = Repair((Edit(span, key.condition),), key.is_sure)
             yield Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
-    # -- an order that is given to a key ----------------------------------------------------------
+    # -- an instruction that is given to a key ----------------------------------------------------
 
     def _assigned_key(self) -> tuple[_Key, str] | None:
         key = (self._find_key(0) or self._find_stick(0)) if self.pieces else None
         if key is None or not key.condition:
             return None
-        match = _ORDER_OF_KEY.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        match = _INSTRUCTION_OF_KEY.fullmatch(self.text, self.pieces[key.end - 1].span.end)
         return (key, match[1].strip()) if match else None
 
-    def _order_diagnostic(self, key: _Key, order: str, head: str) -> Diagnostic:
+    def _instruction_diagnostic(self, key: _Key, instruction: str, head: str) -> Diagnostic:
         key_span = self._span(key)
         span = Span(key_span.start, self.start + len(self.text.rstrip()))
-        fix = f"{head}({key.condition});{order};{BLOCK_ENDS[head]}"
+        fix = f"{head}({key.condition});{instruction};{BLOCK_ENDS[head]}"
         found_text = self.text[key_span.start - self.start : key_span.end - self.start]
         values, repair = (
             {"found": found_text, "right": key.condition, "fix": fix},
@@ -180,7 +184,7 @@ class _Instruction:
         )
         if found_text.upper() != key.condition:
             return Diagnostic(codes.OTHER_LANGUAGE, key_span, values, span, repair)
-        values = {"word": re.split(r"\W", order)[0].upper(), "fix": fix}
+        values = {"word": re.split(r"\W", instruction)[0].upper(), "fix": fix}
         return Diagnostic(codes.NO_VALUE, span, values, span, repair)
 
     # -- what says a key --------------------------------------------------------------------------
@@ -295,7 +299,7 @@ class _Instruction:
         if not side:
             is_button = self._word_at(end) in ("A", "B") and self._word_at(end + 1) in (
                 "",
-                *_TEXTS_AFTER,
+                *_TEXTS_RIGHT_OF_KEY,
             )
             return (
                 _Key(k, end + 1, f"KEY_{self._word_at(end)}", is_sure=False) if is_button else None
@@ -323,7 +327,9 @@ class _Instruction:
         side = _side_of(self._word_at(k))
         end = self._skip_while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
         is_negated, end = self._as_yes_no(end)
-        stands_alone = self._word_at(k - 1) in _TEXTS_BEFORE and self._word_at(end) in _TEXTS_AFTER
+        stands_alone = (
+            self._word_at(k - 1) in _TEXTS_LEFT_OF_KEY and self._word_at(end) in _TEXTS_RIGHT_OF_KEY
+        )
         is_call = self._word_at(k - 1) == "(" and self._word_at(k - 2).isalpha()
         stands_alone = stands_alone and not (
             is_call and self._concept_of(self.pieces[k - 2]) not in ASKING_WORDS

@@ -1,7 +1,8 @@
 """Labels before instructions, which count them: `1)`, `a.`, `Step 2 -`, `Questão 3:`.
 
 A label stands where an instruction begins, in any language: a number or a letter with a sign, or
-any word that is no order with one of these. Numbers alone are labels where they count all lines.
+any word that is no instruction with one of these. Numbers alone are labels where they count all
+lines.
 """
 
 from __future__ import annotations
@@ -70,17 +71,19 @@ def _spans_in_lines(text: str) -> Iterator[Span]:
 
 def _is_label(label_match: re.Match[str], text: str) -> bool:
     word, sign = plain(label_match["word"] or ""), (label_match["sign"] or "").strip()
-    is_order = _is_order(plain(label_match["next"]), label_match["after"] or "", text)
+    is_instruction = _is_instruction(plain(label_match["next"]), label_match["after"] or "", text)
     if word:
-        return is_order and (_is_step(word) if not sign else _is_step(word) or _is_free(word, text))
+        return is_instruction and (
+            _is_step(word) if not sign else _is_step(word) or _is_free(word, text)
+        )
     if label_match["count"].isalpha():
         is_apart = bool(label_match["space"]) or sign == ")"
         is_name = sign != ")" and _is_name(label_match["count"], text)
-        return bool(sign) and is_apart and is_order and not is_name
-    return bool(sign) and (bool(label_match["space"]) or sign[-1] in ".)]º" or is_order)
+        return bool(sign) and is_apart and is_instruction and not is_name
+    return bool(sign) and (bool(label_match["space"]) or sign[-1] in ".)]º" or is_instruction)
 
 
-def _is_order(word: str, sign: str, text: str) -> bool:
+def _is_instruction(word: str, sign: str, text: str) -> bool:
     """Whether an instruction begins with a word and the sign after it."""
     known_words = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
     return bool(sign or known_words or lexicon_meaning(word, "set", "declare")) or _is_name(
@@ -96,8 +99,8 @@ def _is_step(word: str) -> bool:
 
 def _is_free(word: str, text: str) -> bool:
     """Whether a word is none of the language, and no name of the text."""
-    is_order = (meant_by(word) or "S") not in ("S", "STOP")  # PARTE is no PARE with a number
-    return not (word in WORDS or lexicon().get(word) or is_order or _is_name(word, text))
+    is_instruction = (meant_by(word) or "S") not in ("S", "STOP")  # PARTE is no PARE with a number
+    return not (word in WORDS or lexicon().get(word) or is_instruction or _is_name(word, text))
 
 
 def _is_name(word: str, text: str) -> bool:

@@ -126,7 +126,7 @@ def _filler_diagnostics(
 
 
 def _is_filler(token: Lexeme, names: Names) -> bool:
-    """Whether a token is a word that is no order, no name and no part of a sentence."""
+    """Whether a token is a word that is no instruction, no name and no part of a sentence."""
     word = token.text
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
         return False

@@ -52,7 +52,11 @@ _CALCULATION_SIGNS = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _MOST_PLAIN_DIGITS = 4
 _WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
-_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
+_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.belongs_to_blocks} | {
+    ";",
+    "UNTIL",
+    *BRACES,
+}
 
 
 class Step(NamedTuple):
@@ -120,10 +124,10 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
     items: list[Item] = []
     start = 0
     padded_texts = [";", *(text for _, text in tokens), BRACES[1], ";"]
-    for k, (previous, text, following) in enumerate(
+    for k, (previous_text, text, following_text) in enumerate(
         zip(padded_texts, padded_texts[1:], padded_texts[2:], strict=False)
     ):
-        is_separate = {previous, following} <= {";", "|", *BRACES}
+        is_separate = {previous_text, following_text} <= {";", "|", *BRACES}
         is_end = is_separate and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
@@ -147,11 +151,11 @@ def _joining_word_index(tokens: Sequence[tuple[str, str]]) -> int:
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
         is_in_brackets = is_def and (is_in_brackets or text == "(") and text != ")"
-        neighbours = {tokens[k - 1][0], tokens[k + 1][0]}
+        neighbour_kinds = {tokens[k - 1][0], tokens[k + 1][0]}
         if (
             is_in_brackets
             and kind == WORD
-            and neighbours == {WORD}
+            and neighbour_kinds == {WORD}
             and lexicon_meaning(text, "then")
         ):
             return k
@@ -361,12 +365,12 @@ class _Search:
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            neighbours = texts((*tokens_before[-1:], *tokens_after[:1]))
+            neighbour_texts = texts((*tokens_before[-1:], *tokens_after[:1]))
             for sign in rows.SIGNS_MEANT_BY.get(token.text, ""):
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 new_tokens = [*tokens_before, make_token(sign), *tokens_after]
                 yield reading.with_change(
-                    new_tokens, rows.CONFUSED_COST, code, sign not in neighbours
+                    new_tokens, rows.CONFUSED_COST, code, sign not in neighbour_texts
                 )
             is_needed = _CALCULATION_SIGNS & {
                 token.text,
@@ -385,11 +389,11 @@ class _Search:
 
 def _is_grouping_bracket(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
-    previous = tokens[k - 1].text if k else ""
+    previous_text = tokens[k - 1].text if k else ""
     texts_after = [token.text for token in tokens[k + 1 :]]
     return (
         tokens[k].text == "("
-        and previous in ("=", *SIGNS)
+        and previous_text in ("=", *SIGNS)
         and bool(_CALCULATION_SIGNS & {*texts_after})
     )
 

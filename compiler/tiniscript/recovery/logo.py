@@ -114,13 +114,13 @@ def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagn
     if not tokens:
         return None
     reader = _Reader(tokens, names)
-    orders, end = reader.orders(0, 0)
+    instructions, end = reader.instructions(0, 0)
     is_turtle = reader.is_bracketed or (reader.move_count > 1 and reader.is_turned)
-    if not orders or end != len(tokens) or not is_turtle:
+    if not instructions or end != len(tokens) or not is_turtle:
         return None
     whole_span = Span(tokens[0].span.start, tokens[-1].span.end)
     first_word = source[tokens[0].span]
-    fix = ";".join(orders)
+    fix = ";".join(instructions)
     right_word = re.split(r"\W", fix)[0]
     values = {"found": first_word, "right": right_word, "fix": fix}
     return Diagnostic(
@@ -133,7 +133,7 @@ def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagn
 
 
 class _Reader:
-    """Reads orders, each a word with its number; `is_turned`: by degrees, which are no seconds."""
+    """Reads instructions, each a word with its number; `is_turned`: by degrees, not by seconds."""
 
     def __init__(self, tokens: Sequence[_Token], names: Names) -> None:
         self.tokens = tokens
@@ -142,28 +142,32 @@ class _Reader:
         self.is_bracketed = self.is_turned = False
         self.move_count = 0
 
-    def orders(self, k: int, depth: int) -> tuple[list[str], int]:
-        """Return the orders from a token on, and where they end; nothing where one is none."""
-        orders: list[str] = []
+    def instructions(self, k: int, depth: int) -> tuple[list[str], int]:
+        """Return the instructions from a token on and where they end; nothing where one is none."""
+        instructions: list[str] = []
         while k < len(self.tokens) and self.tokens[k].text != "]":
             token, number_tokens = self.tokens[k], self.tokens[k + 1 : k + 2]
             if token.kind != "word" or not number_tokens or number_tokens[0].kind != "number":
                 return [], k
-            order = self._meaning_of(token.text)
-            if order == "LOOP" and depth < _MOST_NESTED_LOOPS and self._text_at(k + 2) == "[":
+            word = self._meaning_of(token.text)
+            if word == "LOOP" and depth < _MOST_NESTED_LOOPS and self._text_at(k + 2) == "[":
                 self.is_bracketed = True
-                inner_orders, end = self.orders(k + 3, depth + 1)
-                if not inner_orders or self._text_at(end) != "]":
+                inner_instructions, end = self.instructions(k + 3, depth + 1)
+                if not inner_instructions or self._text_at(end) != "]":
                     return [], k
-                orders += [f"LOOP({number_tokens[0].text})", *inner_orders, BLOCK_ENDS["LOOP"]]
+                instructions += [
+                    f"LOOP({number_tokens[0].text})",
+                    *inner_instructions,
+                    BLOCK_ENDS["LOOP"],
+                ]
                 k = end + 1
                 continue
-            move = self._move_text(order, number_tokens[0].text)
+            move = self._move_text(word, number_tokens[0].text)
             if not move:
                 return [], k
-            orders.append(move)
+            instructions.append(move)
             k += 2
-        return orders, k
+        return instructions, k
 
     def _text_at(self, k: int) -> str:
         return self.tokens[k].text if k < len(self.tokens) else ""
@@ -174,10 +178,10 @@ class _Reader:
         meanings = lexicon_meaning(word, "turtle")
         return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
 
-    def _move_text(self, word: str, number: str) -> str:
+    def _move_text(self, word: str, number_text: str) -> str:
         unit = UNIT_OF.get(word, "")
-        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
+        if not unit or float(number_text) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
         self.move_count += 1
         self.is_turned |= unit == "DEG"
-        return f"{word}({number} {unit}, {self.power})"
+        return f"{word}({number_text} {unit}, {self.power})"

@@ -1,6 +1,6 @@
 """Meanings: what each word and sign of a wrong line may stand for.
 
-Knows the lexicons, spelling, and the names that a program has. Knows no order of words.
+Knows the lexicons, spelling, and the names that a program has. Knows no instruction of words.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ class _LineNames(NamedTuple):
     spaced_names: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     names_with_values: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
-    block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    block_starts: dict[str, str]  # instructions that begin blocks, since their ends are there: PARA
     lone_words: set[str]  # words that are an instruction alone
     compared_words: set[str]  # words beside a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
@@ -346,7 +346,11 @@ def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
     texts_around = (";", *texts(line), ";")
     triples = zip(texts_around, texts_around[1:], texts_around[2:], strict=False)
-    return {word for previous, word, following in triples if previous in ";|" and following == ";"}
+    return {
+        word
+        for previous_text, word, following_text in triples
+        if previous_text in ";|" and following_text == ";"
+    }
 
 
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
@@ -370,7 +374,7 @@ def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
 def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
     """Return a name of several words that ends before `end_text`: `mi vel = 5`, `DEF paso 1`."""
     name_words: list[str] = []
-    is_glued = (
+    is_number_glued_to_word = (
         end_text == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
     )
     for token in tokens[: _MOST_NAME_WORDS + 1]:
@@ -382,7 +386,7 @@ def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
         ):
             break
         if not name_words and (
-            lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)
+            lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_number_glued_to_word)
         ):
             break
         is_reserved = (
@@ -404,7 +408,7 @@ def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
 class Names:
     """The names of one program, by a look at its tokens; `label` is what rewrites match."""
 
-    def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
+    def __init__(self, token_lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
         readings = [reading for reading in kit.readings if reading.name]
         self.sensors = frozenset(reading.name for reading in readings)
         self.sensor_names = tuple(sorted(sensor.name for sensor in kit.sensors))
@@ -412,7 +416,7 @@ class Names:
             reading.name: reading for reading in readings if not reading.is_yes_no
         }
         self.actuators = {actuator.name: actuator for actuator in kit.actuators}
-        names_of_lines = [_names_of(tuple(line)) for line in lines]
+        names_of_lines = [_names_of(tuple(line)) for line in token_lines]
         self.in_brackets = {name for line in names_of_lines for name in line.in_brackets}
         self.spaced_names = {row for line in names_of_lines for row in line.spaced_names}
         self.parameters = {
@@ -452,9 +456,11 @@ class Names:
         )
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         defs_without_values = {name for name, count in counts.items() if not count}
-        calls = {*counts.items(), *((name, 1) for name in self.actuators)}
+        names_and_value_counts = {*counts.items(), *((name, 1) for name in self.actuators)}
         values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
-        self.known_names = KnownNames(frozenset(values), instructions, frozenset(calls))
+        self.known_names = KnownNames(
+            frozenset(values), instructions, frozenset(names_and_value_counts)
+        )
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared_names = {
             name for line in names_of_lines for name in line.compared_words if name not in WORDS
@@ -556,11 +562,11 @@ class Names:
         )  # `5S`, `5 CM`
         key = (token.kind, token.text, bool(is_unit_position))
         if key not in self._labels:
-            classes = [*self._classes(token), *(["@unit"] if is_unit_position else [])]
+            classes = [*self._word_classes(token), *(["@unit"] if is_unit_position else [])]
             self._labels[key] = f"\x01|{'|'.join(dict.fromkeys(classes))}|\x02"
         return self._labels[key]
 
-    def _classes(self, token: Lexeme) -> list[str]:
+    def _word_classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
             fitting_classes = (name for name, check in _CHECK_OF_UNIT.items() if check(float(text)))
@@ -623,7 +629,7 @@ class Names:
 
 
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
-    """Return what a line says of orders that begin blocks, and how many headers lack an end."""
+    """Return what a line says of words that begin blocks, and how many headers lack an end."""
     block_of_word: dict[str, str] = {}
     counted_starts: list[str] = []
     open_headers = 0

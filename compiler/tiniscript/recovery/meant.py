@@ -78,8 +78,8 @@ def meant_diagnostics(
         ]
     other_explanations = [
         explanation
-        for other in recovery.other_candidates
-        for explanation in explain_candidate(source_text, other)
+        for other_candidate in recovery.other_candidates
+        for explanation in explain_candidate(source_text, other_candidate)
     ]
     return [
         _with_rival(_with_carried_unit(diagnostic, source.text), explanation, other_explanations)
@@ -122,7 +122,11 @@ def _with_rival(
     diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    other_fixes = (other.fix for other in other_explanations if other.place == explanation.place)
+    other_fixes = (
+        other_explanation.fix
+        for other_explanation in other_explanations
+        if other_explanation.place == explanation.place
+    )
     rival = next((fix for fix in other_fixes if fix and fix != explanation.fix), "")
     if not rival:
         return diagnostic
@@ -151,11 +155,11 @@ def _diagnostic(
     explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    has_certain_count = (
+    is_repetition_sure = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
     )  # how often
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
-    repair = Repair(tuple(explanation.edits), has_certain_count and is_sure)
+    repair = Repair(tuple(explanation.edits), is_repetition_sure and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
         explanation.block_text = ""  # where it ends is a guess
     code, values = _code_and_values(explanation)

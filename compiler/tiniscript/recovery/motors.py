@@ -103,9 +103,13 @@ def _are_together(text: str, first: _Switch, second: _Switch) -> bool:
     return not text[first.span.end : second.span.start].strip(_SEPARATORS)
 
 
-def _seconds_text(number: str) -> str:
+def _seconds_text(milliseconds_text: str) -> str:
     """Return how long a wait lasts: 500 are milliseconds."""
-    return number_text(float(number) / 1000) if float(number) >= _LEAST_WAIT_MS else number
+    return (
+        number_text(float(milliseconds_text) / 1000)
+        if float(milliseconds_text) >= _LEAST_WAIT_MS
+        else milliseconds_text
+    )
 
 
 def _switches(text: str) -> Iterator[_Switch]:
@@ -126,10 +130,10 @@ def _switches(text: str) -> Iterator[_Switch]:
 
 def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
     """Return what is told of motors that are set one by one, and how the rest is read."""
-    text, motor_orders = source.text, [*_motors(source.text)]
+    text, motor_instructions = source.text, [*_motors(source.text)]
     findings: list[tuple[Diagnostic, Edit]] = []
     spans_used: set[Span] = set()
-    for motor, next_motor in zip_longest(motor_orders, motor_orders[1:]):
+    for motor, next_motor in zip_longest(motor_instructions, motor_instructions[1:]):
         if motor.span in spans_used:
             continue
         is_pair = next_motor and motor.side != next_motor.side

@@ -1,7 +1,7 @@
 """Notes of other languages: `# turn`, `-- turn`, `<!-- turn -->`, `REM turn`, `/* turn */`.
 
 What such a sign begins is a note up to the end of its line, and nothing in it is read. It stands
-where an instruction begins or ends. A note with an order in it, `# F(2, 80)`, may be one that
+where an instruction begins or ends. A note with an instruction in it, `# F(2, 80)`, may be one that
 counts: rows read it, and conservation says what is lost.
 """
 
@@ -71,14 +71,17 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
 
 
 def _is_note(body: str, match: re.Match[str]) -> bool:
-    before, after = body[: match.start()], body[match.end() :]
-    is_inside = before.count("(") > before.count(")") or _OPEN_VALUE.search(before) is not None
-    if is_inside or (match["sign"] == "#" and _DEFINE.match(after)):
+    text_before, text_after = body[: match.start()], body[match.end() :]
+    is_inside = (
+        text_before.count("(") > text_before.count(")")
+        or _OPEN_VALUE.search(text_before) is not None
+    )
+    if is_inside or (match["sign"] == "#" and _DEFINE.match(text_after)):
         return False
-    return not any(_is_order(word) for word in _CALL.findall(after))
+    return not any(_is_instruction(word) for word in _CALL.findall(text_after))
 
 
-def _is_order(word: str) -> bool:
+def _is_instruction(word: str) -> bool:
     """Whether a word before a bracket is one of the language, a block's only as it is written."""
     meant_word = WORDS.get(plain(word)) or WORDS.get(lexicon_concept(plain(word)) or "")
     return word in BLOCK_ENDS or (meant_word is not None and meant_word.is_call)

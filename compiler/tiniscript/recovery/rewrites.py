@@ -134,8 +134,8 @@ def _anchor_edges(pattern: str) -> str:
 
 def _example_texts(example: str) -> tuple[str, str]:
     """Return the program of an example, and what becomes of it."""
-    wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
-    return wrong.strip(" "), right
+    wrong_text, _, right_text = example.replace("⏎", "\n").rpartition(" => ")
+    return wrong_text.strip(" "), right_text
 
 
 class Pattern(NamedTuple):
@@ -222,16 +222,16 @@ def index_rows(patterns: Mapping[int, Pattern]) -> RowIndex:
     count_of_label = Counter(
         label for pattern in patterns.values() for label in chain(*pattern.needed_labels)
     )
-    index: dict[str, list[int]] = {}
+    rows_by_label: dict[str, list[int]] = {}
     for k, pattern in patterns.items():
-        rarest = min(
+        rarest_labels = min(
             pattern.needed_labels,
             key=lambda labels: sum(count_of_label[label] for label in labels),
             default=("",),
         )
-        for label in rarest:
-            index.setdefault(label, []).append(k)
-    return index
+        for label in rarest_labels:
+            rows_by_label.setdefault(label, []).append(k)
+    return rows_by_label
 
 
 class Encoded:
@@ -308,7 +308,7 @@ class Encoded:
         if part[0] == "$" and len(part) == 2:
             return captured(part[1])
         if part[0] == "&" and len(part) == 2:
-            return [self.translate(lexeme) for lexeme in captured(part[1])]
+            return [self.translate(token) for token in captured(part[1])]
         if part[0] != "@":
             return [make_token(part.strip("'"))]
         function, *names = part[1:].split(":")
@@ -338,8 +338,8 @@ _Replacement = list[Lexeme] | None
 
 def negate(condition: Sequence[Lexeme]) -> list[Lexeme]:
     """Return the condition that is TRUE where `condition` is not."""
-    signs = [k for k, lexeme in enumerate(condition) if lexeme.text in COMPARISONS]
-    if len(signs) == 1 and not any(lexeme.text in ("AND", "OR", "NOT") for lexeme in condition):
+    signs = [k for k, token in enumerate(condition) if token.text in COMPARISONS]
+    if len(signs) == 1 and not any(token.text in ("AND", "OR", "NOT") for token in condition):
         k = signs[0]
         return [*condition[:k], make_token(OPPOSITES[condition[k].text]), *condition[k + 1 :]]
     return [make_token("NOT"), make_token("("), *condition, make_token(")")]
@@ -354,39 +354,43 @@ def _end_of(match: _Match) -> _Replacement:
 
 def _decimal(match: _Match) -> _Replacement:
     """`1,5` is 1.5 where nobody takes it for two values."""
-    (whole_part,), (comma,), (decimals,) = match.captures
+    (whole_token,), (comma_token,), (decimals_token,) = match.captures
     text_before = match.line.tokens[match.start - 1].text if match.start else ""
-    longest = 3 if whole_part.text == "0" else 2 if text_before == "=" else 1
-    is_value_list = decimals.text == "0" or (len(whole_part.text) > 1 and decimals.text != "5")
-    has_space = bool(comma.space or decimals.space)
+    most_decimals = 3 if whole_token.text == "0" else 2 if text_before == "=" else 1
+    is_value_list = decimals_token.text == "0" or (
+        len(whole_token.text) > 1 and decimals_token.text != "5"
+    )
+    has_space = bool(comma_token.space or decimals_token.space)
     if (
-        "." in whole_part.text + decimals.text
+        "." in whole_token.text + decimals_token.text
         or is_value_list
-        or len(decimals.text) > longest
+        or len(decimals_token.text) > most_decimals
         or has_space
     ):
         return None
-    text = f"{whole_part.text}.{decimals.text}"
-    return [whole_part._replace(text=text, source=text)]
+    text = f"{whole_token.text}.{decimals_token.text}"
+    return [whole_token._replace(text=text, source=text)]
 
 
 def _zero_after(match: _Match) -> _Replacement:
     """`8 0` is 80."""
-    (number,), (zero,) = match.captures
-    is_one_number = zero.space == " " and "." not in number.text
-    return [make_token(number.text + "0")] if is_one_number else None
+    (number_token,), (zero_token,) = match.captures
+    is_one_number = zero_token.space == " " and "." not in number_token.text
+    return [make_token(number_token.text + "0")] if is_one_number else None
 
 
 def _seconds_of_minutes(match: _Match) -> _Replacement:
     """`1:30` is 90 seconds."""
-    (minutes,), (seconds,) = match.captures
-    seconds_text = seconds.text
+    (minutes_token,), (seconds_token,) = match.captures
+    seconds_text = seconds_token.text
     is_time = (
-        "." not in minutes.text + seconds_text and len(seconds_text) == 2 and int(seconds_text) < 60
+        "." not in minutes_token.text + seconds_text
+        and len(seconds_text) == 2
+        and int(seconds_text) < 60
     )
-    if not is_time or minutes.text == "0":
+    if not is_time or minutes_token.text == "0":
         return None
-    return [make_token(str(int(minutes.text) * 60 + int(seconds_text)))]
+    return [make_token(str(int(minutes_token.text) * 60 + int(seconds_text)))]
 
 
 def _times_number(match: _Match) -> _Replacement:
@@ -397,8 +401,8 @@ def _times_number(match: _Match) -> _Replacement:
 
 def _equal_number(match: _Match) -> _Replacement:
     """The second of two numbers, where they are the same."""
-    (first,), (second,) = match.captures
-    return [second] if first.text == second.text else None
+    (first_token,), (second_token,) = match.captures
+    return [second_token] if first_token.text == second_token.text else None
 
 
 def _label(match: _Match) -> _Replacement:
@@ -408,8 +412,8 @@ def _label(match: _Match) -> _Replacement:
 
 def _limit(is_high: bool, match: _Match) -> _Replacement:
     """The end of what an actuator takes."""
-    (device,) = match.captures[0]
-    actuator = match.line.names.actuators[match.line.translate(device).text]
+    (device_token,) = match.captures[0]
+    actuator = match.line.names.actuators[match.line.translate(device_token).text]
     limit = actuator.high if is_high else actuator.low
     return None if actuator.is_yes_no else [make_token(f"{limit / 1000:g}")]
 
@@ -422,12 +426,12 @@ def _seconds(match: _Match) -> _Replacement:
 
 def _converted_number(match: _Match) -> _Replacement:
     """A number with its unit, in the unit that values have: `500 ms` is 0.5, `1 m` is 100."""
-    (number,), (unit,) = match.captures
-    meaning = lexicon_meaning(unit.text, "unit") or ("", "1000")
+    (number_token,), (unit_token,) = match.captures
+    meaning = lexicon_meaning(unit_token.text, "unit") or ("", "1000")
     return [
-        number
+        number_token
         if meaning[1] == "1000"
-        else make_token(number_text(float(number.text) * int(meaning[1]) / 1000))
+        else make_token(number_text(float(number_token.text) * int(meaning[1]) / 1000))
     ]
 
 
@@ -501,6 +505,8 @@ def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str
     name = "_".join((tokens[k].text, *signs[side_index : side_index + 1]))
     sensor = name if name in names.sensors else names.meant(name)
     count = 2 if not side_index else 4 if signs[0] in "([" else 3
-    is_call = not side_index and signs[1:2] == ("(",)  # an order after it: `IF LIGHT L(1, 60)`
+    is_call = not side_index and signs[1:2] == (
+        "(",
+    )  # an instruction after it: `IF LIGHT L(1, 60)`
     is_complete = is_closed and signs[side_index:] and not is_call
     return (sensor, count) if is_complete and sensor in names.sensors else None

@@ -269,7 +269,7 @@ class Recovery:
     def read_parts(self, tokens: list[Lexeme], names: Names) -> Reading:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
-        ends = [k for k, lexeme in enumerate([*tokens, make_token(";")]) if lexeme.text == ";"]
+        ends = [k for k, token in enumerate([*tokens, make_token(";")]) if token.text == ";"]
         ends = [k for k in ends if k == len(tokens) or not _open_brackets(tokens[:k])]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, instruction, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
@@ -277,28 +277,30 @@ class Recovery:
             for reading in readings if readings and readings[0].is_sure else ():
                 tokens = [*head, *reading.tokens, *tail]
                 steps += [
-                    Step(code, [*head, *before, *tail], [*head, *after, *tail])
-                    for code, before, after in reading.steps
+                    Step(code, [*head, *tokens_before, *tail], [*head, *tokens_after, *tail])
+                    for code, tokens_before, tokens_after in reading.steps
                 ]
         return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD_LINE
 
     @cached_property
     def chosen_candidate(self) -> Candidate | None:
         """Return the first sure program without mistakes; else an unsure one; else a part."""
-        best: Candidate | None = None
+        best_candidate: Candidate | None = None
         for readings, has_blocks in self.choices():
-            if best is not None and best.is_applied and best.is_whole:
+            if best_candidate is not None and best_candidate.is_applied and best_candidate.is_whole:
                 break
             if (
-                best is not None
+                best_candidate is not None
                 and has_blocks
                 and all(reading.items is not None for reading in readings)
             ):
                 continue
             candidate = self.candidate(readings, has_blocks)
-            if candidate and (best is None or _rank_of(candidate) > _rank_of(best)):
-                best = candidate
-        return best
+            if candidate and (
+                best_candidate is None or _rank_of(candidate) > _rank_of(best_candidate)
+            ):
+                best_candidate = candidate
+        return best_candidate
 
     @cached_property
     def other_candidates(self) -> Sequence[Candidate]:
@@ -397,7 +399,7 @@ class Recovery:
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
             if reading is not _UNREAD_LINE:
-                edits, tails = blocks.edits.get(k, []), blocks.ends_on_line.get(k, [])
+                edits, tails = blocks.edits_by_line.get(k, []), blocks.ends_on_line.get(k, [])
                 text = _rewritten_line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.ends_below.get(k, [])))
             steps, is_sure = (*line.steps, *reading.steps), line.is_sure and reading.is_sure
@@ -411,8 +413,8 @@ def _may_be_mistyped_bracket(old_tokens: Sequence[Lexeme], new_tokens: Sequence[
     return old_texts.count("(") > old_texts.count(")") and any(
         sign.text == ")"
         and sign.source is None
-        and re.fullmatch(f".+{rows.CLOSE_KEY}", previous.text)
-        for previous, sign in pairwise(new_tokens)
+        and re.fullmatch(f".+{rows.CLOSE_KEY}", previous_sign.text)
+        for previous_sign, sign in pairwise(new_tokens)
     )
 
 
@@ -425,7 +427,7 @@ def _open_brackets(tokens: Sequence[Lexeme]) -> int:
 
 
 def _count_ends(text: str) -> int:
-    return sum(lexeme.text in WORD_OF_END for lexeme in lexemes(text))
+    return sum(token.text in WORD_OF_END for token in lexemes(text))
 
 
 def _rank_of(candidate: Candidate) -> tuple[bool, bool]:

@@ -12,6 +12,12 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
+from tiniscript.recovery.instructions import (
+    block,
+    instructions_text,
+    samples_text,
+    spoken_instructions,
+)
 from tiniscript.recovery.meanings import (
     CALL_WORDS,
     Lexeme,
@@ -21,7 +27,6 @@ from tiniscript.recovery.meanings import (
     plain,
     texts,
 )
-from tiniscript.recovery.orders import block, orders, orders_text, samples_text
 from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -129,7 +134,7 @@ def _frame_repair(source: Source, head: re.Match[str], close_offset: int) -> Dia
 
 
 def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
-    """Return what is told of a first line that says how it starts and then orders, all in words.
+    """Return what is told of a first line that says how it starts, then instructions, in words.
 
     `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar. `start and go`
     is SI, too, and `when the button is pressed` is SB.
@@ -152,11 +157,11 @@ def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
         ).strip()
         values = {"button": "SB|"} if head == "SB" else {"begun": start_text}
         words = words[count:]
-    orders_said = orders(words, names) if head else []
-    if not orders_said or (head == "SB" and orders_said[0].word in ("S", "STOP")):
+    instructions_said = spoken_instructions(words, names) if head else []
+    if not instructions_said or (head == "SB" and instructions_said[0].word in ("S", "STOP")):
         return None
-    fix = f"{head}|{orders_text(orders_said)}"
-    sample = samples_text(orders_said)
+    fix = f"{head}|{instructions_text(instructions_said)}"
+    sample = samples_text(instructions_said)
     values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
     line_span = Span(line_match.start(), line_match.start() + len(body))
     start = line_span.start + body.index(start_text)
@@ -240,8 +245,8 @@ def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
     setup_text = "".join(source[setup_span].split()).upper()
     edits[0] = edits[0]._replace(text=setup_text)
     edits = [edit for edit in edits if edit.text or edit.span.start < edit.span.end]
-    rest = split_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
-    fix = setup_text + ";".join((*assignments, rest))
+    text_behind = split_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
+    fix = setup_text + ";".join((*assignments, text_behind))
     repair = Repair((*edits, Edit(setup_span, "")), True)
     return [
         Diagnostic(codes.SETUP_TWICE, setup_span, {"begun": fix, "found": setup_text}, None, repair)

@@ -80,12 +80,12 @@ def _shares_of(body: str, line_start: int, names: Names) -> Iterator[tuple[Diagn
 
 def _percent_token_count(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
     """Return how many tokens say percent, 0 where `%` stands between two values, as in `7 % 2`."""
-    text, after = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
-    if lexicon_meaning(text, "by") and lexicon_meaning(after, "number") == ("100",):
+    text, next_text = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
+    if lexicon_meaning(text, "by") and lexicon_meaning(next_text, "number") == ("100",):
         return 2
     if text != "%":
         return int(lexicon_meaning(text, "unit")[:1] == ("%",))
-    is_value = after[:1].isdigit() or after in ("(", "-") or names.is_name(after)
+    is_value = next_text[:1].isdigit() or next_text in ("(", "-") or names.is_name(next_text)
     return int(not is_value)
 
 

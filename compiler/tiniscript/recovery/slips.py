@@ -50,7 +50,7 @@ _CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("found", "right"): (
         codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE,
     ),
-    ("right", "fix"): (codes.QUOTE, codes.SEVERAL_ORDERS),
+    ("right", "fix"): (codes.QUOTE, codes.SEVERAL_INSTRUCTIONS),
     ("before", "fix"): (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_CLOSE),
     ("usage", "fix"): (codes.MISSING_COMMA,),
     ("word", "fix"): (codes.NO_VALUE, codes.NAMED_ARGUMENT, codes.GROUPED),
@@ -106,10 +106,10 @@ def message_values(slip: Slip, code: Code) -> dict[str, str]:
 
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
-    is_of_step = step is not None and code is not codes.OTHER_NOTE
+    has_own_step = step is not None and code is not codes.OTHER_NOTE
     old_tokens, new_tokens = (
         (step.old_tokens, step.new_tokens)
-        if step and is_of_step
+        if step and has_own_step
         else (change.old_tokens, change.new_tokens)
     )
     if "WHEN" in texts(change.new_tokens):  # what the steps took for an IF
@@ -126,14 +126,14 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     head, tail = common_lengths([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
     old_part, new_part = (
         [
-            lexeme
+            token
             for instruction in instructions_of_line[head : len(instructions_of_line) - tail]
-            for lexeme in instruction
+            for token in instruction
         ]
         for instructions_of_line in (old_lexemes, new_lexemes)
     )
     start, found_tokens, right_tokens = first_difference(old_tokens, new_tokens)
-    has_end = bool(head) and any(lexeme.text in WORD_OF_END for lexeme in new_part)
+    has_end = bool(head) and any(token.text in WORD_OF_END for token in new_part)
     shown_instructions = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
     first_length = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
     slip = Slip(
@@ -198,7 +198,7 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     if other_steps and other_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
         return other_steps[0].code, other_steps[0]
     lost_words = (
-        lexeme.text for lexeme in old_tokens if lexeme.kind is WORD and lexeme.text not in new_texts
+        token.text for token in old_tokens if token.kind is WORD and token.text not in new_texts
     )
     foreign_word = next(
         (word for word in lost_words if meant_by(word) in new_texts - old_texts), ""
@@ -228,10 +228,10 @@ def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -
     """Return the code of what no rewrite made: a brace, an end, a letter with an accent."""
     if {*texts(old_tokens)} & {*BRACES}:
         return codes.BRACES
-    source = "".join(lexeme.source or "" for lexeme in old_tokens)
+    source = "".join(token.source or "" for token in old_tokens)
     if not source.isascii():
         has_word = any(
-            lexeme.kind is WORD and not (lexeme.source or "").isascii() for lexeme in old_tokens
+            token.kind is WORD and not (token.source or "").isascii() for token in old_tokens
         )
         return codes.BAD_NAME if has_word else codes.OTHER_SIGN
     _, found_tokens, right_tokens = first_difference(old_tokens, new_tokens)
@@ -240,7 +240,7 @@ def _code_of_words(old_tokens: Sequence[Lexeme], new_tokens: Sequence[Lexeme]) -
         *texts(right_tokens),
     } <= {*WORD_OF_END}:
         return codes.WRONG_END
-    ends = [lexeme.text for lexeme in old_tokens if lexicon_meaning(lexeme.text, "end")]
+    ends = [token.text for token in old_tokens if lexicon_meaning(token.text, "end")]
     if ends and ends[-1] not in texts(new_tokens):
         is_end = bool({*texts(new_tokens)} & {*BLOCK_ENDS.values()})
         return codes.END_ALONE if is_end else codes.EXTRA_WORD
@@ -271,15 +271,15 @@ def _foreign_words(slip: Slip) -> Slip:
     )
     is_assignment = end < len(found_tokens) and found_tokens[end].text == "="
     found_tokens = found_tokens[: end - is_assignment] or found_tokens
-    if any(lexeme.kind is NUMBER for lexeme in found_tokens):  # PARA of `PARA I DE 1 A 4`
+    if any(token.kind is NUMBER for token in found_tokens):  # PARA of `PARA I DE 1 A 4`
         found_tokens = [*takewhile(_is_counting, found_tokens)] or found_tokens
     if (
         right_tokens
         and found_tokens
-        and all(lexicon_meaning(lexeme.text, "filler") for lexeme in found_tokens)
+        and all(lexicon_meaning(token.text, "filler") for token in found_tokens)
     ):
         meant_lexemes = [
-            lexeme for lexeme in old_tokens if meant_by(lexeme.text) == right_tokens[0].text
+            token for token in old_tokens if meant_by(token.text) == right_tokens[0].text
         ]
         found_tokens = meant_lexemes[:1] or found_tokens  # `oi robô, anda`
     return slip._replace(found_tokens=found_tokens, right_tokens=right_tokens)
@@ -312,14 +312,14 @@ def _number_with_unit(slip: Slip) -> Slip:
 
 def _block_header(slip: Slip) -> Slip:
     headers = [
-        lexeme for lexeme in (*slip.step_tokens, *slip.step_result) if lexeme.text in BLOCK_ENDS
+        token for token in (*slip.step_tokens, *slip.step_result) if token.text in BLOCK_ENDS
     ]
     return slip._replace(found_tokens=headers[:1] or slip.found_tokens)
 
 
 def _sign_alone(slip: Slip) -> Slip:
     """The sign of `DISTÂNCIA := 5`, without its name."""
-    signs = [lexeme for lexeme in slip.found_tokens if lexeme.kind is not WORD]
+    signs = [token for token in slip.found_tokens if token.kind is not WORD]
     return slip._replace(found_tokens=signs or slip.found_tokens)
 
 
@@ -474,14 +474,14 @@ def _grouping_header(slip: Slip) -> str:
     if slip.start and slip.step_tokens[slip.start - 1].text == ";":
         return ""
     return next(
-        (lexeme.text for lexeme in slip.step_result if lexeme.text in ("LOOP", "WHILE", "IF")), ""
+        (token.text for token in slip.step_result if token.text in ("LOOP", "WHILE", "IF")), ""
     )
 
 
 def _accented_word(slip: Slip) -> str:
     """The word of the language that has an accent, nothing for a name."""
     return next(
-        (lexeme.text for lexeme in slip.step_tokens[slip.start :][:1] if lexeme.text in WORDS), ""
+        (token.text for token in slip.step_tokens[slip.start :][:1] if token.text in WORDS), ""
     )
 
 
@@ -528,7 +528,7 @@ def _letter(slip: Slip) -> str:
 def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
     number_count, needed_count = (
-        sum(lexeme.kind is NUMBER for lexeme in instructions_tokens)
+        sum(token.kind is NUMBER for token in instructions_tokens)
         for instructions_tokens in (slip.old_instructions, slip.new_instructions)
     )
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
@@ -545,12 +545,14 @@ _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
 # -- tokens -------------------------------------------------------------------------------------
 
 
-def common_lengths(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+def common_lengths(old_items: Sequence[object], new_items: Sequence[object]) -> tuple[int, int]:
     """Return how much two texts, or two lines, have alike at their beginning and at their end."""
-    most = min(len(old), len(new))
-    head = next((k for k in range(most) if old[k] != new[k]), most)
-    most -= head
-    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
+    most_items = min(len(old_items), len(new_items))
+    head = next((k for k in range(most_items) if old_items[k] != new_items[k]), most_items)
+    most_items -= head
+    return head, next(
+        (k for k in range(most_items) if old_items[-1 - k] != new_items[-1 - k]), most_items
+    )
 
 
 def first_difference(
@@ -558,7 +560,7 @@ def first_difference(
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
     """Return where two lines differ first, and what stands there in each of them."""
     old_texts = [
-        lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in old_tokens
+        token.text if (token.source or "").isascii() else token.source for token in old_tokens
     ]
     matcher = SequenceMatcher(None, old_texts, texts(new_tokens), autojunk=False)
     for kind, old_start, old_end, new_start, new_end in matcher.get_opcodes():

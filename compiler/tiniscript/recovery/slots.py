@@ -68,18 +68,18 @@ class _Value(NamedTuple):
 
 
 def fill_call(
-    words: Sequence[Lexeme], names: Names, has_until: bool, is_order: bool = False
+    words: Sequence[Lexeme], names: Names, has_until: bool, is_instruction: bool = False
 ) -> FilledCall | None:
     """Return the call that some words say, or None where one of them has no place in it.
 
-    `is_order`: it may have no value of its own.
+    `is_instruction`: it may have no value of its own.
     """
     reader = _Reader(words, names)
     if not reader.read() or reader.command is None or reader.next_unit:
         return None
     if reader.is_turn and reader.command not in ("L", "R"):
         return None
-    return reader.make_call(has_until, is_order)
+    return reader.make_call(has_until, is_instruction)
 
 
 class _Reader:
@@ -192,7 +192,7 @@ class _Reader:
             unit, thousandths = unit_meaning[0], float(unit_meaning[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
-                return None  # `R 1 50 S`: an order of its own
+                return None  # `R 1 50 S`: an instruction of its own
             is_comma = self.words[k].text == rows.COMMA_KEY and self._is_number(k + 1)
             self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
             if self._is_half(k):
@@ -217,19 +217,19 @@ class _Reader:
         return is_and and lexicon_meaning(self.text_at(k + 1), "power") == ("50",)
 
     def _read_sign(self, k: int) -> int | None:
-        sign, previous = self.text_at(k), self.text_at(k - 1)
+        sign, previous_text = self.text_at(k), self.text_at(k - 1)
         is_minus = sign == "-" and self._is_number(k + 1)
         if is_minus and self.command in ("M", "SHOW"):
-            self.is_sure = self.is_sure and not (self.values and previous != ",")
+            self.is_sure = self.is_sure and not (self.values and previous_text != ",")
             self._add_value("-" + number_text(float(self.text_at(k + 1))), self.next_unit)
             return k + 2
-        if is_minus and (previous in ("(", ",") or self._is_glued(k)):
+        if is_minus and (previous_text in ("(", ",") or self._is_glued(k)):
             is_minus_of_move = self.command in MOVES and not self.is_reversed and not self.values
             self.is_sure, self.is_reversed = False, True
             return k + 1 if is_minus_of_move else None  # nobody drops a sign
         if sign not in _IGNORED_SIGNS or (sign == "=" and not self.next_unit):
             return None
-        if sign == "," and self.next_unit and previous != ",":
+        if sign == "," and self.next_unit and previous_text != ",":
             return None  # a value that is only named
         self.cost += 0.0 if sign in "(),%" else 0.2
         is_odd = sign in ("-", ".") or (sign == "%" and not self._is_number(k - 1))
@@ -258,7 +258,7 @@ class _Reader:
             self.next_unit = _UNIT_OF_LETTER[word]
         elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
-                return None  # another order
+                return None  # another instruction
             self.is_turn = True
             self.command = None if self.command == "F" else self.command
         elif self._names_unit(word, value_meaning):
@@ -337,7 +337,7 @@ class _Reader:
         self.cost += cost * 0.3
         return True
 
-    def make_call(self, has_until: bool, is_order: bool) -> FilledCall | None:
+    def make_call(self, has_until: bool, is_instruction: bool) -> FilledCall | None:
         assert self.command is not None
         self.command = OPPOSITE_MOVES[self.command] if self.is_reversed else self.command
         device = self.names.actuators.get(self.command)
@@ -347,7 +347,7 @@ class _Reader:
             stop = FilledCall([make_token(word.text)], self.cost, is_sure, self.times)
             return None if self.values else stop
         values = self._in_seconds(self._with_decimals(len(word.arguments)))
-        if values is None or not (values or is_order):
+        if values is None or not (values or is_instruction):
             return None
         slots = self._fill_slots(values, word.arguments, has_until)
         if not slots or (word.text == "M" and len(values) == 1):
@@ -359,7 +359,7 @@ class _Reader:
             samples += [] if given_text else [f"{argument.sample} {argument.unit}"]
             texts.append(given_text or argument.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.extent_word},", 1)
-        tokens = [make_token(lexeme.text) for lexeme in lexemes(call)]
+        tokens = [make_token(token.text) for token in lexemes(call)]
         return FilledCall(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
     def _own_value(self, argument: Argument) -> str:
@@ -434,12 +434,12 @@ class _Reader:
                 if slot_k is None:
                     return None
                 slots[slot_k], slot_of_value[k] = value, slot_k
-        unplaced = [k for k in range(len(values)) if k not in slot_of_value]
-        if self.command == "BEEP" and len(unplaced) == 2:
-            unplaced.sort(key=lambda k: values[k].number >= LONG_TIME_S)
-        if has_until and slots[0] is None and arguments[0].unit == "s" and not unplaced:
+        unplaced_indexes = [k for k in range(len(values)) if k not in slot_of_value]
+        if self.command == "BEEP" and len(unplaced_indexes) == 2:
+            unplaced_indexes.sort(key=lambda k: values[k].number >= LONG_TIME_S)
+        if has_until and slots[0] is None and arguments[0].unit == "s" and not unplaced_indexes:
             slots[0] = _Value("FOREVER", None)
-        for k in unplaced:
+        for k in unplaced_indexes:
             slot_k = next((i for i, slot in enumerate(slots) if slot is None), None)
             if self.command == "BEEP" and len(values) == 1:
                 slot_k = 1 if values[k].number * 1000 >= arguments[1].low else slot_k
@@ -457,7 +457,7 @@ class _Reader:
         if None in slots:
             if any(value.unit == "%" and value.number < LONG_TIME_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
-            is_move = self.command in MOVES and unplaced == [0]
+            is_move = self.command in MOVES and unplaced_indexes == [0]
             if self.command == "SHOW" or (is_move and values[0].number >= LONG_TIME_S):
                 return None  # a power, degrees or centimetres
             self.is_sure, self.cost = False, self.cost + 2

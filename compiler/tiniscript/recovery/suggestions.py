@@ -21,6 +21,13 @@ from tiniscript.base.words import BLOCK_ENDS, OPPOSITE_MOVES, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
+from tiniscript.recovery.instructions import (
+    SpokenInstruction,
+    condition_in,
+    instructions_text,
+    samples_text,
+    spoken_instructions,
+)
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     NEAR,
@@ -32,7 +39,6 @@ from tiniscript.recovery.meanings import (
     make_token,
     plain,
 )
-from tiniscript.recovery.orders import Order, condition_in, orders, orders_text, samples_text
 from tiniscript.recovery.slots import fill_call
 from tiniscript.recovery.trailing_tokens import (
     LineContext,
@@ -51,7 +57,7 @@ MOST_WORDS = 24  # words behind an instruction that are read
 MOST_INSTRUCTIONS = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _SECONDARY_CODES = (codes.REPEATED, codes.WORDS_AFTER)
-_NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
+_NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_INSTRUCTIONS)
 _UNIT_MEANINGS = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
 _PROSE_SIGNS = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
 _MOST_REPEATED = 8  # instructions that an example repeats
@@ -59,7 +65,7 @@ _MOST_LINES_BACK = 40  # lines and instructions that are looked at for what is d
 _BODY_STARTS = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
 _INSTRUCTION_AND_BAR = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
-_REPEATED_ORDERS = re.compile(r"(.+?;)\1*")  # orders that the others repeat
+_REPEATED_INSTRUCTIONS = re.compile(r"(.+?;)\1*")  # instructions that the others repeat
 _CHOICE_CALL = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
 _LINE_COUNT = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
@@ -113,11 +119,17 @@ def rows() -> tuple[Row, ...]:
         named_values = dict(
             assignment.split("=", 1) for assignment in values.split("; ") if assignment
         )
-        wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
+        wrong_text, _, right_text = example.replace("⏎", "\n").rpartition(" => ")
         compiled_pattern = rewrites.compile_pattern(pattern, suggestion_rows.PARTS)
         code_number, *conditions = code.split()
         compiled_rows.append(
-            Row(compiled_pattern, CODES.get(code_number), conditions, named_values, (wrong, right))
+            Row(
+                compiled_pattern,
+                CODES.get(code_number),
+                conditions,
+                named_values,
+                (wrong_text, right_text),
+            )
         )
     return tuple(compiled_rows)
 
@@ -132,7 +144,7 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
     bodies = [split_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
-    orders_above: list[str | None] = []
+    instructions_above: list[str | None] = []
     line_start = depth = 0
     instructions_left = MOST_INSTRUCTIONS
     for body, line in zip(bodies, text.split("\n"), strict=True):
@@ -141,7 +153,9 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
         is_right = lines.is_right(tokens, names)
         if "~" not in body and not is_right:
             for trailing in islice(
-                _trailing_words(body, line_start, LineContext(text, names, depth, orders_above)),
+                _trailing_words(
+                    body, line_start, LineContext(text, names, depth, instructions_above)
+                ),
                 instructions_left,
             ):
                 instructions_left -= 1
@@ -159,14 +173,16 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
         ):
             uncounted = _LINE_COUNT.sub("", body)  # `2. S`
             is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
-            orders_above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
+            instructions_above.append(
+                _as_instructions(uncounted.partition("|")[2] or uncounted, is_right)
+            )
         depth += sum((token.text in BLOCK_ENDS) - (token.text in WORD_OF_END) for token in tokens)
         line_start += len(line) + 1
     return suggestions
 
 
-def _as_orders(line: str, is_right: bool) -> str | None:
-    """Return a line of orders, "" for another one, None for one that begins a block."""
+def _as_instructions(line: str, is_right: bool) -> str | None:
+    """Return a line of instructions, "" for another one, None for one that begins a block."""
     first_words = [tokens[0].text for tokens in map(lexemes, line.split(";")) if tokens]
     if first_words and first_words[-1] in _BODY_STARTS:
         return None
@@ -225,13 +241,13 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
 
 def matching_rows(subject: Subject) -> Iterator[tuple[Row, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
-    encoded = rewrites.Encoded(
+    encoded_line = rewrites.Encoded(
         [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
     )
-    for k in encoded.candidate_rows(_row_index()):
+    for k in encoded_line.candidate_rows(_row_index()):
         row = rows()[k]
-        if match := next(encoded.matches(row.pattern), None):
-            gaps = Gaps(subject, encoded, match)
+        if match := next(encoded_line.matches(row.pattern), None):
+            gaps = Gaps(subject, encoded_line, match)
             with suppress(UnfillableGap):
                 gaps.fill(row)
                 yield row, gaps
@@ -318,7 +334,7 @@ def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | No
     condition_index = next((k for k in range(1, len(tokens)) if concepts[k] in ("IF", "WHILE")), 0)
     has_until = concepts[condition_index] == "WHILE"
     call = (
-        fill_call(tokens[:condition_index], names, has_until, is_order=True)
+        fill_call(tokens[:condition_index], names, has_until, is_instruction=True)
         if condition_index
         else None
     )
@@ -412,25 +428,27 @@ def _loop_over_all(gaps: Gaps, times: str) -> str:
         gaps.trailing,
         [line for line in gaps.trailing.instructions_before if line],
     )
-    has_all_orders = len(lines_before) == len(trailing.instructions_before) <= _MOST_LINES_BACK
-    if not has_all_orders or trailing.is_in_block or times in ("", "0", "1"):
+    has_all_instructions = (
+        len(lines_before) == len(trailing.instructions_before) <= _MOST_LINES_BACK
+    )
+    if not has_all_instructions or trailing.is_in_block or times in ("", "0", "1"):
         return ""
     instructions = [
         instruction.strip()
         for line in (*lines_before, trailing.call_text)
         for instruction in line.split(";")
     ]
-    orders = [
+    repeated_instructions = [
         instruction for instruction in instructions if instruction.upper() not in ("", "START")
     ]
-    text = "".join(f"{order};" for order in orders)
-    if repeated_match := _REPEATED_ORDERS.fullmatch(
+    text = "".join(f"{instruction};" for instruction in repeated_instructions)
+    if repeated_match := _REPEATED_INSTRUCTIONS.fullmatch(
         "".join(text.split()).upper()
     ):  # F and L of `F; L; F; L`
-        orders = orders[: repeated_match[1].count(";")]
-    if not 0 < len(orders) <= _MOST_REPEATED:
+        repeated_instructions = repeated_instructions[: repeated_match[1].count(";")]
+    if not 0 < len(repeated_instructions) <= _MOST_REPEATED:
         return ""
-    return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
+    return ";".join((f"LOOP({times})", *repeated_instructions, BLOCK_ENDS["LOOP"]))
 
 
 def _condition_gaps(gaps: Gaps) -> dict[str, str]:
@@ -460,7 +478,7 @@ def _measured_condition(gaps: Gaps) -> str:
     return (condition_values(words, gaps.trailing.names) or {}).get("asked", "") if has_word else ""
 
 
-def _reading(gaps: Gaps) -> str:
+def _sensor_on_side(gaps: Gaps) -> str:
     """The sensor on the side of an L or R, which is no name."""
     word, part = gaps["s"].upper(), gaps.trailing
     return "" if word in words_set(part.text) else part.names.sensor_on_side(word)
@@ -473,12 +491,12 @@ def _lone_condition(gaps: Gaps) -> str:
 
 
 def _consequence(gaps: Gaps) -> str:
-    """What is done: the words from a capture on where they are right, else the orders they say."""
+    """What is done: the words from a capture on if they are right, else what they instruct."""
     words, names = gaps.tokens_from("w"), gaps.trailing.names
     return (
         _rest_of_words(gaps, "w")
         if lines.is_right(words, names)
-        else orders_text(orders(words, names))
+        else instructions_text(spoken_instructions(words, names))
     )
 
 
@@ -491,25 +509,25 @@ def _free_name(gaps: Gaps) -> str:
 
 
 def _choice(gaps: Gaps, is_exact: bool = False) -> str:
-    """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
+    """An IF that asks RANDOM which of some instructions is done; `is_exact`: by no example."""
     text = f"{gaps.trailing.call_text},{gaps['l']}".lstrip(",")
-    orders = []
+    spoken_instructions = []
     for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
         word = WORDS.get(gaps.trailing.means(plain(match[1]))) if match else None
         if match is None or word is None or not word.role.is_instruction:
             return ""
         if is_exact and word.arguments and not match[2]:
             return ""
-        orders.append(word.text + match[2] if match[2] else word.example)
-    name, count = free_number_name(gaps.trailing.text), len(orders)
+        spoken_instructions.append(word.text + match[2] if match[2] else word.example)
+    name, count = free_number_name(gaps.trailing.text), len(spoken_instructions)
     draw, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
         draw, conditions = "", ["RANDOM(1, 2) = 1"]
     arms = [
-        f"ELSEIF({condition}); {order}; "
-        for condition, order in zip(conditions, orders, strict=False)
+        f"ELSEIF({condition}); {instruction}; "
+        for condition, instruction in zip(conditions, spoken_instructions, strict=False)
     ]
-    return f"{draw}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
+    return f"{draw}{''.join(arms)[4:]}ELSE; {spoken_instructions[-1]}; ENDIF" if arms else ""
 
 
 def _loop(gaps: Gaps) -> str:
@@ -556,20 +574,27 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
     )
 
 
-def _spoken_orders(part: Trailing) -> list[Order]:
-    """The orders that the words say, nothing where a turn of them says no way."""
-    found_orders = orders(part.row_tokens, part.names)
+def _instructions_said(part: Trailing) -> list[SpokenInstruction]:
+    """The instructions that the words say, nothing where a turn of them says no way."""
+    found_instructions = spoken_instructions(part.row_tokens, part.names)
     return (
         []
-        if any(order.is_side_free or order.is_repeated for order in found_orders)
-        else found_orders
+        if any(
+            instruction.is_side_free or instruction.is_repeated
+            for instruction in found_instructions
+        )
+        else found_instructions
     )
 
 
-def _orders(gaps: Gaps) -> str:
+def _call_and_instructions(gaps: Gaps) -> str:
     """The instruction, and those that the words behind it say."""
-    found_orders = _spoken_orders(gaps.trailing)
-    return f"{gaps.trailing.call_text};{orders_text(found_orders)}" if found_orders else ""
+    found_instructions = _instructions_said(gaps.trailing)
+    return (
+        f"{gaps.trailing.call_text};{instructions_text(found_instructions)}"
+        if found_instructions
+        else ""
+    )
 
 
 def _call_with_note(gaps: Gaps) -> str:
@@ -583,8 +608,8 @@ def _call_with_note(gaps: Gaps) -> str:
 
 def _is_last(trailing: Trailing) -> bool:
     """Whether nothing but a note follows the words on their line."""
-    rest = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
-    return not rest or rest.startswith("//")
+    text_behind = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
+    return not text_behind or text_behind.startswith("//")
 
 
 def _note_values(trailing: Trailing) -> dict[str, str]:
@@ -634,7 +659,7 @@ _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
     "choices": _choice, "number": lambda gaps: free_number_name(gaps.trailing.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
-    "reading": _reading,
+    "reading": _sensor_on_side,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
     "measured": _measured_condition, "alone": _lone_condition, "then": _consequence,
@@ -654,9 +679,9 @@ _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "question": lambda gaps: format_line(_condition_tokens(gaps)),
     "contrary": lambda gaps:
         format_line(rewrites.negate(it)) if (it := _condition_tokens(gaps)) else "",
-    "made_up": lambda gaps: samples_text(_spoken_orders(gaps.trailing)),
+    "made_up": lambda gaps: samples_text(_instructions_said(gaps.trailing)),
     "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
-    "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _orders,
+    "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _call_and_instructions,
     "sensors": lambda gaps: ", ".join(gaps.trailing.names.sensor_names),
     "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.trailing.names.sensors else "",
 }  # fmt: skip

@@ -1,6 +1,6 @@
 """What words after an instruction say, beside what the instruction says itself.
 
-Knows which words begin an order, and which numbers and words only repeat. Knows no row.
+Knows which words begin an instruction, and which numbers and words only repeat. Knows no row.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 class LineContext(NamedTuple):
     """Where an instruction stands: `depth` blocks are open there.
 
-    `orders_above` are the lines before it, "" for one of no orders, None for one that begins a
-    block.
+    `instructions_above` are the lines before it, "" for one of no instructions, None for one that
+    begins a block.
     """
 
     text: str
     names: Names
     depth: int
-    orders_above: Sequence[str | None]
+    instructions_above: Sequence[str | None]
 
 
 def token_width(token: Lexeme) -> int:
@@ -101,12 +101,12 @@ class Trailing:
         self, line_context: LineContext, start_offset: int, tokens: Sequence[Lexeme],
         instruction_size: int, instructions_before: Sequence[str | None], spoken_call: str = "",
     ) -> None:  # fmt: skip
-        text, self.names, depth, orders_above = line_context
+        text, self.names, depth, instructions_above = line_context
         self.is_spoken = bool(spoken_call)
         self.tokens = lexemes(spoken_call) if spoken_call else tokens[:instruction_size]
         self.row_tokens = tokens[instruction_size:]
         self.instructions_before, self.has_instruction_before = (
-            [*orders_above, *instructions_before],
+            [*instructions_above, *instructions_before],
             bool(instructions_before),
         )
         self.is_later = self.instructions_before[-1:] not in ([], [None])
@@ -127,7 +127,7 @@ class Trailing:
         self.text = text
         concept = self.names.meant(self.tokens[0].text, NEAR) if instruction_size else ""
         word_row = WORDS.get(concept)
-        self.is_arm = word_row is not None and word_row.role.is_of_blocks
+        self.is_arm = word_row is not None and word_row.role.belongs_to_blocks
         self.command = WORD_OF_END.get(concept, concept)
         self.has_until = any(token.text == "UNTIL" for token in self.tokens)
         self.time_match = _TIME_OF_CALL.match(self.call_text)
@@ -146,15 +146,15 @@ class Trailing:
             return not lines.is_right(self.row_tokens, self.names)
         if self._is_factor():
             return False
-        has_dots = self.is_later and all(lexeme.text in DOTS for lexeme in self.row_tokens)
-        kinds = {lexeme.kind for lexeme in self.row_tokens}
+        has_dots = self.is_later and all(token.text in DOTS for token in self.row_tokens)
+        kinds = {token.kind for token in self.row_tokens}
         has_sign = has_dots or NUMBER in kinds or self.words_text == "()"
         return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
 
     def _is_factor(self) -> bool:
         """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
         signs, values = (
-            [lexeme.text for lexeme in self.row_tokens[:2]],
+            [token.text for token in self.row_tokens[:2]],
             (self.tokens[-1], *self.row_tokens[1:2]),
         )
         is_set = [token.text for token in self.tokens[1:2]] == ["="]
@@ -204,43 +204,55 @@ class Trailing:
 
     def _is_opening(self) -> bool:
         """Whether words are the first line of a text, and others follow."""
-        before, after = self.text[: self.whole_span.start], self.text[self.whole_span.end :]
-        return not before.strip() and bool(after.strip()) and not after.split("\n")[0].strip()
+        text_before, text_after = (
+            self.text[: self.whole_span.start],
+            self.text[self.whole_span.end :],
+        )
+        return (
+            not text_before.strip()
+            and bool(text_after.strip())
+            and not text_after.split("\n")[0].strip()
+        )
 
     def _label_of(self, k: int) -> str:
         token = self.row_tokens[k]
-        text, previous, following = token.text, self._text_at(k - 1), self._text_at(k + 1)
+        text, previous_text, following_text = token.text, self._text_at(k - 1), self._text_at(k + 1)
         is_number = self.number(k) is not None
         is_counted = (
-            lexicon_meaning(following, "times")
-            or following == "X"
+            lexicon_meaning(following_text, "times")
+            or following_text == "X"
             or lexicon_meaning(text, "often")
             or text[0] == "X"
         )
-        is_multiplied = lexicon_meaning(previous, "multiplied", "times") or previous in ("X", "*")
-        is_multiplied = is_multiplied or self.means(previous) == "LOOP"
+        is_multiplied = lexicon_meaning(previous_text, "multiplied", "times") or previous_text in (
+            "X",
+            "*",
+        )
+        is_multiplied = is_multiplied or self.means(previous_text) == "LOOP"
         concept = (
             lexicon_concept(text) if token.kind is WORD and not self.names.is_name(text) else None
         )
-        is_of_kit = concept is None or concept in WORDS or self.names.is_device_or_end(concept)
+        is_known_concept = (
+            concept is None or concept in WORDS or self.names.is_device_or_end(concept)
+        )
         is_own_name = token.source == "l" or text in words_set(self.text)
         word_row = None if is_own_name else WORDS.get(text)
         labels = {
             "@number": is_number,
             "@often": is_number
-            and (is_counted or (is_multiplied and not lexicon_meaning(following, "unit"))),
+            and (is_counted or (is_multiplied and not lexicon_meaning(following_text, "unit"))),
             "@percent": is_number and self.has_percent,
             "@in_s": lexicon_meaning(text, "unit")[:1] == ("s",),
             "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.command),
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_redundant(k),
-            f"@no{concept}": not is_of_kit,
+            f"@no{concept}": not is_known_concept,
             "@call": word_row and word_row.is_call,
             "@order": word_row and word_row.role.is_instruction,
             "@ask": self.means(text) in ASKING_WORDS,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
-            "@dots": text == "…" or (text == "." and "." in (previous, following)),
+            "@dots": text == "…" or (text == "." and "." in (previous_text, following_text)),
         }
         return join_labels(self.names.label(token)[:-2], labels)
 
@@ -279,9 +291,9 @@ class Trailing:
     def _is_redundant(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""
         token, text = self.row_tokens[k], self.row_tokens[k].text
-        is_first = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[:k])
+        is_first = not any(token.kind in (WORD, NUMBER) for token in self.row_tokens[:k])
         if token.kind is WORD and self.number(k) is None:
-            return not self._is_order(k) and not (is_first and self._is_alone(k))
+            return not self._is_instruction(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
             unit = lexicon_meaning(self._text_at(k + 1), "unit")
             if self.number(k) in self.number_texts or (unit and unit[0] in ("cm", "°", "steps")):
@@ -304,7 +316,7 @@ class Trailing:
     def _is_alone(self, k: int) -> bool:
         """Whether a single word is rather a misspelt one, or the name of a DEF."""
         token = self.row_tokens[k]
-        words = [lexeme for lexeme in self.row_tokens if lexeme.kind is WORD]
+        words = [token for token in self.row_tokens if token.kind is WORD]
         if self.names.is_name(token.text):
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and not lexicon_meaning(token.text, "note"):
@@ -320,10 +332,10 @@ class Trailing:
         is_capital_name = len(source) > 1 and source.isupper()
         return is_capital_name or nearest(token.text, _LONG_WORDS) is not None
 
-    def _is_order(self, k: int) -> bool:
+    def _is_instruction(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, command = self.row_tokens[k].text, self.command
-        is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row_tokens[k + 1 :])
+        is_last = not any(token.kind in (WORD, NUMBER) for token in self.row_tokens[k + 1 :])
         is_after_word = k or len(text) == 1 or lexicon_meaning(text, "count")
         is_small_word = lexicon_meaning(text, "small") and not is_last and is_after_word
         if is_small_word or (command == "BEEP" and lexicon_meaning(text, "note")):
@@ -341,7 +353,12 @@ class Trailing:
         concept = self.means(text)
         word_row = WORDS.get(concept)
         is_repetition = concept == command or (concept == "S" and self.has_until)
-        if is_repetition or word_row is None or word_row.role.is_of_values or concept == "START":
+        if (
+            is_repetition
+            or word_row is None
+            or word_row.role.belongs_to_values
+            or concept == "START"
+        ):
             return False
         return command not in ("LOOP", "DEF", "S", "STOP") or concept not in ("S", "LOOP", "DEF")
 
@@ -352,7 +369,7 @@ def words_set(text: str) -> frozenset[str]:
     return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 
 
-def join_labels(first: str, labels: Mapping[str, object]) -> str:
+def join_labels(first_label: str, labels: Mapping[str, object]) -> str:
     return "|".join(
-        (first, *(join_labels for join_labels, is_so in labels.items() if is_so), "\x02")
+        (first_label, *(join_labels for join_labels, is_so in labels.items() if is_so), "\x02")
     )

@@ -36,6 +36,14 @@ from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import amount_values
 from tiniscript.recovery.calls import likely_word, own_example, usage_of_number
 from tiniscript.recovery.ends import candidates_text, possible_last_instructions
+from tiniscript.recovery.instructions import (
+    SpokenInstruction,
+    block,
+    condition_in,
+    instructions_text,
+    samples_text,
+    spoken_instructions,
+)
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     INSTRUCTION_WORDS,
@@ -51,7 +59,6 @@ from tiniscript.recovery.meanings import (
     plain,
     words_of,
 )
-from tiniscript.recovery.orders import Order, block, condition_in, orders, orders_text, samples_text
 from tiniscript.recovery.suggestions import Gaps, Row, UnfillableGap, matching_rows
 from tiniscript.recovery.trailing_tokens import join_labels, token_width, words_set
 from tiniscript.recovery.worded import condition_values
@@ -176,7 +183,9 @@ class _Text:
     def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
         starts = (
-            other.span.end for other in diagnostics if other.code is codes.PARAMETER_NEEDS_NAME
+            diagnostic_of_def.span.end
+            for diagnostic_of_def in diagnostics
+            if diagnostic_of_def.code is codes.PARAMETER_NEEDS_NAME
         )
         start = max((start for start in starts if start <= diagnostic.span.start), default=-1)
         return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
@@ -434,7 +443,7 @@ class Usage:
             1:
         ]
         concepts = [self.names.meant(token.text) for token in tokens_behind]
-        are_orders = (
+        are_instructions = (
             concept in INSTRUCTION_WORDS
             and (concept not in ("L", "R") or next_token.text == "(")  # `pared a la derecha`
             for concept, next_token in zip(
@@ -442,8 +451,8 @@ class Usage:
             )
         )
         are_ends = [
-            _ends_question(token) or is_order
-            for token, is_order in zip(tokens_behind, are_orders, strict=True)
+            _ends_question(token) or is_instruction
+            for token, is_instruction in zip(tokens_behind, are_instructions, strict=True)
         ]
         return tokens_behind[: [*are_ends, True].index(True)]
 
@@ -451,24 +460,26 @@ class Usage:
         return "BUTTON" not in self.names.sensors and lexicon_concept(word) == "BUTTON"
 
     @cached_property
-    def order_of_word(self) -> dict[str, str]:
-        """The words of no program that mean an order, and which."""
+    def instruction_of_word(self) -> dict[str, str]:
+        """The words of no program that mean an instruction, and which."""
         concept_of_word = {word: self.names.meant(word) for word in self.words if word not in WORDS}
         return {
-            it: order_word
-            for it, order_word in concept_of_word.items()
-            if order_word in WORDS and WORDS[order_word].role.is_instruction
+            it: instruction_word
+            for it, instruction_word in concept_of_word.items()
+            if instruction_word in WORDS and WORDS[instruction_word].role.is_instruction
         }
 
     @property
-    def ordering_word(self) -> str:
-        """The first word that means an order; without brackets it is the one that lacks them."""
+    def instruction_name(self) -> str:
+        """The first word that means an instruction; without brackets it is what lacks them."""
         is_bare = self.diagnostic.code is codes.MISSING_OPEN
-        return self.diagnostic.values["word"] if is_bare else next(iter(self.order_of_word), "")
+        return (
+            self.diagnostic.values["word"] if is_bare else next(iter(self.instruction_of_word), "")
+        )
 
     @cached_property
-    def orders(self) -> list[Order]:
-        return orders(self.row_tokens, self.names) if self.ordering_word else []
+    def spoken_instructions(self) -> list[SpokenInstruction]:
+        return spoken_instructions(self.row_tokens, self.names) if self.instruction_name else []
 
     def word_meaning(self, concept: str, default: str) -> str:
         """Return the word that means another one, else `default`."""
@@ -495,7 +506,7 @@ class Usage:
         numbers = [token.text for token in self.row_tokens if token.kind is NUMBER]
         if len(numbers) == 1 and float(numbers[0]) >= LONG_TIME_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
-        turns = orders(self.row_tokens, self.names)
+        turns = spoken_instructions(self.row_tokens, self.names)
         values = format_line(self.row_tokens[1:])
         is_call = all(float(number) <= MOST_POWER for number in numbers)
         if angle and not is_timed:
@@ -557,8 +568,10 @@ class Usage:
     @cached_property
     def wrong_value(self) -> _WrongValue | None:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
-        before = self.tokens_before()
-        calls = [token.text for token, next_token in pairwise(before) if next_token.text == "("]
+        tokens_before = self.tokens_before()
+        calls = [
+            token.text for token, next_token in pairwise(tokens_before) if next_token.text == "("
+        ]
         found_text = self.source[self.diagnostic.span]
         word, found_word = WORDS.get("".join(calls[-1:])), plain(found_text)
         is_word = (
@@ -566,17 +579,29 @@ class Usage:
             and found_word not in WORDS
             and not self.names.is_name(found_word)
         )
-        if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
+        if (
+            word is None
+            or not word.arguments
+            or tokens_before[-1].kind is not NUMBER
+            or not is_word
+        ):
             return None
-        argument_index = min(sum(token.text == "," for token in before), len(word.arguments) - 1)
+        argument_index = min(
+            sum(token.text == "," for token in tokens_before), len(word.arguments) - 1
+        )
         argument = word.arguments[argument_index]
         unit = lexicon_meaning(found_word, "unit")
         extent_word = UNIT_OF.get(word.text, "")
         is_extent = bool(extent_word) and unit == (EXTENTS[extent_word].unit, "1000")
-        extent_text = f"{before[-1].text} {extent_word}" if is_extent else ""
+        extent_text = f"{tokens_before[-1].text} {extent_word}" if is_extent else ""
         return (
             _WrongValue(
-                word, argument, before[-1].text, found_text, unit[0] if unit else "", extent_text
+                word,
+                argument,
+                tokens_before[-1].text,
+                found_text,
+                unit[0] if unit else "",
+                extent_text,
             )
             if (argument.unit in _NOUN_OF_UNIT)
             else None
@@ -601,16 +626,21 @@ class Usage:
         tokens = [token for token in self.row_tokens[1:] if token.text not in ("(", ")")]
         if UNIT_OF.get(word) != "CM" or not tokens or tokens[0].kind is not NUMBER:
             return {}
-        number, *rest = tokens
-        is_more = bool(rest) and (
-            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_KINDS_AFTER_NUMBER)
+        number_token, *tokens_after = tokens
+        is_more = bool(tokens_after) and (
+            tokens_after[0].kind is not WORD
+            or lexicon_meaning(tokens_after[0].text, *_KINDS_AFTER_NUMBER)
         )
-        if is_more or not LONG_TIME_S <= float(number.text) <= _FARTHEST_CM:
+        if is_more or not LONG_TIME_S <= float(number_token.text) <= _FARTHEST_CM:
             return {}
-        extent_call = f"{word}({number.text} CM, {POWER.sample})"
-        if float(number.text) > MOST_POWER:
+        extent_call = f"{word}({number_token.text} CM, {POWER.sample})"
+        if float(number_token.text) > MOST_POWER:
             return {"fix": extent_call, "usage": ""}
-        return {"number": number.text, "way": extent_call, "power": f"{word}(2, {number.text})"}
+        return {
+            "number": number_token.text,
+            "way": extent_call,
+            "power": f"{word}(2, {number_token.text})",
+        }
 
     def bound_values(self) -> dict[str, str]:
         """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
@@ -671,9 +701,9 @@ class Usage:
         end_word = BLOCK_ENDS[(match["word"] or "DEF").upper()]
         values = {"head": head, "right": end_word, "out": "" if end else match["here"].strip()}
         def_name = (match["name"] or "").upper()
-        rest = self.text[match.end() :] if end == end_word else ""
-        instructions_below = _short_instructions(rest) or (
-            _instructions_before_blocks(rest, def_name) if def_name else []
+        text_below = self.text[match.end() :] if end == end_word else ""
+        instructions_below = _short_instructions(text_below) or (
+            _instructions_before_blocks(text_below, def_name) if def_name else []
         )
         calls = [
             instruction for instruction in instructions_below if _is_call_of(instruction, def_name)
@@ -825,7 +855,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
             count = _value_count(tokens, k + 1)
             has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
             is_alone = following.kind in (*_INSTRUCTION_STARTS, "end")
-            if has_own_values or (is_alone and not WORDS[word].role.is_of_blocks):
+            if has_own_values or (is_alone and not WORDS[word].role.belongs_to_blocks):
                 yield k
 
 
@@ -889,7 +919,7 @@ def _usage(word: str) -> str:
 
 def _intended_word(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _usage_of(gaps).word_meaning(_offered_word(gaps), _usage_of(gaps).ordering_word)
+    return _usage_of(gaps).word_meaning(_offered_word(gaps), _usage_of(gaps).instruction_name)
 
 
 def _offered_word(gaps: Gaps) -> str:
@@ -905,23 +935,35 @@ def _block(gaps: Gaps) -> str:
     return block(usage.row_tokens, usage.names, is_open)
 
 
-def _order(gaps: Gaps) -> str:
-    """The one order that words say."""
-    orders = _usage_of(gaps).orders
-    return orders[0].text if len(orders) == 1 and not orders[0].is_side_free else ""
+def _only_instruction(gaps: Gaps) -> str:
+    """The one instruction that words say."""
+    spoken_instructions = _usage_of(gaps).spoken_instructions
+    return (
+        spoken_instructions[0].text
+        if len(spoken_instructions) == 1 and not spoken_instructions[0].is_side_free
+        else ""
+    )
 
 
-def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
-    """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    orders = _usage_of(gaps).orders
-    is_free = any(order.is_side_free for order in orders)
-    return orders_text(orders) if len(orders) > 1 and is_free is is_sided else ""
+def _several_instructions(gaps: Gaps, is_sided: bool) -> str:
+    """The instructions that words say; `is_sided`: of one nobody says which way it turns."""
+    spoken_instructions = _usage_of(gaps).spoken_instructions
+    is_free = any(instruction.is_side_free for instruction in spoken_instructions)
+    return (
+        instructions_text(spoken_instructions)
+        if len(spoken_instructions) > 1 and is_free is is_sided
+        else ""
+    )
 
 
-def _other_orders(gaps: Gaps) -> set[str]:
+def _other_instruction_words(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    order_of_word = _usage_of(gaps).order_of_word.items()
-    return {order for word, order in order_of_word if not lexicon_meaning(word, "right")} - {
+    instruction_of_word = _usage_of(gaps).instruction_of_word.items()
+    return {
+        instruction
+        for word, instruction in instruction_of_word
+        if not lexicon_meaning(word, "right")
+    } - {
         "L",
         "R",
         "B",
@@ -930,25 +972,27 @@ def _other_orders(gaps: Gaps) -> set[str]:
 
 
 def _forever_word(gaps: Gaps) -> str:
-    """The word for FOREVER, where words say no order."""
+    """The word for FOREVER, where words say no instruction."""
     usage = _usage_of(gaps)
     endless_words = (word for word in usage.words if usage.names.meant(word) == "FOREVER")
-    return "" if usage.ordering_word else next(endless_words, "")
+    return "" if usage.instruction_name else next(endless_words, "")
 
 
 def _foreign_word(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
     usage = _usage_of(gaps)
-    return next(filter(usage.names.meant, (*usage.words[:1], usage.ordering_word)), "")
+    return next(filter(usage.names.meant, (*usage.words[:1], usage.instruction_name)), "")
 
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
     usage, word = _usage_of(gaps), _foreign_word(gaps)
     concept = usage.names.meant(word)
-    is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
-    is_among = concept == "S" and {*usage.order_of_word.values()} != {"S"}  # `ve para adelante`
-    return concept if is_order and concept != word and not is_among else ""
+    is_instruction = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
+    is_among = concept == "S" and {*usage.instruction_of_word.values()} != {
+        "S"
+    }  # `ve para adelante`
+    return concept if is_instruction and concept != word and not is_among else ""
 
 
 def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
@@ -1364,11 +1408,13 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "named_first": lambda gaps: _usage_of(gaps).word_meaning(_offered_word(gaps),
         _usage_of(gaps).token_texts[0]),
     "usage": lambda gaps: _usage(_offered_word(gaps)),
-    "takes": lambda gaps: _usage(_offered_word(gaps)) if _usage_of(gaps).orders[0].samples else "",
-    "block": _block, "order": _order, "sided": lambda gaps: _spoken_orders(gaps, is_sided=True),
-    "several": lambda gaps: _spoken_orders(gaps, is_sided=False),
-    "made_up": _gap_of(lambda it: samples_text(it.orders)), "endless": _forever_word,
-    "others": lambda gaps: ", ".join(_other_orders(gaps)),
+    "takes": lambda gaps: (
+        _usage(_offered_word(gaps)) if _usage_of(gaps).spoken_instructions[0].samples else ""),
+    "block": _block, "order": _only_instruction,
+    "sided": lambda gaps: _several_instructions(gaps, is_sided=True),
+    "several": lambda gaps: _several_instructions(gaps, is_sided=False),
+    "made_up": _gap_of(lambda it: samples_text(it.spoken_instructions)), "endless": _forever_word,
+    "others": lambda gaps: ", ".join(_other_instruction_words(gaps)),
     "way": _gap_of(lambda it: it.turn.direction), "angle": _gap_of(lambda it: it.turn.angle),
     "side": _gap_of(lambda it: {"L": "left", "R": "right"}.get(it.turn.direction)),
     "turned": _gap_of(lambda it: it.turn.values_text),
@@ -1389,9 +1435,9 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "done_usage": lambda gaps: _usage_of(gaps).usage(_method_call(gaps)),
     "member": _gap_of(lambda it: it.text[slice(*_member_span(it))]),
     "bare_asking": _gap_of(lambda it: _if_asking(it.diagnostic.values["word"])),
-    "bare_example": _gap_of(lambda it: WORDS[it.ordering_word].example
-                        if len(it.row_tokens) == 1 and it.ordering_word in WORDS
-                        and WORDS[it.ordering_word].arguments else ""),
+    "bare_example": _gap_of(lambda it: WORDS[it.instruction_name].example
+                        if len(it.row_tokens) == 1 and it.instruction_name in WORDS
+                        and WORDS[it.instruction_name].arguments else ""),
     "bare_usage": _gap_of(lambda it: it.usage(it.diagnostic.values["word"])),
     "first_usage": _gap_of(lambda it: it.usage(it.token_texts[0])),
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,

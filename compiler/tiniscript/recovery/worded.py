@@ -37,13 +37,13 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
     and `aside` is what looks ahead alone.
     """
-    is_compared = any(lexeme.text == "=" for lexeme in tokens)  # `DISTANCE = NEAR`
-    tokens = [lexeme for lexeme in tokens if lexeme.text != "="]
-    texts = [lexeme.text for lexeme in tokens]
+    is_compared = any(token.text == "=" for token in tokens)  # `DISTANCE = NEAR`
+    tokens = [token for token in tokens if token.text != "="]
+    texts = [token.text for token in tokens]
     if mixed_values := _mixed_condition(tokens, names):
         return mixed_values
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
-    has_number = any(lexeme.kind is NUMBER for lexeme in tokens)  # `COLOR = 3` is no `> 3`
+    has_number = any(token.kind is NUMBER for token in tokens)  # `COLOR = 3` is no `> 3`
     if is_condition or (
         is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED_KINDS)
     ):
@@ -110,15 +110,15 @@ def _joining_word(texts: Sequence[str], names: Names) -> str:
 
 def _mixed_condition(tokens: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
-    joint_indexes = [k for k, lexeme in enumerate(tokens) if _joining_word_of(lexeme.text, names)]
+    joint_indexes = [k for k, token in enumerate(tokens) if _joining_word_of(token.text, names)]
     pieces = [tokens[a + 1 : b] for a, b in pairwise((-1, *joint_indexes, len(tokens)))]
-    are_comparisons = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
+    are_comparisons = [any(token.text in COMPARISONS for token in piece) for piece in pieces]
     if not any(are_comparisons) or all(are_comparisons):
         return {}
     joint = _joining_word_of(tokens[joint_indexes[0]].text, names)
     questions = []
     for piece, is_compared in zip(pieces, are_comparisons, strict=True):
-        text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
+        text = " ".join(names.meant(token.text) or token.text for token in piece)
         values = (
             {"asked": text} if is_compared else condition_values([_EMPTY_WORD, *piece], names) or {}
         )
@@ -136,7 +136,7 @@ def _joining_word_of(text: str, names: Names) -> str:
 
 def _split_number(tokens: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     """Return the words without units, and their number in centimetres or of light, "" for none."""
-    texts = [lexeme.text for lexeme in tokens]
+    texts = [token.text for token in tokens]
     is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = lexicon_meaning(texts[k + 1], "unit") if k + 1 < len(texts) else ()
@@ -156,8 +156,8 @@ def _split_number(tokens: Sequence[Lexeme], names: Names) -> tuple[list[str], st
     return texts, ""
 
 
-def _in_centimetres(number: str, unit: Sequence[str]) -> str:
-    return f"{float(number) * int(unit[1]) / ONE:g}" if unit else number
+def _in_centimetres(number_text: str, unit: Sequence[str]) -> str:
+    return f"{float(number_text) * int(unit[1]) / ONE:g}" if unit else number_text
 
 
 def _subjects(

@@ -121,9 +121,9 @@ def with_signs(line: str) -> str:
     for match, sign_parts in zip(
         sign_matches[::-1], [part.split() for part in sign_names[::-1]], strict=True
     ):
-        before, after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
+        text_before, text_after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
         sign = "".join(SIGN_OF_NAME[part] for part in sign_parts)
-        line = f"{before}{sign}{' ' * (sign[-1] in ',;' and bool(after))}{after}"
+        line = f"{text_before}{sign}{' ' * (sign[-1] in ',;' and bool(text_after))}{text_after}"
     line += ")" * (line.count("(") - line.count(")"))
     return _NAMED_LETTER.sub(
         lambda it: lexicon_meaning(plain(it[0]).replace(" ", "_"), "spelt")[0], line

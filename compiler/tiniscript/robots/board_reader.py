@@ -44,7 +44,7 @@ class Pins:
         self._chip = chip
         self._pin_uses: list[PinUse] = []
 
-    def take(
+    def take_pin(
         self,
         table: Table,
         key: str,
@@ -77,10 +77,10 @@ class Pins:
                 "pin_cannot", key, need=ability, **values, choices=_choices(chip, ability)
             )
         elif is_motor and pin in chip.boot_pins:
-            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            choices = _choices(chip, ability, excluded_pins=chip.boot_pins)
             table.complain("pin_at_boot", key, **values, choices=choices)
         elif key == "start_button" and pin == chip.reset_pin:
-            choices = _choices(chip, ability, without_pins=chip.boot_pins)
+            choices = _choices(chip, ability, excluded_pins=chip.boot_pins)
             table.complain("pin_of_reset", key, **values, choices=choices)
         elif earlier_use is not None:
             table.complain(
@@ -151,15 +151,15 @@ class Pins:
 
 
 def _choices(
-    chip: Chip, ability: str, without_timers: frozenset[int | None] = frozenset(),
-    without_pins: frozenset[int] = frozenset(),
+    chip: Chip, ability: str, excluded_timers: frozenset[int | None] = frozenset(),
+    excluded_pins: frozenset[int] = frozenset(),
 ) -> str:  # fmt: skip
-    """Return the pins that can do `ability`, except those of the timers in `without_timers`."""
-    all_pins = sorted((chip.digital_pins | chip.reading_pins | chip.analog_pins) - without_pins)
+    """Return the pins that can do `ability`, except those of the timers in `excluded_timers`."""
+    all_pins = sorted((chip.digital_pins | chip.reading_pins | chip.analog_pins) - excluded_pins)
     fitting_pins = [
         pin
         for pin in all_pins
-        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in without_timers
+        if chip.can(pin, ability) and chip.timer_of_pwm_pin.get(pin, -1) not in excluded_timers
     ]
     return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 
@@ -179,10 +179,10 @@ def read_board(table: Table, kit: Kit) -> Board:
     max_run = table.whole_number(
         "max_run_seconds", 1, LONGEST_RUN_SECONDS, default=DEFAULT_RUN_SECONDS
     )
-    start_button = pins.take(table, "start_button", "pull_up")
-    buzzer = pins.take(table, "buzzer", "tone", is_optional=True)
-    status_led = pins.take(table, "status_led", "output", is_optional=True)
-    bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
+    start_button = pins.take_pin(table, "start_button", "pull_up")
+    buzzer = pins.take_pin(table, "buzzer", "tone", is_optional=True)
+    status_led = pins.take_pin(table, "status_led", "output", is_optional=True)
+    bluetooth_state = pins.take_pin(table, "bluetooth_state", "input", is_optional=True)
     language = table.choice("language", languages()) if table.check_for("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
     discs = None
@@ -264,7 +264,7 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
         else:
             has_pull_up = ability == "input" and settings.get("pull_up")
             ability = "pull_up" if has_pull_up else ability
-            pin = pins.take(table, key, ability, is_optional, is_motor=used_by == "motors")
+            pin = pins.take_pin(table, key, ability, is_optional, is_motor=used_by == "motors")
         if pin is not None:
             pin_of_key[key] = pin
     table.finish()

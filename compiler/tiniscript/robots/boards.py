@@ -112,13 +112,13 @@ def _avr(name: str, digital: range, analog: range, program_bytes: int, capabilit
         program_bytes,
         digital_pins=_pins(digital),
         analog_pins=_pins(analog),
-        echo_pins=frozenset(avr.interrupts),
-        timer_of_pwm_pin={pin: compare.timer for pin, compare in avr.compares.items()},
+        echo_pins=frozenset(avr.interrupt_by_pin),
+        timer_of_pwm_pin={pin: compare.timer for pin, compare in avr.compare_by_pin.items()},
         link_pins=_pins(0, 1),
         first_analog=analog[0],
         servo_timer=1,
         tone_timer=2,
-        counting_pins=frozenset(avr.external_interrupts),
+        counting_pins=frozenset(avr.external_interrupt_by_pin),
         capabilities=capabilities,
     )
 

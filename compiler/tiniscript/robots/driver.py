@@ -213,11 +213,11 @@ class MotorDriver(Driver):
     drive: ClassVar[str]
 
     @abstractmethod
-    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         """Return the constants of both motors in the robot's header."""
 
     @abstractmethod
-    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+    def sketch_lines(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         """Return the lines of a sketch that drive both motors, by `left` and `right`."""
 
 
@@ -241,7 +241,7 @@ class DiscDriver(Driver):
         wheel_step = math.pi * wiring.settings["wheel_cm"] / (2 * wiring.settings["holes"]) * 64
         return round(wheel_step), round(wheel_step * 360 / (math.pi * wheel_base_cm))
 
-    def firmware(self, part: HeaderPart, wiring: Wiring, wheel_base_cm: float) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring, wheel_base_cm: float) -> list[str]:
         """Return the constants of both discs in the robot's header."""
         cm, degrees = self.edges(wiring, wheel_base_cm)
         lines = [
@@ -258,14 +258,14 @@ class DiscDriver(Driver):
 
 class SensorDriver(Driver):
     @abstractmethod
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         """Return the lines that put a reading into `*value` and return whether there was one.
 
         Of a number `*value` has thousandths, in between also what the converter counts.
         """
 
     @abstractmethod
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         """Return the lines of a sketch that put a reading into `name`."""
@@ -277,11 +277,11 @@ class SensorDriver(Driver):
 
 class ActuatorDriver(Driver):
     @abstractmethod
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         """Return the lines that set it to `value`."""
 
     @abstractmethod
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         """Return the function of a sketch that sets it."""
@@ -321,9 +321,9 @@ def switch_shape() -> Shape:
     )
 
 
-def lamp_shape(is_on_low: bool) -> Shape:
+def lamp_shape(is_lit_by_low: bool) -> Shape:
     """Return the shape of an LED, which shines while its pin is high, or low."""
-    if is_on_low:
+    if is_lit_by_low:
         terminals = (
             Terminal("long_leg", rail=BOARD_5V),
             Terminal("short_leg", "pin", series_resistor="220 Ω"),
@@ -354,7 +354,7 @@ void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
   analogWrite(pwmPin, abs(percent) * 255L / 100);
 }"""
 
-    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         lines = []
         for side in SIDES:
             pwm = part.pins.pwm(wiring.pins[f"{side}_pwm"])
@@ -366,7 +366,7 @@ void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
         standby = part.pins.pin(wiring.pins.get("standby"))
         return [*lines, f"constexpr Pin kStandby = {standby};"]
 
-    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+    def sketch_lines(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         lines = [motor_line(plan, wiring, side, self.keys) for side in SIDES]
         if "standby" in wiring.pins:
             plan.pin("$STANDBY_$PIN", wiring.pins["standby"], "OUTPUT")

@@ -87,13 +87,13 @@ class Header(HeaderPart):
     def paragraphs(self) -> tuple[str, ...]:
         """Return what drivers and the board define for the preprocessor, then what C++ has."""
         kit, board = self.robot.kit, self.robot.board
-        motors = motors_of(board.motors).firmware(self, board.motors)
-        sensors = self._cases(kit.sensors, board.sensors, sensor_of)
-        actuators = self._cases(kit.actuators, board.actuators, actuator_of)
+        motors = motors_of(board.motors).firmware_lines(self, board.motors)
+        sensors = self._case_lines(kit.sensors, board.sensors, sensor_of)
+        actuators = self._case_lines(kit.actuators, board.actuators, actuator_of)
         discs = []
         if board.discs:
             base_cm = self.robot.body.wheel_base_cm
-            discs = discs_of(board.discs).firmware(self, board.discs, base_cm)
+            discs = discs_of(board.discs).firmware_lines(self, board.discs, base_cm)
         bluetooth_state, status_led = board.bluetooth_state, board.status_led
         language = language_number(board.language)
         lines = [
@@ -128,7 +128,7 @@ class Header(HeaderPart):
             kind = "Pin" if isinstance(self.pins, AvrPins) else "Pwm"
             lines.append(f"constexpr {kind} kServos[] = {{{pins}}};")
         lines += [
-            *self._ultrasonics(),
+            *self._ultrasonic_lines(),
             "",
             "inline void begin_devices() {",
             *(f"  {line}" for line in self.begin_lines),
@@ -164,7 +164,7 @@ class Header(HeaderPart):
             names.append(f"ultrasonic_vectors(each) {vector_calls}")
         return names
 
-    def _cases(
+    def _case_lines(
         self, devices: Sequence[Device], wirings: Sequence[Wiring],
         driver_of: Callable[[str, Wiring], SensorDriver | ActuatorDriver],
     ) -> list[str]:  # fmt: skip
@@ -172,10 +172,10 @@ class Header(HeaderPart):
         lines = []
         for number, (device, wiring) in enumerate(zip(devices, wirings, strict=True)):
             lines.append(f"    case {number}:  // {device.name}")
-            lines += driver_of(device.kind, wiring).firmware(self, device, wiring)
+            lines += driver_of(device.kind, wiring).firmware_lines(self, device, wiring)
         return lines
 
-    def _ultrasonics(self) -> list[str]:
+    def _ultrasonic_lines(self) -> list[str]:
         """Return the number of ultrasonic sensors and their wiring; a single one uses constants."""
         if not self.ultrasonic_texts:
             return []
@@ -206,11 +206,11 @@ class Header(HeaderPart):
 def _hashes(kit: Kit) -> tuple[list[str], list[str], list[str]]:
     """Return those of the sensors, of the remote control, and of the actuators."""
     hash_texts = [f"0x{device_hash:04x}," for device_hash in kit.hashes]
-    first, last = len(kit.sensors), len(kit.readings)
-    actuators = hash_texts[last:]
-    if not first and not actuators:
+    first_number, end_number = len(kit.sensors), len(kit.readings)
+    actuators = hash_texts[end_number:]
+    if not first_number and not actuators:
         actuators = ["0x0000,"]  # C++ has no empty array
-    return hash_texts[:first], hash_texts[first:last], actuators
+    return hash_texts[:first_number], hash_texts[first_number:end_number], actuators
 
 
 def _bytes(data: bytes) -> list[str]:
@@ -252,11 +252,11 @@ class AvrPins:
     def pin(self, pin: int | None) -> str:
         if pin is None:
             return "kNoPin"
-        bit = self._avr.bits[pin]
+        bit = self._avr.bit_by_pin[pin]
         return f"{{kPort{bit.port.upper()}, 1 << {bit.bit}}}"
 
     def pwm(self, pin: int) -> str:
-        timer, channel = self._avr.compares[pin]
+        timer, channel = self._avr.compare_by_pin[pin]
         return f"{{{self.pin(pin)}, {timer}, kChannel{channel.upper()}}}"
 
     def servo(self, pin: int) -> str:
@@ -266,13 +266,13 @@ class AvrPins:
         return f"Pin kBuzzer = {self.pin(pin)}"
 
     def echo(self, pin: int) -> str:
-        vector, group, bit = self._avr.interrupts[pin]
+        vector, group, bit = self._avr.interrupt_by_pin[pin]
         if vector not in self.interrupt_vectors:
             self.interrupt_vectors.append(vector)
         return f"{{{self.pin(pin)}, {group}, 1 << {bit}}}"
 
     def count(self, pin: int) -> str:
-        vector, _, bit = self._avr.external_interrupts[pin]
+        vector, _, bit = self._avr.external_interrupt_by_pin[pin]
         self.counter_vectors.append(vector)
         return f"{self.pin(pin)}, 1 << {bit}"
 

@@ -18,9 +18,9 @@ FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of the
 
 def channels_of(board: Board) -> dict[int, int]:
     """Return the channel of each pin that needs one."""
-    groups: dict[str, list[int]] = {ability: [] for ability in FREQUENCIES}
+    pins_by_ability: dict[str, list[int]] = {ability: [] for ability in FREQUENCIES}
     if board.buzzer is not None:
-        groups["tone"].append(board.buzzer)
+        pins_by_ability["tone"].append(board.buzzer)
     wirings = chain(
         [("motors", board.motors)],
         (("sensors", wiring) for wiring in board.sensors),
@@ -28,11 +28,11 @@ def channels_of(board: Board) -> dict[int, int]:
     )
     for used_by, wiring in wirings:
         for pin, ability in _pin_needs(used_by, wiring):
-            if ability in groups:
-                groups[ability].append(pin)
+            if ability in pins_by_ability:
+                pins_by_ability[ability].append(pin)
     channels = {}
     first_channel = 0
-    for pins in groups.values():
+    for pins in pins_by_ability.values():
         channels.update({pin: channel for channel, pin in enumerate(pins, first_channel)})
         first_channel += timers_of(len(pins)) * CHANNELS_PER_TIMER
     return channels

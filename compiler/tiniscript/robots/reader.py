@@ -34,7 +34,7 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
         kit = _read_kit(root.table("kit", "[kit]"))
         board_table = root.table("board", "[board]")
         if chip is not None:
-            board_table.put("chip", chip)
+            board_table.set_value("chip", chip)
         board = read_board(board_table, kit)
         body = _read_body(root.table("body", "[body]"), kit)
         labels = _read_labels(root.table("labels"), kit, printable_value(name))

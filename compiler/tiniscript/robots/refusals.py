@@ -18,7 +18,7 @@ SHOWN_CHARACTERS = 40
 DEVICE_PATH = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
 
 
-def describe(refusal: ProfileRefused, lang: str) -> list[str]:
+def describe(refusal: ProfileRefused, language: str) -> list[str]:
     """Return a sentence for each reason."""
     sentences = []
     for code, values in _causes(refusal.reasons):
@@ -26,12 +26,12 @@ def describe(refusal: ProfileRefused, lang: str) -> list[str]:
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
             gap_values = {
-                key: languages.find_text(CATALOGUE, f"{group}/{word}", lang) or word
+                key: languages.find_text(CATALOGUE, f"{group}/{word}", language) or word
                 for key, word in gap_values.items()
             }
         key = f"{code}/near" if gap_values.get("near") else code
         sentence_texts = (
-            languages.find_text(CATALOGUE, f"{kind}/{key}", lang)
+            languages.find_text(CATALOGUE, f"{kind}/{key}", language)
             for kind in (*refusal.kinds, "profile")
         )
         sentences.append(next(filter(None, sentence_texts)).format_map(gap_values))

@@ -72,7 +72,7 @@ class Table:
         self._known_keys.append(key)
         return key in self._values
 
-    def put(self, key: str, value: object) -> None:
+    def set_value(self, key: str, value: object) -> None:
         """Replace the value at `key`, whatever is written there."""
         self._values = {**self._values, key: value}
 

@@ -159,8 +159,8 @@ class _Checker(Scope):
         known_type = self.types.variable_types[number]
         if ANY not in (known_type, value.type) and known_type != value.type:
             unused_name = self.wrong_calls.free_name(node.name, self.procedures)
-            other = f"{unused_name} = {self.source[node.value.span]}"
-            self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
+            other_assignment = f"{unused_name} = {self.source[node.value.span]}"
+            self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other_assignment,
                         old="@" + known_type, new="@" + value.type)  # fmt: skip
         self.add_readings([value], node.span, output)
         output.append(ir.Assign(number, value.terms, node.span))
@@ -346,7 +346,7 @@ class _Checker(Scope):
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
-            self.wrong_calls.report_call_values(
+            self.wrong_calls.report_value_count(
                 node, procedure, [self.variables[k] for k in procedure.values]
             )
             return
@@ -441,8 +441,8 @@ class _Checker(Scope):
         known_name = self.names.get(node.name)
         if known_name is not None:
             code = codes.DEF_TWICE if known_name.kind == "def" else codes.NAME_TAKEN
-            other = self.wrong_calls.free_name(node.name, self.procedures)
-            self.report(code, node.name_span, name=node.name, other=other)
+            free_name = self.wrong_calls.free_name(node.name, self.procedures)
+            self.report(code, node.name_span, name=node.name, other=free_name)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
         outer_scope = self.enter_scope()
@@ -486,8 +486,10 @@ class _Checker(Scope):
             ):
                 self.report(codes.PARAMETER_TWICE, parameter.span, name=parameter.name)
             else:
-                other = self.wrong_calls.free_name(parameter.name, self.procedures)
-                self.report(codes.PARAMETER_TAKEN, parameter.span, name=parameter.name, other=other)
+                free_name = self.wrong_calls.free_name(parameter.name, self.procedures)
+                self.report(
+                    codes.PARAMETER_TAKEN, parameter.span, name=parameter.name, other=free_name
+                )
         return variable_numbers
 
     def task(self, node: ast.Task, output: list[Statement]) -> None:

@@ -103,20 +103,35 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
     Nothing, twice, where no two comparisons of a sensor exclude each other or leave nothing out.
     """
     op = condition[-1].op if len(condition) == 8 else ""
-    first, second = (comparison_of(condition[k : k + 3], kit) for k in (0, 4))
-    if op not in ("AND", "OR") or not first or not second or first.device is not second.device:
+    first_comparison, second_comparison = (comparison_of(condition[k : k + 3], kit) for k in (0, 4))
+    if (
+        op not in ("AND", "OR")
+        or not first_comparison
+        or not second_comparison
+        or first_comparison.device is not second_comparison.device
+    ):
         return "", ""
-    below, above = (first, second) if first.op in _LESS else (second, first)
-    if below.op not in _LESS or above.op not in _MORE:
-        return "", ""
-    is_exact = below.op == "LE" and above.op == "GE"
-    if op == "AND":
-        is_constant = below.number < above.number or (below.number == above.number and not is_exact)
-        return ("answer_no", f"{first} OR {second}") if is_constant else ("", "")
-    is_constant = above.number < below.number or (
-        above.number == below.number and "E" in below.op + above.op
+    upper_bound, lower_bound = (
+        (first_comparison, second_comparison)
+        if first_comparison.op in _LESS
+        else (second_comparison, first_comparison)
     )
-    return ("answer_yes", f"{first} AND {second}") if is_constant else ("", "")
+    if upper_bound.op not in _LESS or lower_bound.op not in _MORE:
+        return "", ""
+    is_exact = upper_bound.op == "LE" and lower_bound.op == "GE"
+    if op == "AND":
+        is_constant = upper_bound.number < lower_bound.number or (
+            upper_bound.number == lower_bound.number and not is_exact
+        )
+        return (
+            ("answer_no", f"{first_comparison} OR {second_comparison}") if is_constant else ("", "")
+        )
+    is_constant = lower_bound.number < upper_bound.number or (
+        lower_bound.number == upper_bound.number and "E" in upper_bound.op + lower_bound.op
+    )
+    return (
+        ("answer_yes", f"{first_comparison} AND {second_comparison}") if is_constant else ("", "")
+    )
 
 
 def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:

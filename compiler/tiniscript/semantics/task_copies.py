@@ -27,7 +27,7 @@ def copy_defs_per_task(program: ir.Program) -> ir.Program:
         ]
         if not has_own_values[k] or len(tasks_reaching) < 2:
             for numbers in numbers_by_task:
-                numbers.calls[k] = len(procedures)
+                numbers.copy_of_def[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
             procedures.append(
                 _copy_procedure(
@@ -39,12 +39,12 @@ def copy_defs_per_task(program: ir.Program) -> ir.Program:
             numbers = numbers_by_task[task]
             if task != tasks_reaching[0]:
                 for variable in procedure.values:
-                    numbers.variables[variable] = len(variables)
+                    numbers.copy_of_variable[variable] = len(variables)
                     variables.append(program.variables[variable])
-            numbers.calls[k] = len(procedures)
+            numbers.copy_of_def[k] = len(procedures)
             procedures.append(_copy_procedure(procedure, numbers))
         for numbers in numbers_by_task:  # of a DEF that nobody calls: it calls the first copy
-            numbers.calls.setdefault(k, numbers_by_task[tasks_reaching[0]].calls[k])
+            numbers.copy_of_def.setdefault(k, numbers_by_task[tasks_reaching[0]].copy_of_def[k])
     main_numbers, *other_numbers = numbers_by_task
     tasks = tuple(
         task._replace(body=_body(task.body, numbers))
@@ -96,8 +96,8 @@ def count_tasks_by_def(program: ir.Program) -> list[int]:
 class _Numbers(NamedTuple):
     """What a task calls, and which variables it uses, in the place of what the text names."""
 
-    calls: dict[int, int]
-    variables: dict[int, int]
+    copy_of_def: dict[int, int]
+    copy_of_variable: dict[int, int]
 
 
 def _reachable_defs(program: ir.Program) -> list[set[int]]:
@@ -121,7 +121,7 @@ def _owns_values(program: ir.Program) -> list[bool]:
 
 
 def _copy_procedure(procedure: ir.Procedure, numbers: _Numbers) -> ir.Procedure:
-    values = tuple(numbers.variables.get(value, value) for value in procedure.values)
+    values = tuple(numbers.copy_of_variable.get(value, value) for value in procedure.values)
     return procedure._replace(body=_body(procedure.body, numbers), values=values)
 
 
@@ -131,17 +131,19 @@ def _body(body: ir.Body, numbers: _Numbers) -> ir.Body:
 
 def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
     new_fields: dict[str, Any] = {
-        name: _expression(value, numbers.variables)
+        name: _expression(value, numbers.copy_of_variable)
         for name, value in ir.values_of(statement).items()
     }
     if isinstance(statement, ir.Call):
-        new_fields["procedure"] = numbers.calls[statement.procedure]
+        new_fields["procedure"] = numbers.copy_of_def[statement.procedure]
     elif isinstance(statement, ir.Assign):
-        new_fields["variable"] = numbers.variables.get(statement.variable, statement.variable)
+        new_fields["variable"] = numbers.copy_of_variable.get(
+            statement.variable, statement.variable
+        )
     elif isinstance(statement, ir.If):
         new_fields["arms"] = tuple(
             arm._replace(
-                condition=_expression(arm.condition, numbers.variables),
+                condition=_expression(arm.condition, numbers.copy_of_variable),
                 body=_body(arm.body, numbers),
             )
             for arm in statement.arms
@@ -150,14 +152,14 @@ def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
     elif isinstance(statement, (ir.Loop, ir.While)):
         new_fields["body"] = _body(statement.body, numbers)
     elif isinstance(statement, ir.Move) and statement.until is not None:
-        condition = _expression(statement.until.condition, numbers.variables)
+        condition = _expression(statement.until.condition, numbers.copy_of_variable)
         new_fields["until"] = statement.until._replace(condition=condition)
     return statement._replace(**new_fields)
 
 
-def _expression(terms: ir.Expression, variables: Mapping[int, int]) -> ir.Expression:
+def _expression(terms: ir.Expression, copy_of_variable: Mapping[int, int]) -> ir.Expression:
     return tuple(
-        term._replace(value=variables.get(term.value, term.value))
+        term._replace(value=copy_of_variable.get(term.value, term.value))
         if term.op == "VARIABLE" else term
         for term in terms
     )  # fmt: skip

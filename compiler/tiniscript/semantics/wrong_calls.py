@@ -58,8 +58,8 @@ _HIGHEST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
-_UNTIL_BEFORE = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
-_MOST_CHARACTERS_BEFORE = 200
+_UNTIL_AT_END = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
+_MOST_CHARACTERS_BACK = 200
 _FEW_TIMES = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
 _NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
@@ -83,7 +83,7 @@ class WrongCalls:
     def report_not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
 
-    def report_call_values(
+    def report_value_count(
         self, node: ast.Command, procedure: ir.Procedure, names: Sequence[str]
     ) -> None:
         """Another count of values than the DEF has names."""
@@ -187,8 +187,8 @@ class WrongCalls:
                 and pair[2] != other_pair[2]
                 and pair[3].upper() != other_pair[3].upper()
             ):
-                rest = self.scope.source[Span(unit.end, node.span.end)]
-                values["swapped"] = f"{node.word}({other_pair[2]} {right_unit}{rest}"
+                text_after = self.scope.source[Span(unit.end, node.span.end)]
+                values["swapped"] = f"{node.word}({other_pair[2]} {right_unit}{text_after}"
                 values["line"] = str(self.scope.source.position(other_pair.start())[0])
         self.scope.report(codes.UNIT_PAIR, unit_span, node.span, word=node.word, fix=fix, **values)
 
@@ -309,14 +309,14 @@ class WrongCalls:
 
     def report_def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
-        other = self.free_name(node.name, procedures)
+        free_name = self.free_name(node.name, procedures)
         called_def = next(
             (procedure for procedure in procedures if procedure.name == node.name), None
         )
         value_pattern = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
         value_match = re.search(value_pattern, self.scope.source.text)
         if called_def is None or len(called_def.values) != 1 or node.value is None or value_match:
-            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=free_name)
             return
         fix = f"{node.name}({self.scope.source[node.value.span]})"
         self.scope.report(codes.NAME_TAKEN, node.span, None, name=node.name, other="", fix=fix)
@@ -380,8 +380,8 @@ def next_condition(source: Source, span: Span) -> str:
 
 def _until_match(source: Source, span: Span) -> re.Match[str] | None:
     """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
-    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BEFORE) : span.start]
-    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_BEFORE.search(text_before)
+    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
+    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_AT_END.search(text_before)
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
@@ -398,23 +398,23 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
     values: dict[str, str] = {}
     if len(texts) != 2 or not all(argument.is_plain for argument in arguments):
         return values
-    first, second = texts
-    is_short = first.replace(".", "", 1).isdecimal() and float(first) < _LONG_TIME_S
+    first_text, second_text = texts
+    is_short = first_text.replace(".", "", 1).isdecimal() and float(first_text) < _LONG_TIME_S
     if word.role.name == "beep":
-        if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
-            values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
-        elif _whole_number(first) > _LOWEST_HERTZ:
-            values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
+        if re.fullmatch(r"\d+\.\d{3}", second_text):  # `BEEP(1, 1.000)`
+            values["fix"] = f"{word.text}({first_text}, {second_text.replace('.', '')})"
+        elif _whole_number(first_text) > _LOWEST_HERTZ:
+            values |= {"fix": f"{word.text}({second_text}, {first_text})", "usage": word.usage}
         elif is_short:
-            values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
+            values["tone"] = f"{word.text}({first_text}, {WORDS['BEEP'].arguments[1].sample})"
     elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
             values_text = ", ".join(text.lstrip("- ") for text in texts)
             values["fix"] = f"{OPPOSITE_MOVES[word.text]}({values_text})"
-        elif word.text == "B" and is_short and _is_tone(second):
-            values["sound"] = f"BEEP({first}, {second})"
+        elif word.text == "B" and is_short and _is_frequency(second_text):
+            values["sound"] = f"BEEP({first_text}, {second_text})"
         elif is_short:
-            values["most"] = f"{word.text}({first}, {as_text(word.arguments[1].high)})"
+            values["most"] = f"{word.text}({first_text}, {as_text(word.arguments[1].high)})"
     return values
 
 
@@ -423,7 +423,7 @@ def _whole_number(text: str) -> int:
     return int(text[:9]) if text.isdecimal() else 0
 
 
-def _is_tone(text: str) -> bool:
+def _is_frequency(text: str) -> bool:
     """Whether a number is rather a tone than a power: 440, but not 200."""
     return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 

@@ -23,15 +23,15 @@ from tiniscript.syntax.operators import SIGN_OF
 
 _EQUALITY_OPS = frozenset(("EQ", "NE"))
 _COMPARISON = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
-_COMPARISON_BEFORE = re.compile(
+_LEADING_COMPARISON = re.compile(
     r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)"
 )  # `X =` of `X = 5`
-_CHARACTERS_BEFORE = 20  # characters before a name in which its word is looked for
-_EQUALITY_BEFORE = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
-_TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
-_TONE_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
+_MOST_CHARACTERS_BACK = 20  # characters before a name in which its word is looked for
+_EQUALITY_AT_END = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
+_BEFORE_LOOP_COUNT = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
+_BEFORE_FREQUENCY = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
-_TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
+_BEFORE_TIME = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 
 
 class WrongValues:
@@ -44,8 +44,8 @@ class WrongValues:
             scope.report(codes.NO_VALUE, span, word=name)
             return
         concept = meant_by(name) or ""
-        text_before = scope.source.text[max(0, span.start - _CHARACTERS_BEFORE) : span.start]
-        is_variable = concept == "TIME" and _TIME_BEFORE.search(text_before) is not None
+        text_before = scope.source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
+        is_variable = concept == "TIME" and _BEFORE_TIME.search(text_before) is not None
         if concept == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
@@ -59,7 +59,7 @@ class WrongValues:
         known_names = [
             known_name for known_name, meaning in names if meaning.kind in ("sensor", "variable")
         ]
-        is_forever = _TIME_BEFORE.search(text_before) or _TIMES_BEFORE.search(text_before)
+        is_forever = _BEFORE_TIME.search(text_before) or _BEFORE_LOOP_COUNT.search(text_before)
         known_names += ["FOREVER"] if is_forever else []
         suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(
             name, known_names
@@ -68,7 +68,7 @@ class WrongValues:
             "".join(lexicon_meaning(name, "power")) if text_before.rstrip().endswith("=") else ""
         )
         suggestion = suggestion or whole_name(scope, name, scope.assigned_names)
-        if (match := _EQUALITY_BEFORE.search(text_before)) and scope.is_yes_no_sensor(
+        if (match := _EQUALITY_AT_END.search(text_before)) and scope.is_yes_no_sensor(
             match[1].upper()
         ):
             suggestion = yes_no_of(name) or suggestion
@@ -107,7 +107,7 @@ class WrongValues:
             elif (
                 has_no_hint
                 and lexicon_meaning(name + "4", "note")
-                and _TONE_BEFORE.search(text_before)
+                and _BEFORE_FREQUENCY.search(text_before)
             ):
                 hints = {"pitch": lexicon_meaning(name + "4", "note")[0]}
             elif not pair_hints and not is_variable and lexicon_meaning(name, "unsensed"):
@@ -185,7 +185,7 @@ class WrongValues:
         if other is not None and other.end - other.start <= 80:
             compared_text = self.scope.source[Span(other.start, other.end)]
             comparison_before, comparison_after = (
-                _COMPARISON_BEFORE.match(compared_text),
+                _LEADING_COMPARISON.match(compared_text),
                 _COMPARISON.fullmatch(compared_text),
             )
             is_sensor = operand_text.upper() in (

@@ -61,14 +61,14 @@ class Attending:
             self._heard_s = self._clock()
             self._was_heard = True
             if stop_count > self.stop_count:
-                self._stop(stop_count)
+                self._stop_run(stop_count)
             for request in requests:
                 number = request.get("id")
                 if type(number) is int and number > self._last_request_number:
                     self._last_request_number = number
                     self._requests.append(request)
             if self.is_latched:
-                self._void()
+                self._void_requests()
             self._news = [
                 news_item for news_item in self._news if news_item["number"] > seen_number
             ]
@@ -84,7 +84,7 @@ class Attending:
         number always stops."""
         with self._lock:
             if not stop_count or stop_count > self.stop_count:
-                self._stop(stop_count)
+                self._stop_run(stop_count)
 
     def latch(self, until_s: float | None = None, is_stopping: bool = True) -> None:
         """Refuse what is asked for a while, and stop the robot."""
@@ -93,9 +93,9 @@ class Attending:
             if is_stopping:
                 self._wants_stop = True
                 self.last_stop = ASKED
-                self._add({"stopped": True})
+                self._add_news({"stopped": True})
                 self._latch_news_number = self._news_count
-            self._void()
+            self._void_requests()
 
     @property
     def is_latched(self) -> bool:
@@ -119,10 +119,10 @@ class Attending:
     def has_left(self) -> bool:
         return self.silent_s > LEFT_S
 
-    def tell(self, news: list[Json]) -> None:
+    def queue_news(self, news: list[Json]) -> None:
         with self._lock:
             for news_item in news:
-                self._add(news_item)
+                self._add_news(news_item)
         witness = self.witness
         if witness is not None:
             witness(news)
@@ -142,7 +142,7 @@ class Attending:
                 stop_count < self.stop_count
                 or _number_in(request, "seen") < self._latch_news_number
             ):
-                self.tell([{"id": request["id"], **_VOID_ANSWER}])
+                self.queue_news([{"id": request["id"], **_VOID_ANSWER}])
                 continue
             if _starts_run(request):
                 self._stop_counts[request["id"]] = stop_count
@@ -150,7 +150,7 @@ class Attending:
                 link.ask(request)
             except BadRequest:
                 self._stop_counts.pop(request["id"], None)
-                self.tell([{"id": request["id"], "failure": "bad_request"}])
+                self.queue_news([{"id": request["id"], "failure": "bad_request"}])
         self._apply_news(link.news(limit_s))
         if self.is_attended:
             self._is_silent = False
@@ -168,7 +168,7 @@ class Attending:
         if self.last_stop == ASKED:
             self.last_stop = SILENT
 
-    def _stop(self, stop_count: int) -> None:
+    def _stop_run(self, stop_count: int) -> None:
         self.stop_count = max(self.stop_count, stop_count)
         self._wants_stop = True
 
@@ -184,15 +184,15 @@ class Attending:
                 self.last_stop = CONFIRMED
             elif "LOST" in events:
                 self.last_stop = SILENT
-        self.tell(news)
+        self.queue_news(news)
 
-    def _void(self) -> None:
+    def _void_requests(self) -> None:
         for request in self._requests:
             if request.get("do") != "stop":
-                self._add({"id": request["id"], **_VOID_ANSWER})
+                self._add_news({"id": request["id"], **_VOID_ANSWER})
         self._requests = [request for request in self._requests if request.get("do") == "stop"]
 
-    def _add(self, news: Json) -> None:
+    def _add_news(self, news: Json) -> None:
         self._news_count += 1
         self._news.append({**news, "number": self._news_count})
         while len(self._news) > MOST_KEPT_NEWS:

@@ -58,7 +58,7 @@ class _Line(NamedTuple):
     columns: tuple[tuple[int, int], ...]
 
 
-def print_blocks(form: Form) -> Printed:
+def format_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
     indexes_of_blocks: list[list[int]] = []  # of each block, which instructions are its lines
@@ -222,10 +222,10 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
         text += ";" * (k > 0)
         columns.append((len(text), len(text) + len(instruction.text)))
         text += instruction.text
-    first, last = instructions[0], instructions[-1]
-    word = last.word if len(instructions) == 1 else ""
-    is_apart = first.is_apart and not setup
-    return _Line(Row(word, _with_note(text + end, last.note), is_apart), tuple(columns))
+    first_block, last_block = instructions[0], instructions[-1]
+    word = last_block.word if len(instructions) == 1 else ""
+    is_apart = first_block.is_apart and not setup
+    return _Line(Row(word, _with_note(text + end, last_block.note), is_apart), tuple(columns))
 
 
 def _with_note(text: str, note: str) -> str:
@@ -250,7 +250,7 @@ def _loose_lines(stacks: tuple[Stack, ...]) -> list[str]:
     lines: list[str] = []
     for stack in stacks:
         if stack.body:
-            text = print_blocks(Form("", "", False, stack.body, ())).text
+            text = format_blocks(Form("", "", False, stack.body, ())).text
         else:
             text = LOOSE_VALUE_PREFIX + text_of(stack.value)
         lines += [LOOSE_PREFIX] * bool(lines)
@@ -275,8 +275,8 @@ def text_of(value: Value) -> str:
         elif op == "NEG":
             text, precedence = stack.pop()
             is_number = text[:1].isdigit() or text[:1] == "-"  # whose sign it would become
-            inner = f"({text})" if is_number else _bracket((text, precedence), ATOM)
-            stack.append((f"-{inner}", MINUS))
+            inner_text = f"({text})" if is_number else _bracket((text, precedence), ATOM)
+            stack.append((f"-{inner_text}", MINUS))
         elif op == "BRACKETS":
             stack.append((f"({stack.pop()[0]})", ATOM))
         elif op in FUNCTIONS:

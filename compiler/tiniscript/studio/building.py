@@ -50,7 +50,7 @@ def is_possible() -> bool:
     return LOCK.is_file()
 
 
-def is_of_sources(page: Path) -> bool:
+def is_built_from_sources(page: Path) -> bool:
     """Whether the page in this folder was built of the sources that are there now."""
     try:
         stamp = json.loads((page / STAMP).read_text(encoding="utf-8"))

@@ -214,13 +214,13 @@ class Classroom:
         self._is_turn_given = turn_s is not None
         self._clock = clock
         self._lock = RLock()
-        self._pupils: dict[str, Pupil] = {}  # by token
+        self._pupil_by_token: dict[str, Pupil] = {}  # by token
         self._robots = [ClassRobot(port, _name_of(port)) for port in ports]
         self._places_per_address = PLACES_PER_ADDRESS
         self._wrong_code_rate = Rate(*WRONG_CODE_RATE)
         self._request_rate = Rate(*REQUEST_RATE)
         self._numbers = count(1)  # of pupils, of places in the queue and of hands
-        self._kept_works: dict[str, KeptWork] = {}  # by key
+        self._kept_work_by_key: dict[str, KeptWork] = {}  # by key
         self._is_continued = False  # after a crash, and the teacher has not said otherwise
         self._ending = ""  # or whether pupils' work is kept
         self._ended_s = 0.0
@@ -231,20 +231,20 @@ class Classroom:
         if not token:
             return JOIN_BYTES
         with self._lock:
-            return REQUEST_BYTES if token in self._pupils else 0
+            return REQUEST_BYTES if token in self._pupil_by_token else 0
 
     def answer(self, token: str, address: str, request: Json) -> Json:
         """Return the answer to a pupil's request. Raises BadRequest."""
         with self._lock:
             if not token:
                 return self._join(address, request)
-            pupil = self._pupils.get(token)
+            pupil = self._pupil_by_token.get(token)
             if pupil is None:
                 raise BadRequest
             action = request.get("do")
             if action in ("stop", "stop_all"):
                 return self._stop(pupil, request)
-            if not self._request_rate.take(token, self._clock()):
+            if not self._request_rate.take_amount(token, self._clock()):
                 raise BadRequest
             pupil.heard_s = self._clock()
             if action == "here":
@@ -271,11 +271,11 @@ class Classroom:
         code, name = request.get("code"), request.get("name")
         if request.get("do") != "join" or not isinstance(code, str) or not isinstance(name, str):
             raise BadRequest
-        if not self._wrong_code_rate.has(address, now_s):
+        if not self._wrong_code_rate.has_left(address, now_s):
             return {"failure": "class_slow"}
         typed_code = "".join(code.upper().split()).encode("utf-8", "replace")
         if not hmac.compare_digest(typed_code, self.code.encode()):
-            self._wrong_code_rate.take(address, now_s)
+            self._wrong_code_rate.take_amount(address, now_s)
             return {"failure": "class_wrong"}
         if self._ending:
             return {"failure": "class_over"}
@@ -298,7 +298,7 @@ class Classroom:
             now_s, PLACE_S, same_pupils
         ):
             return {"failure": "class_crowded"}
-        pupils = list(self._pupils.values())
+        pupils = list(self._pupil_by_token.values())
         if len(pupils) >= MOST_PUPILS and not self._give_place_away(now_s, SILENT_S, pupils):
             return {"failure": "class_full"}
         if returning is None:
@@ -314,8 +314,8 @@ class Classroom:
 
     def _admit(self, work: KeptWork, address: str, now_s: float) -> None:
         """Who has made this work is here from now on."""
-        self._kept_works.pop(work.key, None)
-        self._pupils[work.token] = Pupil(
+        self._kept_work_by_key.pop(work.key, None)
+        self._pupil_by_token[work.token] = Pupil(
             next(self._numbers), work.token, work.name, work.typed_name, address, now_s, work.work
         )
 
@@ -330,7 +330,7 @@ class Classroom:
         return None
 
     def _pupils_at(self, address: str) -> list[Pupil]:
-        return [pupil for pupil in self._pupils.values() if pupil.address == address]
+        return [pupil for pupil in self._pupil_by_token.values() if pupil.address == address]
 
     def _work_count(self, address: str | None = None) -> int:
         """Return how many works the class has, of an address or in all."""
@@ -341,7 +341,7 @@ class Classroom:
         return [work.name for work in self._all_works() if work.token]
 
     def _all_works(self) -> list[KeptWork | Pupil]:
-        return [*self._kept_works.values(), *self._pupils.values()]
+        return [*self._kept_work_by_key.values(), *self._pupil_by_token.values()]
 
     def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
         """Take the place of the one of these that has been silent longest."""
@@ -353,17 +353,17 @@ class Classroom:
 
     def _forget(self, pupil: Pupil) -> None:
         """A pupil is here no more; the work stays, for who comes back."""
-        del self._pupils[pupil.token]
+        del self._pupil_by_token[pupil.token]
         if pupil.work.text:
             self._keep(
                 KeptWork(pupil.name, pupil.typed_name, pupil.work, pupil.token, pupil.address)
             )
-        for work in self._kept_works.values():
+        for work in self._kept_work_by_key.values():
             if work.recipient_token == pupil.token:
                 work.recipient_token = ""
 
     def _keep(self, work: KeptWork) -> None:
-        self._kept_works[work.key] = work
+        self._kept_work_by_key[work.key] = work
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
@@ -393,7 +393,11 @@ class Classroom:
         group, groups = self._groups.group_of(pupil.token), self._groups.overview()
         driver = turn.pupil if turn is not None else None
         given_work = next(
-            (work for work in self._kept_works.values() if work.recipient_token == pupil.token),
+            (
+                work
+                for work in self._kept_work_by_key.values()
+                if work.recipient_token == pupil.token
+            ),
             None,
         )
         return {
@@ -441,14 +445,14 @@ class Classroom:
     def _hear_taken(self, pupil: Pupil, receipt: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
         fields = receipt if isinstance(receipt, dict) else {}
-        kept_work = self._kept_works.get(str(fields.get("key")))
+        kept_work = self._kept_work_by_key.get(str(fields.get("key")))
         if (
             kept_work is None
             or kept_work.recipient_token != pupil.token
             or fields.get("text") != kept_work.work.text
         ):
             return
-        del self._kept_works[kept_work.key]
+        del self._kept_work_by_key[kept_work.key]
         lessons = dict.fromkeys((*kept_work.work.lessons, *pupil.work.lessons))
         pupil.work = kept_work.work._replace(lessons=tuple(lessons)[:MOST_LESSONS])
         pupil.version += 1
@@ -476,9 +480,9 @@ class Classroom:
         token = robot.pupil.token
         runs = self._groups.runs_of(token)
         if robot.group_runs is not None and robot.group_runs is not runs:
-            robot.group_runs.tell(token, [{"over": "left"}])
+            robot.group_runs.add_news(token, [{"over": "left"}])
         robot.group_runs = runs
-        witness = partial(runs.tell, token) if runs is not None else None
+        witness = partial(runs.add_news, token) if runs is not None else None
         robot.hosted_robot.attending.witness = witness
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
@@ -534,7 +538,7 @@ class Classroom:
     def _mates(self, pupil: Pupil) -> list[Pupil]:
         """Return all pupils of the group, the pupil first; of no group that one alone."""
         tokens = self._groups.mate_tokens(pupil.token)
-        return [pupil, *(mate for mate in self._pupils.values()
+        return [pupil, *(mate for mate in self._pupil_by_token.values()
                          if mate.token in tokens and mate is not pupil)]  # fmt: skip
 
     def _turn_of(self, pupils: list[Pupil]) -> ClassRobot | None:
@@ -599,7 +603,7 @@ class Classroom:
     def _waiting_pupils(self) -> list[Pupil]:
         numbered_pupils = [
             (pupil.queue_number, pupil)
-            for pupil in self._pupils.values()
+            for pupil in self._pupil_by_token.values()
             if pupil.queue_number is not None
         ]
         return [pupil for _, pupil in sorted(numbered_pupils, key=lambda found: found[0])]
@@ -645,7 +649,7 @@ class Classroom:
             elif action == "class_bring":
                 self._restore_work(request)
             elif action == "class_forget":
-                self._kept_works.pop(str(request.get("key")), None)
+                self._kept_work_by_key.pop(str(request.get("key")), None)
             elif action == "class_give_back":
                 self._give_back(request)
             elif action == "class_anew":
@@ -681,11 +685,11 @@ class Classroom:
     def _work_data(self, request: Json) -> Json:
         """Return the work of a pupil, or of a group, or kept work, of which the page names the
         key."""
-        group = self._groups.by_key(request.get("group"))
+        group = self._groups.group_by_key(request.get("group"))
         if group is not None:
             return {"version": group.program.number, "history": self._groups.history_lines(group),
                     **Work(group.text)._asdict()}  # fmt: skip
-        owner = self._pupil(request) or self._kept_works.get(str(request.get("key")))
+        owner = self._pupil(request) or self._kept_work_by_key.get(str(request.get("key")))
         version = owner.version if isinstance(owner, Pupil) else 0
         return {"version": version, **(owner.work if owner else NOTHING)._asdict()}
 
@@ -719,7 +723,7 @@ class Classroom:
             raise BadRequest
         if any(
             (kept_work.name, kept_work.work) == (work_name, work)
-            for kept_work in self._kept_works.values()
+            for kept_work in self._kept_work_by_key.values()
         ):
             return
         if self._work_count() >= MOST_WORKS:
@@ -728,7 +732,7 @@ class Classroom:
 
     def _give_back(self, request: Json) -> None:
         """Give kept work to one pupil: their page puts it into the editor."""
-        kept_work, pupil = self._kept_works.get(str(request.get("key"))), self._pupil(request)
+        kept_work, pupil = self._kept_work_by_key.get(str(request.get("key"))), self._pupil(request)
         if kept_work is not None:  # the page may have taken it a moment ago
             kept_work.recipient_token = pupil.token if pupil else ""
 
@@ -737,8 +741,8 @@ class Classroom:
         for robot in self._robots:
             robot.take_back()
         self._groups.end()
-        self._pupils.clear()
-        self._kept_works.clear()
+        self._pupil_by_token.clear()
+        self._kept_work_by_key.clear()
         self.code = _new_code()
         self._is_continued = False
 
@@ -763,7 +767,7 @@ class Classroom:
                         "key": item.key,
                         **item.work._asdict(),
                     }
-                    for item in self._kept_works.values()
+                    for item in self._kept_work_by_key.values()
                 ],
                 "pupils": [
                     {
@@ -773,7 +777,7 @@ class Classroom:
                         "address": pupil.address,
                         **pupil.work._asdict(),
                     }
-                    for pupil in self._pupils.values()
+                    for pupil in self._pupil_by_token.values()
                 ],
             }
 
@@ -789,14 +793,14 @@ class Classroom:
             for row in _rows(state, "kept"):
                 kept_work = _work_of_row(row, Work.of(row))
                 if kept_work is not None and self._work_count() < MOST_WORKS:
-                    if kept_work.recipient_token not in self._pupils:
+                    if kept_work.recipient_token not in self._pupil_by_token:
                         kept_work.recipient_token = ""
                     self._keep(kept_work)
-            self._is_continued = bool(self._pupils or self._kept_works)
-            present_tokens = set(self._pupils) if is_same_lesson else set()
+            self._is_continued = bool(self._pupil_by_token or self._kept_work_by_key)
+            present_tokens = set(self._pupil_by_token) if is_same_lesson else set()
             self._groups.resume(_rows(state, "groups"), present_tokens.__contains__)
             if not is_same_lesson:
-                for pupil in list(self._pupils.values()):
+                for pupil in list(self._pupil_by_token.values()):
                     self._forget(pupil)
                 return 0
             for port in state["robots"] if isinstance(state.get("robots"), list) else []:
@@ -810,7 +814,7 @@ class Classroom:
             if not self._is_turn_given:
                 with suppress(BadRequest):
                     self._turn_s = whole_number(state, "turn_s", SHORTEST_TURN_S, LONGEST_TURN_S)
-            return len(self._pupils)
+            return len(self._pupil_by_token)
 
     def _set_in_class(self, class_robot: ClassRobot, is_in_class: bool) -> None:
         """Give a robot to the class, or take it away."""
@@ -838,7 +842,7 @@ class Classroom:
         with self._lock:
             now_s = self._clock()
             present_pupils = [
-                pupil for pupil in self._pupils.values() if now_s - pupil.heard_s <= QUEUE_S
+                pupil for pupil in self._pupil_by_token.values() if now_s - pupil.heard_s <= QUEUE_S
             ]
             are_told = all(pupil.knows_end for pupil in present_pupils)
             return bool(self._ending) and (are_told or now_s - self._ended_s > OVER_S)
@@ -860,11 +864,11 @@ class Classroom:
                     "given": self._pupil_number(item.recipient_token),
                     "alike": [
                         pupil.number
-                        for pupil in self._pupils.values()
+                        for pupil in self._pupil_by_token.values()
                         if are_alike(pupil.typed_name, item.typed_name)
                     ],
                 }
-                for item in self._kept_works.values()
+                for item in self._kept_work_by_key.values()
             ],
             "pupils": [
                 {
@@ -880,7 +884,7 @@ class Classroom:
                     "hand": pupil.hand_number or 0,
                     "lessons": pupil.work.lessons,
                 }
-                for pupil in self._pupils.values()
+                for pupil in self._pupil_by_token.values()
             ],
             "groups": [
                 {
@@ -904,10 +908,12 @@ class Classroom:
 
     def _pupil(self, request: Json) -> Pupil | None:
         number = request.get("pupil")
-        return next((pupil for pupil in self._pupils.values() if pupil.number == number), None)
+        return next(
+            (pupil for pupil in self._pupil_by_token.values() if pupil.number == number), None
+        )
 
     def _pupil_number(self, token: str) -> int:
-        return self._pupils[token].number if token in self._pupils else 0
+        return self._pupil_by_token[token].number if token in self._pupil_by_token else 0
 
 
 def _own_request(pupil: Pupil, request: Json) -> Json:

@@ -21,7 +21,7 @@ OPEN_TIMEOUT_S = 120.0  # for a browser of this computer to open
 
 
 class _Code(NamedTuple):
-    is_for_here: bool
+    is_for_this_computer: bool
     until_s: float
 
 
@@ -35,12 +35,12 @@ class Entrances:
         self._codes: dict[str, _Code] = {}
         self._used_codes: set[str] = set()
 
-    def new_code(self, is_for_here: bool = False) -> str:
-        """Return a new code. `is_for_here`: a browser of this computer gets it, and is quick."""
+    def new_code(self, is_for_this_computer: bool = False) -> str:
+        """Return a new code. `is_for_this_computer`: its browser gets it, and is quick."""
         code = new_token()
-        until_s = self._clock() + OPEN_TIMEOUT_S if is_for_here else float("inf")
+        until_s = self._clock() + OPEN_TIMEOUT_S if is_for_this_computer else float("inf")
         with self._lock:
-            self._codes[code] = _Code(is_for_here, until_s)
+            self._codes[code] = _Code(is_for_this_computer, until_s)
         return code
 
     def is_unused(self, code: str) -> bool:
@@ -59,7 +59,9 @@ class Entrances:
             if code in self._used_codes and not peers.tells_users():
                 self.token = new_token()
             entry = self._codes.get(code)
-            if entry is None or (entry.is_for_here and not peers.is_on_this_computer(peer)):
+            if entry is None or (
+                entry.is_for_this_computer and not peers.is_on_this_computer(peer)
+            ):
                 return ""
             del self._codes[code]
             self._used_codes.add(code)

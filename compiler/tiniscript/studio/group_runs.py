@@ -44,12 +44,12 @@ class GroupRuns:
         self._began_s = 0.0
         self._value_count = 0  # of the run
 
-    def tell(self, driver: str, news: list[Json]) -> None:
+    def add_news(self, driver: str, news: list[Json]) -> None:
         """The robot that a pupil drives has told this."""
         with self._lock:
             for news_item in news:
                 for event in self._events_of(news_item):
-                    self._add(driver, event)
+                    self._add_event(driver, event)
 
     def news_after(self, position: object, token: str) -> tuple[int, list[Json]]:
         """Return the number of the newest news, and what a page has not heard that knows all until
@@ -70,32 +70,32 @@ class GroupRuns:
             yield {"event": "ROBOT", "robot": news_item["connected"]["robot"]}
         elif "over" in news_item:
             self._is_driver_alone = False
-            yield from self._end({"event": "OVER"})
+            yield from self._end_run({"event": "OVER"})
         elif event == "STARTED" and news_item["is_program"]:
-            yield self._begin(program)
+            yield self._begin_run(program)
         elif event == "STARTED":
             self._is_driver_alone = True
-            yield from self._end({"event": "OVER"})
+            yield from self._end_run({"event": "OVER"})
         elif event in _ENDING_EVENTS:
             self._is_driver_alone = False
-            yield from self._end(news_item)
+            yield from self._end_run(news_item)
         elif event in _EVENTS_OF_RUN and not self._is_driver_alone:
             if news_item.get("at", -1) >= 0 and program != self._program_checksum:
-                yield self._begin(program)  # by the robot's button: nothing has told of that
+                yield self._begin_run(program)  # by the robot's button: nothing has told of that
             if self._program_checksum:
                 yield news_item
 
-    def _begin(self, program: str) -> Json:
+    def _begin_run(self, program: str) -> Json:
         self._program_checksum, self._is_driver_alone, self._value_count = program, False, 0
         self._first_number, self._began_s = self._news_count + 1, self._clock()
         return {"event": "STARTED", "program": program, "is_program": True}
 
-    def _end(self, event: Json) -> Iterator[Json]:
+    def _end_run(self, event: Json) -> Iterator[Json]:
         if self._program_checksum:
             self._program_checksum = ""
             yield event
 
-    def _add(self, driver: str, event: Json) -> None:
+    def _add_event(self, driver: str, event: Json) -> None:
         name = event["event"]
         self._news_count += 1
         news = {**event, "number": self._news_count, "ms": self._since_ms}

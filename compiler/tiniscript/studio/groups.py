@@ -94,7 +94,7 @@ class Group:
     program: SharedProgram
     journal: Journal
     key: str
-    members: dict[str, Member] = field(default_factory=dict)  # by token
+    member_by_token: dict[str, Member] = field(default_factory=dict)  # by token
     version: int = 0
     owner_of_page: dict[str, str] = field(default_factory=dict)  # tokens; the newest ones
     name_of_page: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone
@@ -107,7 +107,7 @@ class Group:
 
     @property
     def pupils(self) -> list[Member]:
-        return [member for member in self.members.values() if member.token != TEACHER]
+        return [member for member in self.member_by_token.values() if member.token != TEACHER]
 
 
 class Groups:
@@ -117,7 +117,7 @@ class Groups:
         self._clock = clock
         self._folder = folder
         self._lock = RLock()  # never asked for by who has that of a group
-        self._groups: dict[str, Group] = {}  # by key
+        self._group_by_key: dict[str, Group] = {}  # by key
         self._rate = Rate(*CHANGE_RATE)
         self._rate_lock = Lock()
 
@@ -154,7 +154,7 @@ class Groups:
         if not isinstance(name, str):
             raise BadRequest
         with self._lock:
-            group, own_group = self.by_key(request.get("group")), self.group_of(TEACHER)
+            group, own_group = self.group_by_key(request.get("group")), self.group_of(TEACHER)
             if group is None:
                 return {"failure": "group_gone"}
             if own_group is not None and own_group is not group:
@@ -162,40 +162,42 @@ class Groups:
             return self._enter(group, TEACHER, plain_name(name), request.get("before"))
 
     def _find_by_name(self, name: str) -> Group | None:
-        return next((group for group in self._groups.values() if are_alike(group.name, name)), None)
+        return next(
+            (group for group in self._group_by_key.values() if are_alike(group.name, name)), None
+        )
 
     def _create(self, token: str, name: str, text: str) -> Group | None:
         """Return a new group; None where there are too many. Raises Unparsed, Refused."""
-        own_groups = [group for group in self._groups.values() if group.founder == token]
-        if len(self._groups) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
+        own_groups = [group for group in self._group_by_key.values() if group.founder == token]
+        if len(self._group_by_key) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
             return None
-        return self._add(name, token, new_token(), _tree_of(text))
+        return self._add_group(name, token, new_token(), _tree_of(text))
 
-    def _add(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
+    def _add_group(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
         """Add a group with a program, or one that goes on from its journal."""
         journal = Journal(self._folder / f"{key}.journal" if self._folder is not None else None)
         epoch = new_token()
         program = journal.begin(tree, epoch) if tree is not None else journal.resume(epoch)
         if program is None:
             return None
-        group = self._groups[key] = Group(name, founder, program, journal, key)
+        group = self._group_by_key[key] = Group(name, founder, program, journal, key)
         return group
 
     def _enter(self, group: Group, token: str, name: str, old_page: object) -> Json:
         now_s = self._clock()
         with group.condition:
-            member = group.members.get(token)
+            member = group.member_by_token.get(token)
             if member is None:
                 pupils = group.pupils
                 if token != TEACHER and len(pupils) >= MOST_MEMBERS:
                     silent_member = min(pupils, key=lambda each: each.heard_s)
                     if now_s - silent_member.heard_s <= GONE_S:
                         return {"failure": "group_full"}
-                    del group.members[silent_member.token]
-                taken_marks = {member.mark for member in group.members.values()}
+                    del group.member_by_token[silent_member.token]
+                taken_marks = {member.mark for member in group.member_by_token.values()}
                 free_marks = (k for k in range(MARK_COUNT) if k not in taken_marks)
                 mark = MARK_COUNT if token == TEACHER else next(free_marks)
-                member = group.members[token] = Member(token, name, "", now_s, mark)
+                member = group.member_by_token[token] = Member(token, name, "", now_s, mark)
             if not isinstance(old_page, str) or group.owner_of_page.get(old_page) != token:
                 old_page = (
                     f"m{1 + max((_page_number(page) for page in group.owner_of_page), default=0)}"
@@ -217,13 +219,13 @@ class Groups:
             if group is None:
                 return
             with group.condition:
-                del group.members[token]
+                del group.member_by_token[token]
                 is_over = not group.pupils and group.program.number == 0
                 if is_over:
-                    group.members.clear()
+                    group.member_by_token.clear()
                 _notify(group)
             if is_over:
-                del self._groups[group.key]
+                del self._group_by_key[group.key]
                 group.journal.forget()
 
     def answer(self, token: str, request: Json) -> Json:
@@ -240,7 +242,7 @@ class Groups:
         if not isinstance(epoch, str) or not isinstance(changes, list):
             raise BadRequest
         with group.condition:
-            member = group.members.get(token)
+            member = group.member_by_token.get(token)
             if member is None or member.page != request.get("page"):
                 return {"left": True}
             member.heard_s = self._clock()
@@ -250,8 +252,8 @@ class Groups:
             group.condition.notify_all()
             run_position = request.get("ran")
             if request.get("waits") is True and not changes:
-                self._hold(group, member, since_number, seen_version, run_position)
-            if group.members.get(token) is not member:
+                self._wait_for_news(group, member, since_number, seen_version, run_position)
+            if group.member_by_token.get(token) is not member:
                 return {"left": True}
             number, runs = group.runs.news_after(run_position, token)
             return {
@@ -259,7 +261,9 @@ class Groups:
                 "group": group.name,
                 "saw": group.version,
                 "others": [
-                    _member_data(other) for other in group.members.values() if other is not member
+                    _member_data(other)
+                    for other in group.member_by_token.values()
+                    if other is not member
                 ],
                 "ran": [group.runs.key, number],
                 **({"runs": runs} if runs else {}),
@@ -268,12 +272,12 @@ class Groups:
 
     def _drop_silent_teacher(self, group: Group) -> None:
         """Nobody sees a teacher whose page is silent; one that comes back has left."""
-        teacher = group.members.get(TEACHER)
+        teacher = group.member_by_token.get(TEACHER)
         if teacher is not None and self._clock() - teacher.heard_s > GONE_S:
-            del group.members[TEACHER]
+            del group.member_by_token[TEACHER]
             _notify(group)
 
-    def _hold(
+    def _wait_for_news(
         self,
         group: Group,
         member: Member,
@@ -289,7 +293,7 @@ class Groups:
         while (
             (group.program.number, group.version, member.hold_count)
             == (since_number, seen_version, hold_number)
-            and group.members.get(member.token) is member
+            and group.member_by_token.get(member.token) is member
             and not group.runs.news_after(run_position, member.token)[1]
             and (left_s := end_s - monotonic()) > 0
         ):  # a robot's thread, which waits for nobody, wakes nobody
@@ -306,7 +310,7 @@ class Groups:
             size = len(json.dumps(row, separators=(",", ":")))
             cost = 1 + min(size, CHANGE_BYTES) // BYTES_PER_COST
             with self._rate_lock:
-                if not self._rate.take(member.token, self._clock(), cost):
+                if not self._rate.take_amount(member.token, self._clock(), cost):
                     return False
             if size > CHANGE_BYTES:
                 group.program.refuse(uid, TOO_LONG)
@@ -336,12 +340,15 @@ class Groups:
 
     def group_of(self, token: str) -> Group | None:
         with self._lock:
-            return next((group for group in self._groups.values() if token in group.members), None)
+            return next(
+                (group for group in self._group_by_key.values() if token in group.member_by_token),
+                None,
+            )
 
     def mate_tokens(self, token: str) -> list[str]:
         """Return the tokens of all who are in a pupil's group, the own one, too."""
         group = self.group_of(token)
-        return [*group.members] if group is not None else [token]
+        return [*group.member_by_token] if group is not None else [token]
 
     def runs_of(self, token: str) -> GroupRuns | None:
         """Return where what a pupil's robot tells goes: to the pupil's group, if any."""
@@ -353,7 +360,7 @@ class Groups:
         group = self.group_of(token)
         if group is None or not stops:
             return True
-        member = group.members[token]
+        member = group.member_by_token[token]
         is_new, member.stop_count = stops > member.stop_count, max(stops, member.stop_count)
         return is_new
 
@@ -361,15 +368,15 @@ class Groups:
         """Return what a pupil sees of all groups."""
         with self._lock:
             return [{"name": group.name, "members": [member.name for member in group.pupils]}
-                    for group in self._groups.values()]  # fmt: skip
+                    for group in self._group_by_key.values()]  # fmt: skip
 
-    def by_key(self, key: object) -> Group | None:
+    def group_by_key(self, key: object) -> Group | None:
         with self._lock:
-            return self._groups.get(str(key))
+            return self._group_by_key.get(str(key))
 
     def all(self) -> list[Group]:
         with self._lock:
-            return [*self._groups.values()]
+            return [*self._group_by_key.values()]
 
     def history(self, group: Group) -> list[Json]:
         """Return what was done, and by whom as far as that is known."""
@@ -394,12 +401,12 @@ class Groups:
     def end(self) -> None:
         """Forget all groups, and what is kept of them."""
         with self._lock:
-            for group in self._groups.values():
+            for group in self._group_by_key.values():
                 with group.condition:
-                    group.members.clear()
+                    group.member_by_token.clear()
                     _notify(group)
                 group.journal.forget()
-            self._groups.clear()
+            self._group_by_key.clear()
 
     def state_to_keep(self) -> list[Json]:
         """Return what groups go on with after a crash, besides their journals."""
@@ -411,9 +418,9 @@ class Groups:
                     "founder": group.founder,
                     "owners": group.owner_of_page,
                     "members": [[member.token, member.name, member.page]
-                                for member in group.members.values()],
+                                for member in group.member_by_token.values()],
                 }
-                for group in self._groups.values()
+                for group in self._group_by_key.values()
             ]  # fmt: skip
 
     def resume(self, rows: list[Json], is_here: Callable[[str], bool]) -> None:
@@ -423,13 +430,13 @@ class Groups:
                 key, name, founder = row.get("key"), row.get("name"), row.get("founder")
                 group_name = plain_name(name) if isinstance(name, str) else ""
                 is_key = isinstance(key, str) and re.fullmatch("[0-9a-f]{32}", key) is not None
-                if not is_key or not group_name or len(self._groups) >= MOST_GROUPS:
+                if not is_key or not group_name or len(self._group_by_key) >= MOST_GROUPS:
                     continue
-                group = self._add(group_name, str(founder), str(key), None)
+                group = self._add_group(group_name, str(founder), str(key), None)
                 if group is None:
                     continue
                 owners = row.get("owners")
-                owner_of_page = dict.fromkeys(group.program.last_counts, "")
+                owner_of_page = dict.fromkeys(group.program.last_count_by_page, "")
                 owner_of_page.update(owners if isinstance(owners, dict) else {})
                 group.owner_of_page = {page: str(owner) for page, owner in owner_of_page.items()
                                 if _PAGE_NAME.fullmatch(page)}  # fmt: skip
@@ -441,7 +448,7 @@ class Groups:
         """Delete journals of groups that there are not any more."""
         with self._lock, suppress(OSError):
             for path in self._folder.iterdir() if self._folder is not None else ():
-                if path.name.partition(".")[0] not in self._groups:
+                if path.name.partition(".")[0] not in self._group_by_key:
                     path.unlink()
 
     def _bring_back(
@@ -450,9 +457,13 @@ class Groups:
         if not isinstance(member_data, list) or len(member_data) != 3:
             return
         token, name, page = map(str, member_data)
-        if is_here(token) and _PAGE_NAME.fullmatch(page) and len(group.members) < MOST_MEMBERS:
-            mark = len(group.members)
-            group.members[token] = Member(token, name, page, self._clock(), mark)
+        if (
+            is_here(token)
+            and _PAGE_NAME.fullmatch(page)
+            and len(group.member_by_token) < MOST_MEMBERS
+        ):
+            mark = len(group.member_by_token)
+            group.member_by_token[token] = Member(token, name, page, self._clock(), mark)
 
 
 def _page_number(page: str) -> int:

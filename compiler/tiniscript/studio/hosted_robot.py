@@ -159,21 +159,25 @@ class HostedRobot:
             return False
         opening.remember(self.port, robot.name)
         self.name = robot.name
-        self.attending.tell([{"connected": robot_data(robot), "held_by": connection.holder_verb}])
+        self.attending.queue_news(
+            [{"connected": robot_data(robot), "held_by": connection.holder_verb}]
+        )
         return True
 
     def _part_from_robot(self, link: RobotLink) -> None:
         """Stop what the page has started, and tell it of that before it hears that it is over."""
         if not link.has_run:
             return
-        self.attending.tell([*link.news(), {"event": "STOPPING"}])  # no earlier stop confirms this
+        self.attending.queue_news(
+            [*link.news(), {"event": "STOPPING"}]
+        )  # no earlier stop confirms this
         link.stop()
         self.is_unconfirmed = True
         end_s = monotonic() + opening.CONFIRM_TIMEOUT_S
         events: list[str | None] = []
         while monotonic() < end_s and "LOST" not in events:
             news = link.news(LOOK_S)
-            self.attending.tell(news)
+            self.attending.queue_news(news)
             events = [news_item.get("event") for news_item in news]
             if "STOPPED" in events:
                 self.is_unconfirmed = False
@@ -182,4 +186,4 @@ class HostedRobot:
     def _end(self, reason: str, message: str = "") -> None:
         self.has_ended = True
         self.attending.end()
-        self.attending.tell([{"over": reason, "said": message}])
+        self.attending.queue_news([{"over": reason, "said": message}])

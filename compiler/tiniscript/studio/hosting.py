@@ -35,7 +35,7 @@ class Hosting:
 
     def __init__(self) -> None:
         self._lock = Lock()
-        self._by_page: dict[str, HostedRobot] = {}
+        self._robot_by_page: dict[str, HostedRobot] = {}
         self._parting_robots: list[HostedRobot] = []
         self._stopped_robots: list[HostedRobot] = []  # those that the last STOP for all has reached
         self._latched_until_s = 0.0
@@ -53,7 +53,7 @@ class Hosting:
         if action == "connect":
             return self._connect(page, request)
         with self._lock:
-            robot = self._by_page.get(page)
+            robot = self._robot_by_page.get(page)
         if action not in ("beat", "stop", "leave"):
             raise BadRequest
         if robot is None:
@@ -76,7 +76,7 @@ class Hosting:
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""
         with self._lock:
-            return self._by_page.get(page)
+            return self._robot_by_page.get(page)
 
     def is_free(self, port: str) -> bool:
         """Return whether no page has a robot there, nor is one being left."""
@@ -87,7 +87,7 @@ class Hosting:
         """Stop what pages have started, and close all ports; return those where no robot has
         confirmed that."""
         with self._lock:
-            hosted_robots = [*self._by_page.values(), *self._parting_robots]
+            hosted_robots = [*self._robot_by_page.values(), *self._parting_robots]
         for hosted_robot in hosted_robots:
             hosted_robot.leave(is_letting_go=True)
         for hosted_robot in hosted_robots:
@@ -101,7 +101,7 @@ class Hosting:
         tab, connection = _connection(page, request)
         with self._lock:
             self._forget_ended()
-            own_robot = self._by_page.get(page)
+            own_robot = self._robot_by_page.get(page)
             is_same = own_robot is not None and own_robot.tab == tab
             if own_robot is not None and is_same and connection <= own_robot.connection:
                 own_robot.attending.connect_again()  # the answer was lost, or it comes late
@@ -116,7 +116,7 @@ class Hosting:
                 return {"failure": "other_tab"}
             for rival in rivals:  # nobody knows of it any more
                 rival.leave()
-            if sum(map(_is_driving, self._by_page.values())) >= MOST_ROBOTS:
+            if sum(map(_is_driving, self._robot_by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
             if own_robot is not None:
                 self._parting_robots.append(own_robot)
@@ -125,14 +125,14 @@ class Hosting:
                 port, profile_name, str(language), tab, connection, stop_count, port_robots
             )
             hosted_robot.attending.latch(self._latched_until_s, is_stopping=False)
-            self._by_page[page] = hosted_robot
+            self._robot_by_page[page] = hosted_robot
         return {}
 
     def _robots_at(self, port: str) -> list[HostedRobot]:
         """Return who has a port, or is closing it. One that holds it for another command shares it
         with whoever comes."""
         wanted_port = canonical_port(port)
-        all_robots = [*self._by_page.values(), *self._parting_robots]
+        all_robots = [*self._robot_by_page.values(), *self._parting_robots]
         open_robots = [
             robot
             for robot in all_robots
@@ -142,17 +142,19 @@ class Hosting:
 
     def _forget_ended(self) -> None:
         """Forget what has ended, once its page knows why or is not there any more."""
-        all_robots = dict.fromkeys([*self._by_page.values(), *self._parting_robots])
+        all_robots = dict.fromkeys([*self._robot_by_page.values(), *self._parting_robots])
         self._parting_robots = [
             hosted_robot for hosted_robot in all_robots if hosted_robot.is_parting
         ]
-        self._by_page = {name: robot for name, robot in self._by_page.items()
+        self._robot_by_page = {name: robot for name, robot in self._robot_by_page.items()
                          if not (robot.has_ended and robot.attending.has_left)}  # fmt: skip
 
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            self._stopped_robots = [robot for robot in self._by_page.values() if _is_driving(robot)]
+            self._stopped_robots = [
+                robot for robot in self._robot_by_page.values() if _is_driving(robot)
+            ]
             self._latched_until_s = monotonic() + LATCH_S
         for hosted_robot in self._stopped_robots:
             hosted_robot.attending.latch()
@@ -173,11 +175,14 @@ def list_ports() -> list[Json]:
     """
     port_memory = known_ports.remembered_ports()
     virtual_robots = {robot.address: robot for robot in directory.unclaimed_robots()}
-    descriptions = {robot.port: robot.description for robot in ports.list_ports()}
-    port_names = [*descriptions, *(port for port in virtual_robots if port not in descriptions)]
+    description_by_port = {robot.port: robot.description for robot in ports.list_ports()}
+    port_names = [
+        *description_by_port,
+        *(port for port in virtual_robots if port not in description_by_port),
+    ]
     port_names += [
         port
-        for port in port_memory.names
+        for port in port_memory.name_by_port
         if port not in port_names and exists(port) and not directory.is_gone(port)
     ]
     port_names.sort(key=lambda port: port != port_memory.last_port)
@@ -186,8 +191,8 @@ def list_ports() -> list[Json]:
             "port": port,
             "name": virtual_robots[port].name
             if port in virtual_robots
-            else port_memory.names.get(port, ""),
-            "description": printable(descriptions.get(port, ""), DESCRIPTION_CHARACTERS),
+            else port_memory.name_by_port.get(port, ""),
+            "description": printable(description_by_port.get(port, ""), DESCRIPTION_CHARACTERS),
             "virtual": virtual_robots[port].robot if port in virtual_robots else None,
         }
         for port in port_names

@@ -60,9 +60,9 @@ def _case_folded(text: str) -> str:
 
 @cache
 def _table() -> dict[int, str]:
-    result: dict[int, str] = {}
+    look_by_code_point: dict[int, str] = {}
     for line in Path(__file__).with_name("alike.txt").read_text(encoding="utf-8").splitlines():
         if not line.startswith("# "):
             looks, _, signs = line.partition(" ")
-            result |= dict.fromkeys(map(ord, signs), looks)
-    return result
+            look_by_code_point |= dict.fromkeys(map(ord, signs), looks)
+    return look_by_code_point

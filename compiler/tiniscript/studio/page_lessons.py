@@ -225,7 +225,7 @@ def goal_shapes(number: int, seed: int) -> list[dict[str, Any]]:
                 corners = ((left, low), (right, low), (right, high), (left, high))
                 goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
             else:
-                goal["radius_cm"] = criterion.numbers["within_cm"]
+                goal["radius_cm"] = criterion.number_by_key["within_cm"]
             shapes.append(goal)
     return shapes
 

@@ -42,7 +42,7 @@ class PageKeys(KeyRing):
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
         new_keys = with_known_seals(decode_keys(data), self.keys)
         for key in new_keys:
-            self.settle(key)
+            self.settle_key(key)
         return len(new_keys)
 
     def _stored_keys(self) -> list[RobotKey]:
@@ -52,7 +52,7 @@ class PageKeys(KeyRing):
         """Any: the person has chosen its port, of which the page has no name that stays."""
         return True
 
-    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+    def _change_keys(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         new_keys = change(self.keys)
         self.has_changed = self.has_changed or new_keys != self.keys
         self.keys = new_keys
@@ -77,9 +77,9 @@ class PageLine(LinkConnection):
         return make(self.session)
 
     def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
-        return self._events.take() if self._events else None
+        return self._events.take_event() if self._events else None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self.session.tells_places = True
 
     def stop(self) -> int:
@@ -94,7 +94,7 @@ class PageLine(LinkConnection):
         data_to_send = self.session.poll(now_ms)
         events = self.session.events()
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for event in events)
-        self._events.put((now_ms, event) for event in events)
+        self._events.add_events((now_ms, event) for event in events)
         return data_to_send
 
 

@@ -11,7 +11,7 @@ from difflib import SequenceMatcher
 from typing import Any, NamedTuple
 
 from tiniscript.studio.block_form import Form, from_data, in_order
-from tiniscript.studio.block_printing import Printed, print_blocks
+from tiniscript.studio.block_printing import Printed, format_blocks
 from tiniscript.studio.block_reading import split_loose
 from tiniscript.syntax.formatter import BEFORE_COMMENT
 from tiniscript.together.form import Refused, data_of_change
@@ -77,7 +77,7 @@ def step(fields: Json, data: bytes) -> Json:
     printed: Printed | None = None
     if "blocks" in fields and blocks is not None:
         form = from_data(fields["blocks"]["form"])
-        printed = print_blocks(form)
+        printed = format_blocks(form)
         blocks = _write_blocks(page, blocks, form, fields["blocks"]["ids"])
         loose = split_loose(_rows(printed.text, None))[1]
     for news in fields["news"]:
@@ -109,7 +109,7 @@ def show_blocks(fields: Json, data: bytes) -> Json:
 
 def _write_blocks(page: Page, shown_blocks: ShownBlocks, form: Form, ids: list[str]) -> ShownBlocks:
     """Do in a page what was done to the blocks since they were shown; return what they show."""
-    printed = print_blocks(form._replace(loose=()))
+    printed = format_blocks(form._replace(loose=()))
     blocks_page = shown_blocks.page.copy()
     blocks_page.id_count = page.id_count
     rows = _rows(printed.text, None)

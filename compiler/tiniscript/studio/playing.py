@@ -143,7 +143,7 @@ class PlayedRun(Simulation):
         if not recording.is_virtual:
             marks = marks._replace(breakpoints=(*playable.sensor_of_show, *playable.read_offsets))
         super().__init__(recording.robot, played_world, playable.image, marks, settings)
-        if not recording.is_virtual and recording.is_by_button:
+        if not recording.is_virtual and recording.was_started_by_button:
             self._push_button()
 
     # -- its time ---------------------------------------------------------------------------------
@@ -211,7 +211,7 @@ class PlayedRun(Simulation):
             row = self._inputs[self._next_input]
             self._next_input += 1
             if not self.recording.is_virtual:
-                self._learn(row)
+                self._learn_readings(row)
             elif row.event == HALT:
                 self.session.stop(self.robot.now_ms)
             elif row.event == HELD:
@@ -287,13 +287,13 @@ class PlayedRun(Simulation):
 
     def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
-        self._listen()
+        self._read_events()
         while self.held_at is not None:
             self._program_offset = self.held_at
             if self._program_offset in self.playable.sensor_of_show:
                 self._tell_shown(self._program_offset)
             self.go_on()
-            self._listen()
+            self._read_events()
 
     def _tell_shown(self, offset: int) -> None:
         sensor = self.playable.sensor_of_show[offset]
@@ -337,7 +337,7 @@ class PlayedRun(Simulation):
             max(readings[number].low, min(readings[number].high, _reading_value(value[0]))),
         )
 
-    def _learn(self, row: Row) -> None:
+    def _learn_readings(self, row: Row) -> None:
         """The virtual sensors have the readings that the robot has told."""
         kind, number, value = self._reading(row)
         if kind == UNREAD:
@@ -348,7 +348,7 @@ class PlayedRun(Simulation):
             if number not in self._incomplete_sensors:
                 self._known_sensors.add(number)
 
-    def _listen(self) -> None:
+    def _read_events(self) -> None:
         started_ms = self.robot.started_ms or 0
         for event in self.take_events():
             is_read = event.kind == "READ"
@@ -387,7 +387,7 @@ class PlayedRun(Simulation):
         """
         recording = self.recording
         recorded_rows = [row for row in recording.rows if _is_program_event(row)]
-        if not recording.is_by_button or not recorded_rows:
+        if not recording.was_started_by_button or not recorded_rows:
             return recording.end_ms + _tolerance_ms(recording.end_ms)
         virtual_rows = [row for row in self._virtual_rows if _is_program_event(row)]
         if not virtual_rows:
@@ -402,7 +402,7 @@ class PlayedRun(Simulation):
         if not rows or rows[0].event == "LOST":
             return Divergence("empty")
         late_ms = 0
-        if self.recording.is_by_button and recorded_rows and virtual_rows:
+        if self.recording.was_started_by_button and recorded_rows and virtual_rows:
             late_ms = virtual_rows[0].ms - recorded_rows[0].ms
         recorded_rows = [row._replace(ms=row.ms + late_ms) for row in recorded_rows]
         end_ms = self.recording.end_ms + late_ms

@@ -14,11 +14,11 @@ class Rate:
         self._per_s = per_s
         self._amounts_left: dict[str, tuple[float, float]] = {}  # what was left, and when
 
-    def has(self, name: str, now_s: float, cost: float = 1) -> bool:
+    def has_left(self, name: str, now_s: float, cost: float = 1) -> bool:
         """Return whether so much is left."""
         return self._amount_left(name, now_s) >= cost
 
-    def take(self, name: str, now_s: float, cost: float = 1) -> bool:
+    def take_amount(self, name: str, now_s: float, cost: float = 1) -> bool:
         """Take so much, where it is left; return whether it was."""
         amount = self._amount_left(name, now_s)
         is_left = amount >= cost

@@ -93,8 +93,8 @@ class Recording(NamedTuple):
 
     Of a virtual robot `ms` count from when it is switched on, in `world` with `seed` and
     `given_readings` in thousandths, by sensor number; of a real one from when its program began,
-    and where that `is_by_button`, from its first row. `rows` are in their order, without END, which
-    was at `end_ms`; `version` is that of the tsc which recorded it.
+    and where that `was_started_by_button`, from its first row. `rows` are in their order, without
+    END, which was at `end_ms`; `version` is that of the tsc which recorded it.
     """
 
     robot_kind: str
@@ -107,7 +107,7 @@ class Recording(NamedTuple):
     world: World | None = None
     seed: int = 1
     given_readings: Mapping[int, Sequence[int]] = {}
-    is_by_button: bool = False
+    was_started_by_button: bool = False
     version: str = __version__
 
     @property
@@ -175,7 +175,8 @@ class ReadingRows:
 
 def header_line(
     robot_kind: str, text: str, robot: Robot, program: int, *, world: str | Form | None = None,
-    seed: int = 1, given_readings: dict[int, list[int]] | None = None, is_by_button: bool = False,
+    seed: int = 1, given_readings: dict[int, list[int]] | None = None,
+    was_started_by_button: bool = False,
 ) -> str:  # fmt: skip
     """Return the first line of a file; `world` is the name of a shipped one, or a form."""
     fields: dict[str, Any] = {
@@ -193,7 +194,7 @@ def header_line(
         fields["told"] = {
             names[number]: values for number, values in (given_readings or {}).items()
         }
-    elif is_by_button:
+    elif was_started_by_button:
         fields["is_by_button"] = True
     return json.dumps(fields, ensure_ascii=False, separators=(",", ":")) + "\n"
 
@@ -277,7 +278,7 @@ def _parse_header(fields: dict[str, Any]) -> Recording:
         given_readings=_parse_readings(fields.get("told"), robots.load(robot))
         if is_virtual
         else {},
-        is_by_button=not is_virtual and fields.get("is_by_button") is True,
+        was_started_by_button=not is_virtual and fields.get("is_by_button") is True,
         version=fields["tsc"],
     )
 

@@ -100,7 +100,7 @@ class RobotLink:
     def __init__(self, connection: LinkConnection, language: str) -> None:
         self.language = language
         self._connection = connection
-        connection.tell_places()
+        connection.enable_place_events()
         self._requests: list[_PageRequest] = []
         self._answers: list[Json] = []
         # Runs: which the page has started, which was the last to begin, and to end.
@@ -135,7 +135,7 @@ class RobotLink:
         limit_ms = whole_number(request, "limit_ms", 1, LONGEST_LIMIT_MS, LIMIT_MS)
         refusal_reply = self._refusal_of(request) if "image" in request else None
         if refusal_reply is not None:
-            self._answers.append({"id": number, **self._failure(refusal_reply)})
+            self._answers.append({"id": number, **self._failure_data(refusal_reply)})
             return
 
         def make_pending(session: Requester) -> PendingRequest[Any]:
@@ -169,9 +169,9 @@ class RobotLink:
                 break
             self._note_run(event[1])
             if isinstance(event[1], ReadingEvent):
-                news += self._rows(event[1], event[0])
+                news += self._rows_of_reading(event[1], event[0])
             else:
-                news += self._event(event[1])
+                news += self._event_data(event[1])
         return news
 
     def _outcomes(self) -> list[Json]:
@@ -185,7 +185,8 @@ class RobotLink:
                 if request.is_program:
                     self._program_run = self._known_run(reply.values.run)
         return [
-            {"id": request.number, **self._answer(request.pending)} for request in finished_requests
+            {"id": request.number, **self._answer_data(request.pending)}
+            for request in finished_requests
         ]
 
     def _note_run(self, event: Event) -> None:
@@ -211,7 +212,7 @@ class RobotLink:
         robot = self._connection.robot
         return robot is not None and bool(robot.values.features & READINGS)
 
-    def _rows(self, event: ReadingEvent, time_ms: int) -> list[Json]:
+    def _rows_of_reading(self, event: ReadingEvent, time_ms: int) -> list[Json]:
         """Return an event with the rows of a reading for the recording of its run."""
         robot, run = self._connection.robot, self._known_run(event.run)
         name = shipped_name_of_kit(robot.kit) if robot is not None else None
@@ -236,11 +237,11 @@ class RobotLink:
             return None
         return refusal(_image(request), robots.load(robot_of(request)), robot)
 
-    def _answer(self, pending: PendingRequest[Any]) -> Json:
+    def _answer_data(self, pending: PendingRequest[Any]) -> Json:
         reply = pending.outcome
         assert reply is not None
         if reply.status != OK:
-            return self._failure(reply)
+            return self._failure_data(reply)
         values = reply.values
         if isinstance(values, ReceiptReply):
             run = self._known_run(values.run)
@@ -265,7 +266,7 @@ class RobotLink:
             return {"ok": True, "robot": robot_data(robot)}
         return {"ok": True}
 
-    def _failure(self, reply: Reply[Any]) -> Json:
+    def _failure_data(self, reply: Reply[Any]) -> Json:
         reason = reason_of(self._connection, reply)
         board = find_stranger(self._connection) if reason == FOREIGN else None
         if board is not None:
@@ -280,7 +281,7 @@ class RobotLink:
 
     # -- events -----------------------------------------------------------------------------------
 
-    def _event(self, event: Event) -> list[Json]:
+    def _event_data(self, event: Event) -> list[Json]:
         data: Json = {"event": event.name}
         if event.name == "SHOW":
             data["value"] = value_text(event.value, bool(event.is_yes_no))

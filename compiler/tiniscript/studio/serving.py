@@ -219,11 +219,11 @@ class Server(ThreadingHTTPServer):
         # Which has asked last is the last.
         self._connections: dict[socket.socket, _Client] = {}
 
-    def entrance(self, is_for_here: bool = False) -> str:
+    def entrance(self, is_for_this_computer: bool = False) -> str:
         """Return a new address by which the user's page reaches the robots, the first time."""
         if self.robots is None:
             return self.address
-        return f"{self.address}{CODE_PREFIX}{self.entrances.new_code(is_for_here)}"
+        return f"{self.address}{CODE_PREFIX}{self.entrances.new_code(is_for_this_computer)}"
 
     def is_unused(self, entrance: str) -> bool:
         """Whether nobody has opened such an address."""

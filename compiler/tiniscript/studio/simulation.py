@@ -149,7 +149,7 @@ class Simulation:
         inputs, self._waiting_inputs = self._waiting_inputs, []
         for event in inputs:
             self._replay_event(event)
-            self._note(event)
+            self._note_event(event)
 
     def _replay_event(self, event: str) -> None:
         if event == DOWN:
@@ -161,7 +161,7 @@ class Simulation:
             assert remote_state is not None, event
             self.session.press(*remote_state)
 
-    def _note(self, event: str) -> None:
+    def _note_event(self, event: str) -> None:
         self._take_rows()
         self._rows.add(Row(self.robot.now_ms, event))
 
@@ -202,7 +202,7 @@ class Simulation:
         A held program does nothing more.
         """
         self.is_stopped = False
-        self._note(HELD if self._is_held_midway else HALT)
+        self._note_event(HELD if self._is_held_midway else HALT)
         self.session.stop(self.robot.now_ms)
         self._until(lambda: self.is_stopped)
 

@@ -135,7 +135,7 @@ def _open_run(fields: Json, data: bytes) -> Json:
         "shapes": world_shapes,
         "rows": [row.cells for row in recording.rows],
         "end_ms": recording.end_ms,
-        "is_by_button": recording.is_by_button,
+        "is_by_button": recording.was_started_by_button,
     }
 
 
@@ -148,9 +148,9 @@ def _write_run(fields: Json, data: bytes) -> Json:
         if fields["of"] == recordings.VIRTUAL
         else None
     )
-    is_by_button = fields.get("is_by_button", False)
+    was_started_by_button = fields.get("is_by_button", False)
     header = recordings.header_line(fields["of"], fields["text"], robot, int(fields["program"], 16),
-                            world=world, is_by_button=is_by_button)  # fmt: skip
+                            world=world, was_started_by_button=was_started_by_button)  # fmt: skip
     return {"file": recordings.encode(header, rows, fields["end_ms"])}
 
 

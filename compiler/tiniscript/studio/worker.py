@@ -18,7 +18,7 @@ from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.named_robot import rename_robot
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, first_blocks, from_data, in_order, size_of
-from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import LOOSE_PREFIX, read_blocks
 
 Json = dict[str, Any]
@@ -90,7 +90,7 @@ def _blocks(fields: Json, data: bytes) -> Json:
 
 
 def _text(fields: Json, data: bytes) -> Json:
-    return print_blocks(from_data(fields["form"]))._asdict()
+    return format_blocks(from_data(fields["form"]))._asdict()
 
 
 def _rename(fields: Json, data: bytes) -> Json:

@@ -68,11 +68,13 @@ def toml_of(form: Form) -> str:
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
     elif SOURCE_LANGUAGE in labels:  # without what the catalogue of names says of it
-        by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
+        labels_by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
         labels = {
-            **by_language,
+            **labels_by_language,
             **{
-                language: name for language, name in labels.items() if name != by_language[language]
+                language: name
+                for language, name in labels.items()
+                if name != labels_by_language[language]
             },
         }
     tables = [

@@ -23,16 +23,16 @@ class Cursor:
         self.i = 0
 
     @property
-    def token(self) -> Token:
+    def current_token(self) -> Token:
         return self.tokens[self.i]
 
     @property
-    def following(self) -> Token:
+    def following_token(self) -> Token:
         """The token after the next one. END follows itself."""
         return self.tokens[min(self.i + 1, len(self.tokens) - 1)]
 
     @property
-    def last(self) -> Token:
+    def last_token(self) -> Token:
         """The token that was read last."""
         return self.tokens[self.i - 1]
 

@@ -50,7 +50,7 @@ class ExpressionParser:
         if token.kind is WORD and token.text == "FOREVER":
             cursor.i += 1
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
-        argument = self.expression(in_brackets=True)
+        argument = self.expression(is_in_brackets=True)
         token = cursor.peek_inner()  # the CM or DEG that may stand after the whole of it
         if token.kind is not WORD or token.text not in EXTENTS:
             return argument
@@ -59,10 +59,10 @@ class ExpressionParser:
 
     # -- expressions, by precedence ---------------------------------------------------------
 
-    def expression(self, in_brackets: bool) -> Argument:
+    def expression(self, is_in_brackets: bool) -> Argument:
         cursor = self.cursor
         start = cursor.i
-        postfix = Postfix(bracket_count=1 if in_brackets else 0)
+        postfix = Postfix(bracket_count=1 if is_in_brackets else 0)
         while not self.operand(postfix) or self.operator(postfix):
             pass
         parts = tuple(postfix.parts)
@@ -76,7 +76,7 @@ class ExpressionParser:
         token = cursor.tokens[cursor.i]
         if token.kind is NEWLINE and postfix.open_bracket_count:
             cursor.skip_newlines()
-            token = cursor.token
+            token = cursor.current_token
         kind = token.kind
         if kind is NUMBER:
             postfix.parts.append(self.number(token, postfix))
@@ -139,7 +139,7 @@ class ExpressionParser:
         cursor.i += 1
         if postfix.open_bracket_count:
             cursor.skip_newlines()
-        if cursor.token.kind != "(":
+        if cursor.current_token.kind != "(":
             self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, usage=function.usage)
         postfix.wait(OPEN, name.text, name, cursor.i)
         postfix.open_bracket_count += 1
@@ -227,7 +227,7 @@ class ExpressionParser:
         word_row = WORDS.get(token.text) if token.kind is WORD else None
         self.reject_unknown_character(token)
         if self.ends_above(token):
-            last_token = self.cursor.last
+            last_token = self.cursor.last_token
             self.reporter.fail(codes.MISSING_VALUE, last_token.span, before=last_token.text)
         if word_row is not None:
             self.reject_unit(token)
@@ -248,10 +248,10 @@ class ExpressionParser:
         Then it goes back there: what is below is read for itself.
         """
         cursor = self.cursor
-        k = cursor.i if cursor.token is token else cursor.tokens.index(token, cursor.i)
+        k = cursor.i if cursor.current_token is token else cursor.tokens.index(token, cursor.i)
         word_row = WORDS.get(token.text) if token.kind is WORD else None
         begins_instruction = word_row is not None and (
-            word_row.role.is_instruction or word_row.role.is_of_blocks
+            word_row.role.is_instruction or word_row.role.belongs_to_blocks
         )
         is_assignment = (
             token.kind is WORD and cursor.tokens[min(k + 1, len(cursor.tokens) - 1)].kind == "="
@@ -326,11 +326,13 @@ class ExpressionParser:
         A sign is passed, with all up to there: `= 5`; a name is the next one. None for a unit.
         """
         cursor = self.cursor
-        first_token = cursor.token
+        first_token = cursor.current_token
         depth = 0
-        while first_token.kind in SIGNS and (depth > 0 or cursor.token.kind not in VALUE_ENDS):
-            depth += (cursor.token.kind == "(") - (cursor.token.kind == ")")
-            if cursor.token.kind in INSTRUCTION_ENDS:
+        while first_token.kind in SIGNS and (
+            depth > 0 or cursor.current_token.kind not in VALUE_ENDS
+        ):
+            depth += (cursor.current_token.kind == "(") - (cursor.current_token.kind == ")")
+            if cursor.current_token.kind in INSTRUCTION_ENDS:
                 break
             cursor.i += 1
         is_unit = len(first_token.text) > 1 and bool(lexicon_meaning(first_token.text, "unit"))
@@ -340,7 +342,7 @@ class ExpressionParser:
     def report_not_only_names(self, bracket: int, extra: Token, names: Sequence[str]) -> None:
         """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
         tokens = self.cursor.tokens
-        header = Span(tokens[bracket - 2].start, self.cursor.last.end)
+        header = Span(tokens[bracket - 2].start, self.cursor.last_token.end)
         name = tokens[bracket - 1].text
         fix = f"DEF {name}({', '.join(names)})"
         repair = Repair((Edit(header, fix),), False)
@@ -350,7 +352,7 @@ class ExpressionParser:
 
     def report_missing_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""
-        token, previous = self.cursor.peek_inner(), self.cursor.last
+        token, previous = self.cursor.peek_inner(), self.cursor.last_token
         self.reject_semicolon(bracket)
         self.reject_unit(token if previous.text not in EXTENTS else previous)
         self.reject_unknown_character(token)

@@ -96,11 +96,11 @@ class _Line(Parser):
     def items(self) -> list[Item] | Failure:
         cursor, start = self.cursor, 0
         try:
-            if cursor.following.kind == "|":
+            if cursor.following_token.kind == "|":
                 self.setup()
-            while cursor.token.kind is not END:
+            while cursor.current_token.kind is not END:
                 start = cursor.i
-                if cursor.token.kind == ";":
+                if cursor.current_token.kind == ";":
                     cursor.i += 1
                 else:
                     self.instruction()
@@ -109,7 +109,7 @@ class _Line(Parser):
         return self._items
 
     def instruction(self) -> None:
-        start, word = self.cursor.i, self.cursor.token.text
+        start, word = self.cursor.i, self.cursor.current_token.text
         super().instruction()
         is_set = self.cursor.tokens[start + 1].kind == "="
         kind = "do" if is_set else _KINDS.get(word, "do")

@@ -91,13 +91,13 @@ class Parser:
             block = self.blocks.open_blocks[-1]
             end_word = BLOCK_ENDS[block.word]
             self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=end_word)
-            self.blocks.end(cursor.last.span)
+            self.blocks.end(cursor.last_token.span)
         return Program(start, tuple(self.blocks.program))
 
     def setup(self) -> str:
         cursor = self.cursor
         cursor.skip_newlines()
-        word, bar = cursor.token, cursor.following
+        word, bar = cursor.current_token, cursor.following_token
         if bar.kind != "|":
             return "SI"
         cursor.i += 2
@@ -142,7 +142,7 @@ class Parser:
         self.cursor.i += 2
         self.variables.add(name.text)
         try:
-            value = self.expressions.expression(in_brackets=False)
+            value = self.expressions.expression(is_in_brackets=False)
         except Failed:  # the name has a value, whichever
             self.blocks.current_body.append(Assign(name.text, name.span, None, name.span))
             raise
@@ -180,7 +180,7 @@ class Parser:
         if following.kind == "(" or following.kind in INSTRUCTION_ENDS:
             return
         if word.text in self.variables and following.kind in SUMS:
-            span = self.expressions.expression(in_brackets=False).span
+            span = self.expressions.expression(is_in_brackets=False).span
             fix = f"{word.text} = {word.text}{self.cursor.source[Span(word.end, span.end)]}"
             self.reporter.fail(codes.VARIABLE_ALONE, span, name=word.text, fix=fix)
         self.reporter.fail(codes.UNKNOWN_WORD, word.span, found=word.text)
@@ -196,7 +196,7 @@ class Parser:
         return arguments
 
     def until(self) -> Argument | None:
-        token = self.cursor.token
+        token = self.cursor.current_token
         if token.kind is not WORD or token.text != "UNTIL":
             return None
         self.cursor.i += 1
@@ -219,7 +219,7 @@ class Parser:
     def definition(self, word: Token) -> None:
         cursor = self.cursor
         cursor.i += 1
-        name = cursor.token
+        name = cursor.current_token
         if name.kind is not WORD:
             self.blocks.begin("DEF", word.span)
             self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
@@ -231,7 +231,7 @@ class Parser:
                 report(codes.RESERVED, name.span, word=name.text)
             else:
                 self.defs.add(name.text)
-            if cursor.token.kind == "(":
+            if cursor.current_token.kind == "(":
                 self.parameters(name, parameters)
         finally:
             span = Span(word.start, name.end)
@@ -273,10 +273,10 @@ class Parser:
         cursor = self.cursor
         cursor.i += 1
         self.reject_arguments(word)
-        name = cursor.token
-        while cursor.token.kind in (WORD, NUMBER):
+        name = cursor.current_token
+        while cursor.current_token.kind in (WORD, NUMBER):
             cursor.i += 1
-        if cursor.token is not name:
+        if cursor.current_token is not name:
             span = cursor.span_from(name)
             self.reporter.report(codes.TASK_HAS_NAME, span, found=cursor.source[span])
         self.blocks.begin("TASK", word.span)
@@ -367,7 +367,7 @@ class Parser:
     def argument_of(self, word: Token) -> Argument:
         """Read the `(argument)` of a header, an ELSEIF or an UNTIL."""
         cursor, word_row = self.cursor, WORDS[word.text]
-        bracket = cursor.token
+        bracket = cursor.current_token
         if bracket.kind != "(":
             self.report_missing_bracket(word_row)
         arguments = self.expressions.arguments()
@@ -390,7 +390,7 @@ class Parser:
                                  name=word.text, found=unit.op, right=fix)  # fmt: skip
 
     def reject_arguments(self, word: Token) -> None:
-        bracket = self.cursor.token
+        bracket = self.cursor.current_token
         if bracket.kind == "(":
             self.reporter.fail(
                 codes.NO_BRACKETS_HERE, bracket.span, word=word.text, right=word.text
@@ -400,15 +400,15 @@ class Parser:
 
     def report_missing_bracket(self, word_row: Word) -> None:
         """After a word its values are expected, in brackets."""
-        token = self.cursor.token
+        token = self.cursor.current_token
         self.expressions.reject_unknown_character(token)
-        word = self.cursor.last
+        word = self.cursor.last_token
         self.reporter.fail(codes.MISSING_OPEN, word.span, word=word_row.text, usage=word_row.usage)
 
     def report_missing_separator(self, first: Token) -> None:
         """The end of an instruction is expected."""
         cursor = self.cursor
-        token = cursor.token
+        token = cursor.current_token
         self.expressions.reject_unknown_character(token)
         if token.kind == ")":
             self.reporter.fail(codes.EXTRA_CLOSE, token.span)

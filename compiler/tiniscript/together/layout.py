@@ -103,7 +103,7 @@ def parse_tree(
         else:
             note = ""
         node = Node(next_id(), kind, node_text, note, piece.follows_blank, parent=open_blocks[-1])
-        tree.nodes[node.id] = node
+        tree.node_by_id[node.id] = node
         tree[open_blocks[-1]].children.append(node.id)
         if line_by_id is not None:
             line_by_id[node.id] = first_lines[k]

@@ -141,21 +141,22 @@ def _depth(tree: Tree) -> int:
 def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozenset()) -> Place:
     """Return a place as it is now. Raises Refused."""
     container, previous = place
-    for _ in range(len(tree.former_places) + len(tree.nodes) + 2):
+    for _ in range(len(tree.former_place_by_id) + len(tree.node_by_id) + 2):
         if previous in moving_ids and previous in tree:
             container, previous = tree[previous].parent, tree.previous_sibling(previous)
         elif previous and previous in tree:
             return Place(tree[previous].parent, previous)
         elif previous:  # has gone: where it was
-            if previous not in tree.former_places:
+            if previous not in tree.former_place_by_id:
                 raise Refused(IS_GONE)
-            container, previous, _ = tree.former_places[previous]
+            container, previous, _ = tree.former_place_by_id[previous]
         elif container in tree:
             return Place(container, "")
         elif (
-            container in tree.former_places and not tree.former_places[container].is_deleted
+            container in tree.former_place_by_id
+            and not tree.former_place_by_id[container].is_deleted
         ):  # where it began
-            container, previous, _ = tree.former_places[container]
+            container, previous, _ = tree.former_place_by_id[container]
         else:
             break
     raise Refused(IS_GONE)
@@ -180,7 +181,7 @@ def _insert(tree: Tree, operation: Insert, uid: str) -> _Effect:
         tree.add(node, place.container, uid)
     tree.put([node.id for node in operation.nodes], *place)
     for id in ids:
-        tree.former_places.pop(id, None)
+        tree.former_place_by_id.pop(id, None)
     arms = tuple(id for id in ids if tree[id].kind == ARM and tree.ids_of_arm(id)
                  and set(tree.ids_of_arm(id)) <= set(ids))  # fmt: skip
     return [Insert(place, operation.nodes)], [Delete(tuple(ids), arms)]
@@ -305,16 +306,16 @@ def _wrap(tree: Tree, operation: Wrap, uid: str) -> _Effect:
     container = max(parents, key=parents.count)
     siblings = tree[container].children
     indexes = [siblings.index(id) for id in present_ids if tree[id].parent == container]
-    first, last = min(indexes), max(indexes)
-    ids = siblings[first : last + 1]  # what somebody has put between comes in, too
+    first_index, last_index = min(indexes), max(indexes)
+    ids = siblings[first_index : last_index + 1]  # what somebody has put between comes in, too
     if START in ids:
         raise Refused(UNPARSED)
     block = tree.add(node, container, uid)
-    siblings[first : last + 1] = [block.id]
+    siblings[first_index : last_index + 1] = [block.id]
     block.children = ids
     for id in ids:
         tree[id].parent = block.id
-    tree.former_places.pop(block.id, None)
+    tree.former_place_by_id.pop(block.id, None)
     return [Wrap(tuple(ids), node)], [Unwrap(block.id)]
 
 

@@ -36,8 +36,10 @@ class SharedProgram:
         self.tree, self.epoch = tree, epoch
         self.number = 0
         self.taken_changes: list[TakenChange] = []
-        self.last_counts: dict[str, int] = {}  # by page, the last of its changes that is decided
-        self.refusals: dict[str, list[tuple[str, str]]] = {}  # by page: which, and why
+        self.last_count_by_page: dict[
+            str, int
+        ] = {}  # by page, the last of its changes that is decided
+        self.refusals_by_page: dict[str, list[tuple[str, str]]] = {}  # by page: which, and why
         self.keep = keep
         self._most_kept = most_kept
         self._checksum: tuple[int, int] | None = None  # of which number, and which
@@ -47,7 +49,7 @@ class SharedProgram:
         old_number = self.number
         for change in changes:
             page, count = page_and_count(change.uid)
-            last_count = self.last_counts.get(page, 0)
+            last_count = self.last_count_by_page.get(page, 0)
             if count > last_count + 1:
                 break  # one is missing: the page sends it again
             if count == last_count + 1:
@@ -57,7 +59,7 @@ class SharedProgram:
     def refuse(self, uid: str, reason: str) -> None:
         """Refuse what is no change, if its turn has come."""
         page, count = page_and_count(uid)
-        if count == self.last_counts.get(page, 0) + 1:
+        if count == self.last_count_by_page.get(page, 0) + 1:
             self._refuse(uid, reason)
 
     def _decide(self, change: Change) -> None:
@@ -85,22 +87,22 @@ class SharedProgram:
     def _note_refused(self, uid: str, reason: str) -> None:
         page, count = page_and_count(uid)
         self._note_count(page, count)
-        self.refusals.setdefault(page, []).append((uid, reason))
-        del self.refusals[page][:-MOST_REFUSED]
+        self.refusals_by_page.setdefault(page, []).append((uid, reason))
+        del self.refusals_by_page[page][:-MOST_REFUSED]
 
     def _note_count(self, page: str, count: int) -> None:
-        self.last_counts.pop(page, None)  # the newest is the last
-        self.last_counts[page] = count
-        while len(self.last_counts) > MOST_PAGES:
-            oldest = next(iter(self.last_counts))
-            del self.last_counts[oldest]
-            self.refusals.pop(oldest, None)
+        self.last_count_by_page.pop(page, None)  # the newest is the last
+        self.last_count_by_page[page] = count
+        while len(self.last_count_by_page) > MOST_PAGES:
+            oldest = next(iter(self.last_count_by_page))
+            del self.last_count_by_page[oldest]
+            self.refusals_by_page.pop(oldest, None)
 
     def news(self, page: str, since: int, epoch: str) -> Json:
         """Return what a page has not got yet: changes, or the whole."""
-        refusals = [list(taken_change) for taken_change in self.refusals.get(page, ())]
-        news: Json = {"last": self.last_counts.get(page, 0), "refused": refusals, "n": self.number,
-                       "sum": self.checksum()}  # fmt: skip
+        refusals = [list(taken_change) for taken_change in self.refusals_by_page.get(page, ())]
+        news: Json = {"last": self.last_count_by_page.get(page, 0), "refused": refusals,
+                      "n": self.number, "sum": self.checksum()}  # fmt: skip
         first_number = self.taken_changes[0].number if self.taken_changes else self.number + 1
         if epoch != self.epoch or not first_number - 1 <= since <= self.number:
             return {**news, "epoch": self.epoch, "whole": self.tree.snapshot()}
@@ -122,7 +124,7 @@ class SharedProgram:
     def snapshot(self) -> Json:
         """Return all that one goes on with; the history is not in it."""
         return {"epoch": self.epoch, "n": self.number, "whole": self.tree.snapshot(),
-                "counts": self.last_counts}  # fmt: skip
+                "counts": self.last_count_by_page}  # fmt: skip
 
     def replay(self, rows: list[Json]) -> None:
         """Decide again as it was decided before. What does not fit is left out, with all after."""
@@ -146,5 +148,7 @@ def program_of(snapshot: Json, keep: Callable[[Json], None] = lambda _: None) ->
         raise Refused("bad")
     program = SharedProgram(tree_of(snapshot.get("whole")), epoch, keep)
     program.number = number
-    program.last_counts = {page: count for page, count in counts.items() if type(count) is int}
+    program.last_count_by_page = {
+        page: count for page, count in counts.items() if type(count) is int
+    }
     return program

@@ -286,7 +286,10 @@ class Page:
 
     def flush(self) -> None:
         """Make operations of what is finished, and drafts of the rest, and of a hot line."""
-        if self.lines == [item.text for item in self._visible_lines()] and not self.drafts:
+        if (
+            self.lines == [shown_line.text for shown_line in self._visible_lines()]
+            and not self.drafts
+        ):
             return
         hunks = self._hunks()
         if not hunks:
@@ -413,11 +416,11 @@ class Page:
         ]
         return [part for part in parts if part[0] < part[1] or part[2] < part[3]]
 
-    def _shown_lines_between(self, first: int, last: int) -> list[ShownLine]:
+    def _shown_lines_between(self, first_line: int, last_line: int) -> list[ShownLine]:
         """Return these items, and those without a line that are right before them."""
-        while first and self._shown_lines[first - 1].text is None:
-            first -= 1
-        return self._shown_lines[first:last]
+        while first_line and self._shown_lines[first_line - 1].text is None:
+            first_line -= 1
+        return self._shown_lines[first_line:last_line]
 
     def _waits(self, hunk: Hunk) -> bool:
         """Whether it is a draft that stays, as it was."""
@@ -582,7 +585,7 @@ class Page:
             if more or not isinstance(first, Replace) or change.uid in self._undo_uids:
                 continue
             text = dict(first.fields).get(TEXT, "")
-            if text and first.id in self.base.former_places and kind_of(text) == INSTRUCTION:
+            if text and first.id in self.base.former_place_by_id and kind_of(text) == INSTRUCTION:
                 own_key = (first.id, OWN)
                 self.drafts.append(Draft([text], (own_key,), own_key, True))
 
@@ -659,9 +662,9 @@ class Page:
             return key_above
         id = key_above[0]
         for _ in range(MOST_STEPS):
-            if id not in self.view.former_places:
+            if id not in self.view.former_place_by_id:
                 break
-            container, previous, _ = self.view.former_places[id]
+            container, previous, _ = self.view.former_place_by_id[id]
             id = previous or container
             for key in ((id, OF_END), (id, OWN)) if previous else ((id, OWN),):
                 if key in present_keys:

@@ -116,49 +116,49 @@ class Tree:
     """Whoever changes one makes a copy first: a tree that was given to somebody stays."""
 
     def __init__(self) -> None:
-        self.nodes: dict[str, Node] = {
+        self.node_by_id: dict[str, Node] = {
             ROOT: Node(ROOT, BLOCK, children=[START]),
             START: Node(START, START, parent=ROOT),
         }
-        self.former_places: dict[str, FormerPlace] = {}
+        self.former_place_by_id: dict[str, FormerPlace] = {}
 
     def copy(self) -> Tree:
         copied = Tree.__new__(Tree)
-        copied.nodes = {id: node.copy() for id, node in self.nodes.items()}
-        copied.former_places = dict(self.former_places)
+        copied.node_by_id = {id: node.copy() for id, node in self.node_by_id.items()}
+        copied.former_place_by_id = dict(self.former_place_by_id)
         return copied
 
     def __getitem__(self, id: str) -> Node:
-        return self.nodes[id]
+        return self.node_by_id[id]
 
     def __contains__(self, id: object) -> bool:
-        return id in self.nodes
+        return id in self.node_by_id
 
     def previous_sibling(self, id: str) -> str:
         """Return the id before a node among its siblings, or nothing."""
-        siblings = self.nodes[self.nodes[id].parent].children
+        siblings = self.node_by_id[self.node_by_id[id].parent].children
         k = siblings.index(id)
         return siblings[k - 1] if k else ""
 
     def subtree_ids(self, id: str = ROOT) -> list[str]:
         """Return a node's id and those of all that is in it, in the order of the text."""
         ids = [id]
-        for child_id in self.nodes[id].children:
+        for child_id in self.node_by_id[id].children:
             ids += self.subtree_ids(child_id)
         return ids
 
     def is_in(self, id: str, other: str) -> bool:
         """Whether a node is another one, or in it."""
         while id and id != other:
-            id = self.nodes[id].parent
+            id = self.node_by_id[id].parent
         return id == other
 
     def ids_of_arm(self, arm: str) -> list[str]:
         """Return what belongs to an arm: up to the next one."""
-        siblings = self.nodes[self.nodes[arm].parent].children
+        siblings = self.node_by_id[self.node_by_id[arm].parent].children
         ids = []
         for sibling in siblings[siblings.index(arm) + 1 :]:
-            if self.nodes[sibling].kind == ARM:
+            if self.node_by_id[sibling].kind == ARM:
                 break
             ids.append(sibling)
         return ids
@@ -177,36 +177,38 @@ class Tree:
             subtree.creator_uid or uid,
             dict(subtree.marks),
         )
-        self.nodes[node.id] = node
+        self.node_by_id[node.id] = node
         for child in subtree.children:
             self.add(child, node.id, uid)
         return node
 
     def put(self, ids: list[str], container: str, previous: str) -> None:
         """Give nodes their place."""
-        siblings = self.nodes[container].children
+        siblings = self.node_by_id[container].children
         k = siblings.index(previous) + 1 if previous else 0
         siblings[k:k] = ids
         for id in ids:
-            self.nodes[id].parent = container
+            self.node_by_id[id].parent = container
 
     def forget(self, id: str, former_place: FormerPlace) -> None:
         """Take a node out, whose place is given away already."""
-        del self.nodes[id]
-        self.former_places.pop(id, None)  # the newest is the last
-        self.former_places[id] = former_place
+        del self.node_by_id[id]
+        self.former_place_by_id.pop(id, None)  # the newest is the last
+        self.former_place_by_id[id] = former_place
 
     def limit_former_places(self) -> None:
         for id in list(
-            islice(self.former_places, max(0, len(self.former_places) - MOST_FORMER_PLACES))
+            islice(
+                self.former_place_by_id, max(0, len(self.former_place_by_id) - MOST_FORMER_PLACES)
+            )
         ):
-            del self.former_places[id]
+            del self.former_place_by_id[id]
 
     # -- as data ----------------------------------------------------------------------------------
 
     def subtree(self, id: str, is_whole: bool = True) -> Subtree:
         """Return a node, with its marks and what is in it if it `is_whole`."""
-        node = self.nodes[id]
+        node = self.node_by_id[id]
         children = tuple(self.subtree(child_id) for child_id in node.children) if is_whole else ()
         marks = tuple(node.marks.items())
         return Subtree(
@@ -214,16 +216,18 @@ class Tree:
         )
 
     def snapshot(self) -> Json:
-        return {"tree": self.subtree(ROOT).data(), "gone": {id: list(each) for id, each in
-                                                         self.former_places.items()}}  # fmt: skip
+        return {
+            "tree": self.subtree(ROOT).data(),
+            "gone": {id: list(each) for id, each in self.former_place_by_id.items()},
+        }
 
     @classmethod
     def of(cls, root: Subtree, former_places: dict[str, FormerPlace]) -> Tree:
         tree = cls()
-        tree.nodes = {}
+        tree.node_by_id = {}
         tree.add(root, "", "")
-        tree.nodes[ROOT].kind, tree.nodes[START].kind = BLOCK, START
-        tree.former_places = former_places
+        tree.node_by_id[ROOT].kind, tree.node_by_id[START].kind = BLOCK, START
+        tree.former_place_by_id = former_places
         return tree
 
     def checksum(self) -> int:
@@ -233,11 +237,11 @@ class Tree:
 
     def shape(self) -> Shape:
         """Return what a page shows of it, without ids. A start that is not said is the first."""
-        children = self.nodes[ROOT].children
-        if not self.nodes[START].text:
+        children = self.node_by_id[ROOT].children
+        if not self.node_by_id[START].text:
             children = [START, *(id for id in children if id != START)]
         return ("", "", "", tuple(map(self._shape, children)))
 
     def _shape(self, id: str) -> Shape:
-        node = self.nodes[id]
+        node = self.node_by_id[id]
         return (node.text, node.note, node.end, tuple(map(self._shape, node.children)))

@@ -66,7 +66,7 @@ def running_robots() -> list[RunningRobot]:
     return found_robots
 
 
-def is_of_another(port: str) -> bool:
+def belongs_to_another(port: str) -> bool:
     """Return whether a virtual robot of this user had a port, where another user listens now: the
     robot has crashed.
     """

@@ -130,16 +130,16 @@ class Simulator:
             self._visits = self.transports.visit_count
             self._heartbeat.forget()
             if self._last_byte not in b"\0\r\n":  # ends what the one before has begun
-                self.to_robot.put(b"\0", self.robot.now_ms)
+                self.to_robot.send_bytes(b"\0", self.robot.now_ms)
             self._last_byte = b""
             self.from_robot.clear()
         if self.transports.take_stop() and self.robot.is_running:
-            self.to_robot.put(bytes(STOP_BYTES), self.robot.now_ms)
+            self.to_robot.send_bytes(bytes(STOP_BYTES), self.robot.now_ms)
         if data:
             self._traffic_s = wall_s
             self._heartbeat.on_bytes(data, wall_s)
             self._last_byte = data[-1:]
-            self.to_robot.put(data, self.robot.now_ms)
+            self.to_robot.send_bytes(data, self.robot.now_ms)
         self._go_on(elapsed_s)
         self.transports.send(b"")
 
@@ -198,14 +198,14 @@ class Simulator:
             self.robot.let_go()
         elif self._waiting_push_ms:
             self.push(self._waiting_push_ms)
-        data = self.to_robot.take(now_ms)
+        data = self.to_robot.take_arrived(now_ms)
         if is_hurrying and self.transports.is_connected and not data:
             data = self._heartbeat.bytes_due(now_ms, self._wall_s)
         sent = self.robot.step(now_ms + step_ms, data)
         if sent:
             self._traffic_s = self._wall_s
-            self.from_robot.put(sent, self.robot.now_ms)
-        self.transports.send(self.from_robot.take(self.robot.now_ms))
+            self.from_robot.send_bytes(sent, self.robot.now_ms)
+        self.transports.send(self.from_robot.take_arrived(self.robot.now_ms))
 
 
 JOIN_TIMEOUT_S = 5.0

@@ -310,7 +310,7 @@ class BadLine:
         self._in_transit: deque[tuple[int, int]] = deque()  # arrival time and byte
         self._loss_count = 0  # how many of the next bytes get lost
 
-    def put(self, data: bytes, now_ms: int) -> None:
+    def send_bytes(self, data: bytes, now_ms: int) -> None:
         """Send bytes."""
         if not self.rate:
             self._in_transit.extend((now_ms, byte) for byte in data)
@@ -336,7 +336,7 @@ class BadLine:
                     (due_ms + self._random_source.randrange(MOST_DELAY_MS), byte)
                 )
 
-    def take(self, now_ms: int) -> bytes:
+    def take_arrived(self, now_ms: int) -> bytes:
         """Return the bytes that have arrived."""
         arrived = bytearray()
         while self._in_transit and self._in_transit[0][0] <= now_ms:

@@ -98,12 +98,12 @@ def _port(options: Namespace) -> str | None:
 
 def _examine_member(expectations: Expectations, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
-    member.meet(connection)
+    member.meet_robot(connection)
     language = connection.language
     findings, answers = examination_of(
         connection,
         expectations,
-        lambda what: member.tell(f"doing_{what}", n=expectations.ping_count),
+        lambda what: member.set_state(f"doing_{what}", n=expectations.ping_count),
     )
     wrong_findings = [finding for finding in findings if finding.is_wrong]
     rows, fields = [sentences_of(finding, language).finding for finding in wrong_findings], {}

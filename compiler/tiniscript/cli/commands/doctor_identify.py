@@ -33,6 +33,6 @@ def _fields(connection: Connection) -> dict[str, object]:
 
 
 def _identify_member(connection: Connection, member: Member) -> Result:
-    member.meet(connection)
-    member.tell("crew_identifying")
+    member.meet_robot(connection)
+    member.set_state("crew_identifying")
     return Result(True, _identify(connection), {"id": f"{connection.device_info.id:08x}"})

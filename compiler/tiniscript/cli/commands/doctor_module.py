@@ -130,7 +130,7 @@ class _SetUp:
         status_line = StatusLine()
         module = find_module(
             self.wire,
-            on_baud=lambda baud: status_line.tell(self._text("module_looking", baud=str(baud))),
+            on_baud=lambda baud: status_line.show(self._text("module_looking", baud=str(baud))),
         )
         status_line.end()
         if module is None:
@@ -140,7 +140,7 @@ class _SetUp:
             _refuse(self.wanted_settings, module.dialect, misfit)
         plan = set_up.plan_steps(self.wanted_settings, module.dialect)
         current_settings = self._read_settings(module)
-        self._introduce(module, current_settings)
+        self._print_module(module, current_settings)
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun_steps += [step for step in plan if step.setting == BAUD]
@@ -175,7 +175,7 @@ class _SetUp:
             )
         return {setting: printable_name(value) for setting, value in values.items() if value}
 
-    def _introduce(self, module: Module, current_settings: dict[str, str]) -> None:
+    def _print_module(self, module: Module, current_settings: dict[str, str]) -> None:
         version = printable_name(module.version) or self._text("module_no_version")
         print(
             self._text("module_found", module=module.dialect.name, port=self.port,

@@ -74,10 +74,14 @@ def _page(folder: Path, is_teachers: bool, language: str) -> str:
     right_answers, wrong_answers = catalogue.answers(folder)
     parts = [page.rstrip("\n"), f"## {text('lesson_answers', language)}"]
     for answer in right_answers:
-        parts += [f"{answer.labels[language]}:", _fence(answer.program)]
+        parts += [f"{answer.label_by_language[language]}:", _fence(answer.program)]
     parts.append(f"## {text('lesson_wrong', language)}")
     for answer in wrong_answers:
-        parts += [f"{answer.labels[language]}:", _fence(answer.program), answer.sentences[language]]
+        parts += [
+            f"{answer.label_by_language[language]}:",
+            _fence(answer.program),
+            answer.sentence_by_language[language],
+        ]
     return "\n\n".join(parts) + "\n"
 
 

@@ -61,8 +61,8 @@ def run(options: Namespace, language: str) -> int:
         if options.keys:
             return repl.drive_by_keys(line)
         if line is None and sys.stdin.isatty():
-            return repl.prompt()
-        repl.meet()
+            return repl.run_prompt()
+        repl.meet_robot()
         if line is None or line == "-":
             return repl.run_lines(sys.stdin)
         return repl.run_line(line, is_last=True)
@@ -120,7 +120,7 @@ class Repl:
         self.remote: TerminalRemote | None = None
         self.break_lines = parse_lines(options.breaks, self.language)
 
-    def meet(self) -> None:
+    def meet_robot(self) -> None:
         """Send HELLO to the robot, and use its kit. Raises CommandError if none answers, or it
         cannot halt where it is to."""
         self.connection.meet()
@@ -146,23 +146,23 @@ class Repl:
             return stop_and_say(self.connection)
         if not exit_code and live_line.loses_values and not is_last:
             say_aside("live_forgets", self.language)
-        if not exit_code and live_line.defs:
-            self.state.defs.update(live_line.defs)
+        if not exit_code and live_line.text_by_def:
+            self.state.text_by_def.update(live_line.text_by_def)
             if live_line.has_only_defs:
-                names = ", ".join(live_line.defs)
+                names = ", ".join(live_line.text_by_def)
                 say("live_known", self.language, names=names)
         return exit_code
 
-    def read_block(self, line: str, more: Callable[[], str | None]) -> str:
+    def read_block(self, line: str, read_more: Callable[[], str | None]) -> str:
         """Return a line with those that its blocks go on over, up to the first one with a mistake.
 
-        `more` returns the next line, or None if there is none.
+        `read_more` returns the next line, or None if there is none.
         """
         while ends := missing_ends(line):
             closed_line = f"{line}\n{ends}"
             if not self.state.compile_line(closed_line, 0).compilation.is_right:
                 return closed_line
-            next_line = more()
+            next_line = read_more()
             if next_line is None:
                 return line
             line = f"{line}\n{next_line}"
@@ -184,10 +184,10 @@ class Repl:
         catcher = ValueCatcher(line.shown_variables, self.state, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:
-            simulator.watch()
+            simulator.start_drawing()
         notice = self.connection.wait_notice.with_sentence(self.connection.text("line_runs"))
         on_wait = notice.poll if simulator is None else None  # its picture shows that
-        monitor = RunMonitor(self.connection, printer, catcher.hold, on_wait)
+        monitor = RunMonitor(self.connection, printer, catcher.hold_event, on_wait)
         if self.remote is not None:
             monitor.on_wait, monitor.wait_s = self.remote.poll, remote_keys.POLL_S
         try:
@@ -195,11 +195,11 @@ class Repl:
                 return monitor.follow(reply.values.run)
             with Debugger(self.connection, printer, haltable_program, breakpoints) as debugger:
                 monitor.on_wait = debugger.poll_keys
-                monitor.hold = lambda event: debugger.hold(event) or catcher.hold(event)
+                monitor.hold = lambda event: debugger.hold_event(event) or catcher.hold_event(event)
                 return monitor.follow(reply.values.run)
         finally:
             if simulator is not None:
-                simulator.unwatch()
+                simulator.stop_drawing()
 
     def _breakpoints_of(self, program: HaltableProgram, is_last: bool) -> tuple[int, ...]:
         """Return where a line halts. Raises CommandError where the only one has no such place."""
@@ -215,9 +215,9 @@ class Repl:
     def drive_by_keys(self, line: str | None) -> int:
         """Drive what a line reads of a remote control, or the program that runs, by the keys of
         the terminal; return the exit code."""
-        self.meet()
+        self.meet_robot()
         with TerminalRemote(self.connection) as self.remote:
-            self.connection.say("live_keys")
+            self.connection.print_text("live_keys")
             exit_code = self._pass_keys_on() if line is None else self.run_line(line, is_last=True)
             return 0 if self.remote.has_quit and exit_code == INTERRUPTED else exit_code
 
@@ -226,7 +226,7 @@ class Repl:
         assert self.remote is not None
         simulator = self.connection.simulator
         if simulator is not None:
-            simulator.watch()
+            simulator.start_drawing()
         try:
             while not self._report_time_limit():
                 self._print_pending_events(remote_keys.POLL_S)
@@ -254,7 +254,7 @@ class Repl:
             return True
         return False
 
-    def _help(self) -> str:
+    def _help_text(self) -> str:
         kit = self.state.kit
         names = ", ".join(kit.names)
         return text("live_help", self.language).format(
@@ -262,17 +262,17 @@ class Repl:
             names=names or text("live_nothing", self.language),
         )
 
-    def prompt(self) -> int:
+    def run_prompt(self) -> int:
         """Let a person type lines, until they leave."""
-        self.meet()
-        self.connection.say("live_hello")
+        self.meet_robot()
+        self.connection.print_text("live_hello")
         with _history(self.state):
             while True:
                 try:
                     if self._read_and_run():
                         return 0
                 except KeyboardInterrupt:
-                    self._stop()
+                    self._stop_robot()
 
     def _read_and_run(self) -> bool:
         """Run what a person types next; return whether that was the last of it."""
@@ -289,7 +289,7 @@ class Repl:
         if command == LEAVE:
             return True
         if command == HELP_ME:
-            print(self._help())
+            print(self._help_text())
         elif line.strip():
             self._run_or_print(line)
             return self.connection.is_time_over  # printed already
@@ -304,7 +304,7 @@ class Repl:
                 raise
             print(error.sentence(self.language), file=sys.stderr)
 
-    def _stop(self) -> None:
+    def _stop_robot(self) -> None:
         try:
             stop_and_say(self.connection)
         except CommandError as error:
@@ -319,7 +319,7 @@ class Repl:
         while (timed_event := self.connection.event(limit_s)) is not None:
             limit_s = 0
             if not bookkeeping.filter_event(timed_event[1]):
-                printer.tell(*timed_event)
+                printer.print_event(*timed_event)
 
 
 def requested_command(line: str, state: LiveState) -> str:
@@ -328,7 +328,7 @@ def requested_command(line: str, state: LiveState) -> str:
     A name of the kit or of the user's program is no such command.
     """
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
-    if word in (*state.defs, *state.kit.names):
+    if word in (*state.text_by_def, *state.kit.names):
         return ""
     return (
         HELP_ME
@@ -353,7 +353,7 @@ class ValueCatcher:
         self.prints_done = prints_done
         self.held_events: list[ShownEvent] = []
 
-    def hold(self, event: Event) -> bool:
+    def hold_event(self, event: Event) -> bool:
         if event.name == "SHOW":
             if not self.shown_variables or not (_is_mark(event) or self.held_events):
                 return False
@@ -361,31 +361,31 @@ class ValueCatcher:
             if (
                 len(self.held_events) > len(self.shown_variables) + 1
             ):  # a program shows the mark by chance
-                self._release(1)
+                self._print_held_events(1)
                 while self.held_events and not _is_mark(self.held_events[0]):
-                    self._release(1)
+                    self._print_held_events(1)
             return True
         if event.name == "DONE":
             shown_events = self.held_events[1:]
             if len(shown_events) == len(self.shown_variables):
                 for name, shown_event in zip(self.shown_variables, shown_events, strict=True):
-                    self.state.values[name] = LiveValue(
+                    self.state.value_by_name[name] = LiveValue(
                         shown_event.value, bool(shown_event.is_yes_no)
                     )
             self.held_events = []
             return not self.prints_done
         if event.name == "FAULT":  # the instructions that show the values cannot fault
-            self._release()
+            self._print_held_events()
         elif event.name == "STOPPED":
             self.held_events = []
         return False
 
-    def _release(self, count: int | None = None) -> None:
+    def _print_held_events(self, count: int | None = None) -> None:
         """Print held events after all, because the line itself has shown them: `count`, or all."""
         released_events = self.held_events[:count]
         del self.held_events[:count]
         for event in released_events:
-            self.printer.tell(0, event)
+            self.printer.print_event(0, event)
 
 
 def _is_mark(event: ShownEvent) -> bool:

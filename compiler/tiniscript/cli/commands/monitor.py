@@ -24,7 +24,7 @@ def run(options: Namespace, language: str) -> int:
             connection.meet()
             if options.csv is not None:  # without a robot the old file stays
                 rows = Rows(options.csv, ROWS_HEADER)
-            add_row = rows.add if rows is not None else None
+            add_row = rows.add_row if rows is not None else None
             print(connection.text("watching"), file=sys.stderr)
             if options.plot and sys.stderr.isatty():
                 with PlotScreen(text("plot_waiting", language)) as plot_screen:
@@ -33,8 +33,8 @@ def run(options: Namespace, language: str) -> int:
                         options.json,
                         has_times=True,
                         add_row=add_row,
-                        print_line=plot_screen.say,
-                        print_error=plot_screen.warn,
+                        print_line=plot_screen.print_line,
+                        print_error=plot_screen.print_error,
                     )
                     _watch(connection, printer, seconds, plot_screen)
             else:
@@ -59,5 +59,5 @@ def _watch(
             plot_screen.draw_plot(int(monotonic() * 1000))
         if timed_event is not None:
             if plot_screen is not None:
-                plot_screen.take(*timed_event, printer.name_of)
-            printer.tell(*timed_event)
+                plot_screen.add_event(*timed_event, printer.name_of)
+            printer.print_event(*timed_event)

@@ -47,7 +47,7 @@ class _Log:
 
     def print_events(self) -> None:
         """Print events until the port is gone."""
-        self._say(
+        self._print_text(
             "LINKED",
             "linked",
             robot=self.connection.name,
@@ -62,24 +62,26 @@ class _Log:
 
     def _print_event(self, time_ms: int, event: Event) -> None:
         if event.name == "JOINED" or event.name == "LEFT":
-            self._say(event.name, event.name.lower(), verb=event.verb.decode())
+            self._print_text(event.name, event.name.lower(), verb=event.verb.decode())
         elif event.name == "STARTED":
-            self._say(event.name, "link_started", program=f"{event.program:08x}")
+            self._print_text(event.name, "link_started", program=f"{event.program:08x}")
         elif event.name == "LOST":
-            self._say(event.name, "link_searching", port=printable_name(self.connection.port))
+            self._print_text(
+                event.name, "link_searching", port=printable_name(self.connection.port)
+            )
             self.search = self.connection.search()
         elif not self.bookkeeping.filter_event(event):
-            self.printer.tell(time_ms, event)
+            self.printer.print_event(time_ms, event)
 
     def _look_again(self) -> None:
         assert self.search is not None and self.search.outcome is not None
         if self.search.outcome.status == OK:
             self.search = None
-            self._say("FOUND", "link_found", robot=self.connection.name)
+            self._print_text("FOUND", "link_found", robot=self.connection.name)
         else:
             self.search = self.connection.search()
 
-    def _say(self, name: str, key: str, **values: str) -> None:
+    def _print_text(self, name: str, key: str, **values: str) -> None:
         sentence = text(key, self.language).format(**values)
         fields: dict[str, object] = {**values}
-        self.printer.say(0, name, "", sentence, is_bad=False, **fields)
+        self.printer.print_values(0, name, "", sentence, is_bad=False, **fields)

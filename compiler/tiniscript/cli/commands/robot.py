@@ -102,7 +102,7 @@ class _Stage:
     def show(self, pushes: list[tuple[int, int]], end_ms: int | None) -> None:
         """Run the robot until its time is over or the user ends it."""
         robot = self.simulator.robot
-        self._introduce()
+        self._print_addresses()
         try:
             with Keys() as keys, handle_signals() as end_request:
                 self._begin()
@@ -111,7 +111,7 @@ class _Stage:
                         self.simulator.push(pushes.pop(0)[1])
                     self.simulator.turn(self._limit_s(pushes, end_ms))
                     self._print_events(robot.take_events())
-                    self._save(is_due=False)
+                    self._save_state(is_due=False)
                     if not self._handle_keys(keys.read_keys()):
                         break
         except KeyboardInterrupt:
@@ -120,15 +120,15 @@ class _Stage:
             robot.switch_off()  # what it drives now counts, too
             if self.screen is not None and self.picture is not None:
                 for event in robot.take_events():
-                    self.picture.take(event)
+                    self.picture.add_event(event)
                 self.screen.draw(self.picture, robot.now_ms)
                 self.screen.end()
-            self._save(is_due=True)
+            self._save_state(is_due=True)
         if self.options.plot is not None:
             simulator_options.draw_picture(self.options, robot, self.language)
         print(simulator_options.summary(self.options, robot, self.language), file=sys.stderr)
 
-    def _introduce(self) -> None:
+    def _print_addresses(self) -> None:
         transports, robot = self.simulator.transports, self.simulator.robot
         print(transports.address, flush=True)
         if transports.terminal:
@@ -165,7 +165,7 @@ class _Stage:
             if event.kind == "START":
                 self.began_ms = event.time_ms
             if self.picture is not None:
-                self.picture.take(event)
+                self.picture.add_event(event)
             if prints_lines:
                 print(f"{event.time_ms - self.began_ms} {event.text}")
         if events and prints_lines:
@@ -193,7 +193,7 @@ class _Stage:
                 self.simulator.robot.power_cycle()
         return True
 
-    def _save(self, is_due: bool) -> None:
+    def _save_state(self, is_due: bool) -> None:
         """Write the robot's EEPROM to its file, if it has changed."""
         if self.options.memory is None or not (
             is_due or monotonic() > self._last_save_s + SAVE_INTERVAL_S
@@ -264,7 +264,7 @@ def _memory(name: str | None) -> bytes | None:
 def _set_name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc set name` does, before any client connects."""
     data = name_bytes(name)
-    keys = KeyFile(is_for_virtual=True)
+    keys = KeyFile(serves_virtual_robots=True)
     computer = Computer(robot, robot.random_source.getrandbits(32), keys)
     computer.wait_for(computer.session.name(data))
     robot.step(robot.now_ms + 500)  # it is saved

@@ -22,5 +22,5 @@ def run(options: Namespace, language: str) -> int:
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
             raise connection.error_for_reply(reply)
-        connection.say("named", name=printable_name(name))
+        connection.print_text("named", name=printable_name(name))
     return 0

@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, connect
-from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, ownership_of
+from tiniscript.link.authority import NOT_OWNER, OWNED_BY_OTHER, ownership_of
 from tiniscript.link.connection import CLAIM_TIMEOUT_MS
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
@@ -39,7 +39,7 @@ def _claim(connection: Connection, key_kind: int) -> None:
         raise connection.error_for_reply(reply)
     else:
         key = "claimed" if key_kind == KEY_OWNER else "claimed_teacher"
-    connection.say(key)
+    connection.print_text(key)
 
 
 def _check_claimable(connection: Connection) -> None:
@@ -47,5 +47,5 @@ def _check_claimable(connection: Connection) -> None:
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
-    if ownership_of(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
+    if ownership_of(device_info) == OWNED_BY_OTHER and not KeyFile().keys_of_robot(device_info.id):
         raise connection.error_for_reply(Reply(NOT_OWNER))

@@ -13,8 +13,8 @@ def run(options: Namespace, language: str) -> int:
     with connect(options, language) as connection:
         info = connection.meet()
         if key_kind == KEY_OWNER and not info.values.features & OWNED:
-            connection.say("not_owned")
+            connection.print_text("not_owned")
             return 0
         connection.request(lambda session: session.disown(key_kind))
-        connection.say("disowned" if key_kind == KEY_OWNER else "disowned_teacher")
+        connection.print_text("disowned" if key_kind == KEY_OWNER else "disowned_teacher")
     return 0

@@ -21,5 +21,5 @@ def run(options: Namespace, language: str) -> int:
         key = "text_on" if is_allowed else "text_off"
         if not info.values.features & OWNED:
             key = "text_free"
-        connection.say(key)
+        connection.print_text(key)
     return 0

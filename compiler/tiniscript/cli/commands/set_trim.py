@@ -81,4 +81,4 @@ def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
         print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
                           **trim.as_data()}))  # fmt: skip
         return
-    connection.say(key, trim=trim_in_words(trim, connection.language))
+    connection.print_text(key, trim=trim_in_words(trim, connection.language))

@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
             _refuse_over_wifi(connection)
         if options.forget:
             connection.request(lambda session: session.forget_wifi())
-            connection.say("wifi_forgotten")
+            connection.print_text("wifi_forgotten")
         elif name is not None:
             _join(connection, name, options.access_point)
         else:
@@ -103,7 +103,7 @@ def _print_wifi_state(connection: Connection, wifi_reply: WifiReply) -> None:
         key = "wifi_station_searching"
     network = printable_name(wifi_reply.network.decode("utf-8", "replace"))
     host = f"tini-{connection.device_info.id & 0xFFFF:04x}"
-    connection.say(key, network=network, address=address(wifi_reply), host=host)
+    connection.print_text(key, network=network, address=address(wifi_reply), host=host)
 
 
 def _name_bytes(name: str) -> bytes:

@@ -23,9 +23,13 @@ def run(options: Namespace, language: str) -> int:
     assert ready_program is not None  # an image has no mistakes
     if options.output is not None:
         outputs.write(Path(options.output), data, "unwritable")
-        connection.say("fetched", target=inputs.printable_name(options.output), image=len(data),
-                       code=len(ready_program.image.code),
-                       checksum=f"{ready_program.image.checksum:08x}")  # fmt: skip
+        connection.print_text(
+            "fetched",
+            target=inputs.printable_name(options.output),
+            image=len(data),
+            code=len(ready_program.image.code),
+            checksum=f"{ready_program.image.checksum:08x}",
+        )
     else:
         print_disassembly(ready_program, robot, name, language)
     return 0

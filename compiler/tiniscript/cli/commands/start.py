@@ -24,5 +24,5 @@ def _start(connection: Connection, is_detached: bool, is_json: bool) -> int:
     key = "started_detached" if is_detached else "started"
     sentence = connection.text(key, checksum=f"{checksum:08x}")
     printer = EventPrinter(connection.language, is_json)
-    printer.say(0, "STARTED", "", sentence, program=f"{checksum:08x}")
+    printer.print_values(0, "STARTED", "", sentence, program=f"{checksum:08x}")
     return 0 if is_detached else RunMonitor(connection, printer).follow(run)

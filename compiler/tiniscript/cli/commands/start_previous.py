@@ -51,9 +51,9 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _undo_member(connection: Connection, member: Member) -> Result:
-    member.meet(connection)
+    member.meet_robot(connection)
     receipt = UndoReceipt(connection)
-    member.tell("crew_saving")
+    member.set_state("crew_saving")
     printer = EventPrinter(connection.language, False, print_line=lambda line: None)
     UndoSaving(connection, printer, receipt.values).wait()
     return Result(True, receipt.line(), receipt.program_fields())

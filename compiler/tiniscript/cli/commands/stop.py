@@ -16,14 +16,14 @@ from tiniscript.cli.texts import say
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    is_for_many = select_port(options)
-    if not is_for_many and options.port is None:
+    acts_on_many = select_port(options)
+    if not acts_on_many and options.port is None:
         from tiniscript.cli.robot import in_reach
 
         options.ports = in_reach.ports_to_stop(options.virtual)
         options.virtual = options.virtual and not options.ports
-        is_for_many = select_port(options)
-    if is_for_many:
+        acts_on_many = select_port(options)
+    if acts_on_many:
         from tiniscript.cli.robot.fleet import run_together
 
         return run_together(options, robot, language, stop_one)

@@ -75,7 +75,7 @@ def _serve(
             if resumed_count:
                 say_aside("studio_goes_on", language, pupils=resumed_count)
             if not options.no_browser:
-                webbrowser.open(server.entrance(is_for_here=True))
+                webbrowser.open(server.entrance(is_for_this_computer=True))
             while thread.is_alive():
                 thread.join(1)
                 if not server.is_unused(entrance):

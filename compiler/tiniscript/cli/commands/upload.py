@@ -33,23 +33,23 @@ from tiniscript.robots.profile import Robot
 def run(options: Namespace, language: str) -> int:
     program_input = inputs.program(options)
     robot = inputs.robot_for(program_input, options, language)
-    is_for_many = select_port(options)
+    acts_on_many = select_port(options)
     # the robot that answers may not be the default one
-    may_choose_robot = options.robot is None and not is_for_many and not program_input.is_image
+    may_choose_robot = options.robot is None and not acts_on_many and not program_input.is_image
     ready_program = _prepare(program_input, robot, options, may_choose_robot)
     if ready_program is None:
         return 1
     is_followed = ready_program.image.start == "SI" and not (options.no_run or options.detach)
-    if options.record is not None and (is_for_many or not is_followed):
+    if options.record is not None and (acts_on_many or not is_followed):
         raise CommandError(2, "record_follows")
     if options.record is not None:
         from tiniscript.cli.robot.recorded_run import require_known_robot, source_text
 
         require_known_robot(robot)
         options.recorded_text = source_text(program_input)
-    if options.breaks and (is_for_many or not is_followed):
+    if options.breaks and (acts_on_many or not is_followed):
         raise CommandError(2, "break_follows")
-    if is_for_many:
+    if acts_on_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
         return upload_to_many(
@@ -132,7 +132,7 @@ def _upload(
         text, robot = options.recorded_text, connection.profile
         head = recordings.header_line(recordings.REAL, text, robot, receipt_reply.program)
         recorder = Recorder(options.record, head, sent_s, robot_ms, robot.kit)
-        printer.add_row = recorder.add
+        printer.add_row = recorder.add_event
         printer.readings = recorder.add_reading if tells_readings else None
     saving = Saving(connection, printer, receipt_reply)
     try:
@@ -152,7 +152,7 @@ def _upload(
         exit_code = stop_and_say(connection)
         try:
             if recorder is not None:
-                recorder.end("STOPPED")
+                recorder.end_recording("STOPPED")
             saving.wait()  # short, as the motors stand now
         except CommandError as error:
             print(error.sentence(language), file=sys.stderr)
@@ -165,7 +165,7 @@ def _upload(
         raise
     except CommandError:
         if recorder is not None:
-            recorder.end("LOST")
+            recorder.end_recording("LOST")
         raise
     finally:
         if recorder is not None:

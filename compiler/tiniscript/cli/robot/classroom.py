@@ -180,13 +180,13 @@ class Listener:
         self.began_ms = now_ms()
 
     def listen(self, connection: Connection, member: Member) -> Result:
-        member.meet(connection)
+        member.meet_robot(connection)
         robot_fields = {"port": connection.port, "robot": connection.name}
 
         def print_line(line: str) -> None:
-            member.print(line if self.is_json else f"{connection.name}: {line}")
+            member.queue_line(line if self.is_json else f"{connection.name}: {line}")
 
-        add_row = self.rows.add if self.rows is not None else None
+        add_row = self.rows.add_row if self.rows is not None else None
         first_cells = (
             escape_formula(printable_name(connection.name)),
             f"{connection.device_info.id:08x}",
@@ -200,7 +200,7 @@ class Listener:
         try:
             for timed_event in connection.watch(self.end_s):
                 if timed_event is not None:
-                    printer.tell(*timed_event)
+                    printer.print_event(*timed_event)
         except KeyboardInterrupt:
             pass
         return Result(True, text("class_over", connection.language))

@@ -238,7 +238,7 @@ class Connection(Client):
             return
         from tiniscript.link.keys import KeyFile
 
-        keys = KeyFile().of_robot(device_info.id)
+        keys = KeyFile().keys_of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):
             say_aside("key_is_stale", self.language, robot=self.name)
 
@@ -257,7 +257,7 @@ class Connection(Client):
         default_values = {"robot": name, "port": printable_name(self.port)}
         return text(key, self.language).format(**{**default_values, **values})
 
-    def say(self, key: str, **values: object) -> None:
+    def print_text(self, key: str, **values: object) -> None:
         """Print such a sentence."""
         print(self.text(key, **values))
 
@@ -431,12 +431,12 @@ def _ask_port(
     language: str, can_start_virtual: bool, virtual_robots: list[directory.RunningRobot]
 ) -> str:
     """Let the person choose a port, or one of the virtual robots."""
-    names = known_ports.remembered_ports().names
+    name_by_port = known_ports.remembered_ports().name_by_port
     from tiniscript.link import ports
 
     listed_ports = ports.list_ports()
     choices = [entry.port for entry in listed_ports]
-    choices += [port for port in names if port not in choices and is_address(port)
+    choices += [port for port in name_by_port if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip
     choices += [entry.address for entry in virtual_robots if entry.address not in choices]
     if not choices:
@@ -446,13 +446,13 @@ def _ask_port(
             if offer_virtual_robot(language):
                 return OWN_VIRTUAL_ROBOT
         raise CommandError(3, "no_ports")
-    descriptions = {entry.port: describe_port(entry, language) for entry in listed_ports}
-    descriptions |= {
+    description_by_port = {entry.port: describe_port(entry, language) for entry in listed_ports}
+    description_by_port |= {
         entry.address: describe_virtual_robot(entry, language) for entry in virtual_robots
     }
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
-        details = "   ".join(filter(None, (names.get(port), descriptions.get(port))))
+        details = "   ".join(filter(None, (name_by_port.get(port), description_by_port.get(port))))
         print(
             f"  {number}  {printable_name(port)}   {printable_name(details)}".rstrip(),
             file=sys.stderr,

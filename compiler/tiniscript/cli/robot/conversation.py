@@ -62,13 +62,13 @@ class Conversation:
             raise NoPerson
         return line.strip()
 
-    def ask_choice(self, key: str, most: int, **values: str) -> int:
-        """Ask until the answer is a number from 1 to `most`. Raises NoPerson."""
+    def ask_choice(self, key: str, choice_count: int, **values: str) -> int:
+        """Ask until the answer is a number from 1 to `choice_count`. Raises NoPerson."""
         while True:
             answer = self.ask(key, **values)
-            if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= most:
+            if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= choice_count:
                 return int(answer)
-            say_aside("ask_number", self.language, high=most)
+            say_aside("ask_number", self.language, high=choice_count)
 
     def run_line(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""

@@ -111,7 +111,7 @@ class Debugger:
         if self.has_keys:
             self.keys.__exit__(*raised)
 
-    def hold(self, event: Event) -> bool:
+    def hold_event(self, event: Event) -> bool:
         """Take an event; return whether it is told."""
         if event.name != "HALTED":
             return False
@@ -166,7 +166,7 @@ class Debugger:
             sentences.append("  " + text(key, language).format(line=task_line))
         if self.has_keys:
             sentences.append(text("halted_keys", language))
-        self.printer.say(
+        self.printer.print_values(
             0,
             "HALTED",
             str(line),

@@ -17,7 +17,7 @@ from tiniscript.doctor.examination import trips_of
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
 from tiniscript.library.known_kits import shipped_name_of_kit
-from tiniscript.link.authority import OF_ANOTHER, ownership_of
+from tiniscript.link.authority import OWNED_BY_OTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
     SAVED,
@@ -169,7 +169,7 @@ def describe_robot(connection: Connection) -> Description:
     status = connection.request(lambda session: session.status()).values
     owner = ownership_of(connection.device_info)
     trim: Trim | None = None
-    if owner != OF_ANOTHER:  # it would count as a wrong key
+    if owner != OWNED_BY_OTHER:  # it would count as a wrong key
         with suppress(CommandError):
             trim = trim_from_reply(connection.request(lambda session: session.trim()).values)
     return Description(
@@ -179,7 +179,7 @@ def describe_robot(connection: Connection) -> Description:
 
 def describe_in_a_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots."""
-    member.meet(connection)
+    member.meet_robot(connection)
     description = describe_robot(connection)
     return Result(True, description.line(), description.fields())
 
@@ -200,7 +200,7 @@ def introduce(connection: Connection, is_json: bool) -> int:
 def describe_and_measure(connection: Connection, member: Member) -> Result:
     """Describe one of many robots, and say how soon it answers."""
     result = describe_in_a_line(connection, member)
-    member.tell("crew_pinging")
+    member.set_state("crew_pinging")
     trips_ms = _measure_trips(connection, ROUND_TRIP_COUNT)
     text = f"{result.sentence}; {trips_in_words(trips_ms, connection.language)}"
     return Result(True, text, {**result.fields, **trips_as_data(trips_ms)})
@@ -241,9 +241,9 @@ def trim_in_words(trim: Trim, language: str) -> str:
         )
         if is_set
     ] or [text("trim_as_wired", language)]
-    key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
-    balance = key if trim.balance else "trim_even"
-    parts.append(text(balance, language).format(n=abs(trim.balance)))
+    weaker_side_key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
+    balance_key = weaker_side_key if trim.balance else "trim_even"
+    parts.append(text(balance_key, language).format(n=abs(trim.balance)))
     if trim.least:
         parts.append(text("trim_least", language).format(n=trim.least))
     if trim.pace is not None:

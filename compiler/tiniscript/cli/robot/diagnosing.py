@@ -93,12 +93,12 @@ def examination_of(
 
 
 def _has_key(robot_id: int) -> bool:
-    return bool(KeyFile().of_robot(robot_id))
+    return bool(KeyFile().keys_of_robot(robot_id))
 
 
 def _doubt_cause(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
-    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
+    keys, info = KeyFile(serves_virtual_robots=opening.is_virtual(port)), device_info_of(hello)
     if is_impostor(keys, canonical_port(port), info):
         return "other_robot"
     is_proven = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
@@ -135,5 +135,5 @@ def _make_services(
         confirm_opening,
         ports.is_radio,
         share_port,
-        lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
+        lambda what: status_line.show(text(f"doing_{what}", language).format(n=ping_count)),
     )

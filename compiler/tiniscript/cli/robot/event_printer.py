@@ -83,7 +83,7 @@ class EventPrinter:
         self.robot_fields = robot_fields or {}
         self.began_ms = began_ms
 
-    def tell(self, time_ms: int, event: Event) -> None:
+    def print_event(self, time_ms: int, event: Event) -> None:
         if self.began_ms is None:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms
@@ -91,24 +91,26 @@ class EventPrinter:
             if self.readings is not None:
                 self.readings(event)
         elif event.name == "SHOW":
-            self._tell_value(since_ms, event)
+            self._print_value(since_ms, event)
         elif event.name == "DONE":
-            self.say(since_ms, "DONE", "", text("robot_done", self.language))
+            self.print_values(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
-            self._tell_fault(since_ms, event.fault, event.at, event.program)
+            self._print_fault(since_ms, event.fault, event.at, event.program)
         elif event.name == "STOPPED":
             cause = cause_name(event.cause)
             sentence = text(f"stopped_{cause}", self.language)
-            self.say(since_ms, "STOPPED", cause, sentence, cause=cause)
+            self.print_values(since_ms, "STOPPED", cause, sentence, cause=cause)
         elif event.name == "RESTARTED":
-            self.say(since_ms, "RESTARTED", "", text("robot_restarted", self.language))
+            self.print_values(since_ms, "RESTARTED", "", text("robot_restarted", self.language))
         elif event.name == "MISSED":
             sentence = text("missed", self.language).format(n=event.count)
-            self.say(since_ms, "MISSED", str(event.count), sentence, count=event.count)
+            self.print_values(since_ms, "MISSED", str(event.count), sentence, count=event.count)
         elif event.name == "TEXT":
             robot_text = printable_name(event.text.decode("utf-8", "replace"))
             sentence = text("robot_text", self.language).format(said=robot_text)
-            self.say(since_ms, "TEXT", escape_formula(robot_text), sentence, text=robot_text)
+            self.print_values(
+                since_ms, "TEXT", escape_formula(robot_text), sentence, text=robot_text
+            )
 
     def name_of(self, event: ShownEvent) -> str:
         """Return the name of a value, by which it is told from the values of all other SHOWs."""
@@ -123,26 +125,27 @@ class EventPrinter:
             return show.text
         return text("shown_line", self.language).format(what=show.text, line=line_text)
 
-    def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
+    def _print_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
         shown_value, show = value_text(*value), self.shows.show_of(event)
         if show is None:
-            self.say(since_ms, "SHOW", shown_value, value=value_of(*value))
+            self.print_values(since_ms, "SHOW", shown_value, value=value_of(*value))
             return
         text = f"{self._name_with_line(show, str(show.line))} {shown_value}"
-        self.say(since_ms, "SHOW", shown_value, text, self.name_of(event), value=value_of(*value),
-                 name=show.text, line=show.line, column=show.column)  # fmt: skip
+        self.print_values(since_ms, "SHOW", shown_value, text, self.name_of(event),
+                          value=value_of(*value), name=show.text, line=show.line,
+                          column=show.column)  # fmt: skip
 
-    def _tell_fault(self, since_ms: int, fault_number: int, offset: int, checksum: int) -> None:
+    def _print_fault(self, since_ms: int, fault_number: int, offset: int, checksum: int) -> None:
         fault = fault_name(fault_number)
         sentence = fault_sentence(fault_number, offset, checksum, self.program_map, self.language)
         program_map = self.program_map or source_map.recall(checksum)
         location = program_map.location_at(offset) if program_map is not None else None
         line_fields = {} if location is None else {"line": location.line}
-        self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=offset,
+        self.print_values(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=offset,
                  program=f"{checksum:08x}", **line_fields)  # fmt: skip
 
-    def say(
+    def print_values(
         self, since_ms: int, name: str, shown_value: str, sentence: str = "", cell: str = "", /,
         is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
@@ -170,7 +173,7 @@ def printer_of(
     """Return the printer of a connection's events, above the picture of its virtual robot."""
     simulator = connection.simulator
     print_line, print_error = (
-        (None, None) if simulator is None else (simulator.say, simulator.say_error)
+        (None, None) if simulator is None else (simulator.print_line, simulator.print_error)
     )
     return EventPrinter(
         connection.language,

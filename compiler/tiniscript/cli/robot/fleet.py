@@ -60,25 +60,25 @@ def run_together(options: Namespace, robot: Robot, language: str, work: Work) ->
     fleet = Fleet(targets(options), options, robot, language)
     if not fleet.members:
         raise CommandError(3, "no_robots")
-    fleet.begin(work)
+    fleet.start_work(work)
     try:
         if sys.stderr.isatty() and not options.json:
             from tiniscript.cli.terminal.fleet_table import FleetTable
 
             with FleetTable(fleet.sorted_members(), language) as table:
-                fleet.watch(table)
+                fleet.print_until_done(table)
         else:
-            fleet.watch(None)
+            fleet.print_until_done(None)
     except KeyboardInterrupt:  # while something is printed, too
-        fleet.interrupt()
+        fleet.interrupt_robots()
         streams.drop_unread_output()
-        fleet.stop()
+        fleet.stop_robots()
     except OSError:  # nobody reads, or can read, the output
         if options.verb == "upload" and not options.detach:
-            fleet.stop()
+            fleet.stop_robots()
         raise
     finally:
-        fleet.remember()
+        fleet.remember_names()
     return fleet.exit_code()
 
 
@@ -95,12 +95,12 @@ class Fleet:
         self._result_bell = Bell()
         self._attend: Callable[[], None] = getattr(options, "attend", lambda: None)
 
-    def begin(self, work: Work) -> None:
+    def start_work(self, work: Work) -> None:
         self._attend()
         for member in self.members:
-            Thread(target=self._run, args=(member, work), name="robot", daemon=True).start()
+            Thread(target=self._work_on, args=(member, work), name="robot", daemon=True).start()
 
-    def watch(self, table: FleetTable | None) -> None:
+    def print_until_done(self, table: FleetTable | None) -> None:
         """Print results until all have one; Ctrl-C stops all, a second one leaves at once."""
         unfinished_members = list(self.members)
         begin_s = monotonic()
@@ -121,7 +121,7 @@ class Fleet:
             except KeyboardInterrupt:
                 if self.is_interrupted:
                     return
-                self.interrupt()
+                self.interrupt_robots()
                 streams.drop_unread_output()
                 end_s = monotonic() + opening.CONFIRM_TIMEOUT_S + 1
         if table is not None:
@@ -144,31 +144,31 @@ class Fleet:
             if member.bug is not None:
                 raise member.bug
             if table is None:
-                self._print(member)
+                self._print_result(member)
             unfinished_members.remove(member)
         self._print_lines(table)
 
-    def stop(self) -> None:
+    def stop_robots(self) -> None:
         """Stop every robot, and wait until they have confirmed; a second Ctrl-C ends the wait."""
-        self.interrupt()
+        self.interrupt_robots()
         with suppress(KeyboardInterrupt):
-            self.wait(opening.CONFIRM_TIMEOUT_S)
+            self.wait_for_results(opening.CONFIRM_TIMEOUT_S)
 
-    def wait(self, limit_s: float) -> None:
+    def wait_for_results(self, limit_s: float) -> None:
         """Wait until all robots have a result."""
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
             self._result_bell.wait(LOOK_INTERVAL_S)
 
-    def interrupt(self) -> None:
+    def interrupt_robots(self) -> None:
         """Stop every robot."""
         self.is_interrupted = True
         for member in self.members:
             if member.connection is not None:
                 member.connection.interrupt()
 
-    def remember(self) -> None:
+    def remember_names(self) -> None:
         """Remember the names of all robots that have answered."""
         for member in self.members:
             connection = member.connection
@@ -189,11 +189,11 @@ class Fleet:
 
     # -- a thread for each ------------------------------------------------------------------------
 
-    def _run(self, member: Member, work: Work) -> None:
+    def _work_on(self, member: Member, work: Work) -> None:
         try:
             self._connect(member, work)
         except Reconnect:
-            self._run(member, work)
+            self._work_on(member, work)
             return
         except CommandError as error:
             member.result = self._failure_result(member, error)
@@ -231,7 +231,7 @@ class Fleet:
 
     # -- what is printed --------------------------------------------------------------------------
 
-    def _print(self, member: Member) -> None:
+    def _print_result(self, member: Member) -> None:
         self._print_lines(None)  # lines from before
         if self.options.json:
             print(member.as_json(), flush=True)
@@ -244,7 +244,7 @@ class Fleet:
             if table is None:
                 print(line, flush=True)
             else:
-                table.say(line)
+                table.print_line(line)
 
     def _give_up(self, strangers: list[Member]) -> None:
         """Give up on ports on which no robot has ever answered."""

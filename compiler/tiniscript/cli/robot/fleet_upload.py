@@ -40,18 +40,18 @@ def _upload(
 ) -> Result:
     language = connection.language
     code_bytes = max(1, len(ready_program.image.code))
-    member.meet(connection)
+    member.meet_robot(connection)
 
     def draw_progress(done_bytes: int) -> None:
-        member.tell("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
+        member.set_state("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
 
     draw_progress(0)
     receipt_reply = program_upload.send_program(connection, ready_program, options, draw_progress)
     receipt = program_upload.receipt_fields(connection, ready_program, name, receipt_reply, options)
     if options.json:
-        member.print(json.dumps(receipt))
+        member.queue_line(json.dumps(receipt))
     starts = program_upload.is_running(ready_program, options)
-    member.tell("crew_running" if starts and not options.detach else "crew_saving")
+    member.set_state("crew_running" if starts and not options.detach else "crew_saving")
     printer = MemberPrinter(connection, ready_program, member, options.json, receipt_reply.program)
     saving = Saving(connection, printer, receipt_reply)
     exit_code = program_upload.follow_run(connection, ready_program, saving, options, printer)
@@ -83,13 +83,13 @@ class MemberPrinter(EventPrinter):
             is_json,
             program_map=ready_program.program_map,
             robot_fields={"port": connection.port},
-            print_line=member.print,
+            print_line=member.queue_line,
             checksum=checksum,
         )
         self.member = member
         self.end_text = ""
 
-    def say(
+    def print_values(
         self, since_ms: int, name: str, shown_value: str, sentence: str = "", cell: str = "", /,
         is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
@@ -99,6 +99,8 @@ class MemberPrinter(EventPrinter):
         elif name != "SAVED":
             self.end_text = "  ".join(part.strip() for part in line.splitlines())
         if self.is_json:
-            super().say(since_ms, name, shown_value, sentence, cell, is_bad=is_bad, **fields)
+            super().print_values(
+                since_ms, name, shown_value, sentence, cell, is_bad=is_bad, **fields
+            )
         elif name == "SHOW" and not sys.stderr.isatty():  # there is no table
             self.print_line(f"{self.member.name} ({self.member.target.port}): {line}")

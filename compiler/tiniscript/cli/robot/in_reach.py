@@ -31,11 +31,10 @@ from tiniscript.virtual import directory
 
 
 class ReachableRobots(NamedTuple):
-    """`descriptions` maps ports to descriptions; `other_ports` are ports that mean one of these,
-    too; `absent_ports` are known ports without a robot; `notes` say what was not searched, and
-    why."""
+    """`other_ports` are ports that mean one of those described, too; `absent_ports` are known ports
+    without a robot; `notes` say what was not searched, and why."""
 
-    descriptions: dict[str, str]
+    description_by_port: dict[str, str]
     other_ports: list[str]
     absent_ports: list[str]
     notes: list[str]
@@ -56,7 +55,7 @@ def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
                     reach.notes.append(error_for_port(kind, error).sentence(language))
                 reasons.add(error.reason)
                 continue
-            reach.descriptions.update(reach_part.descriptions)
+            reach.description_by_port.update(reach_part.description_by_port)
             reach.other_ports.extend(reach_part.other_ports)
             reach.absent_ports.extend(reach_part.absent_ports)
     return reach
@@ -91,7 +90,7 @@ def _find_by_name(known_ports: list[str], language: str) -> ReachableRobots:
     reach.other_ports.extend(
         announced_robot.port
         for announced_robot in announced_robots
-        if announced_robot.port not in reach.descriptions
+        if announced_robot.port not in reach.description_by_port
     )
     return reach
 
@@ -106,7 +105,7 @@ def _name_robots(
         known_ports = [
             given_port for given_port, canonical in canonical_of.items() if canonical in names
         ]
-        reach.descriptions[known_ports[0] if known_ports else port] = description
+        reach.description_by_port[known_ports[0] if known_ports else port] = description
         reach.other_ports.extend(known_ports[1:])
         for known_port in known_ports:
             reach.absent_ports.remove(known_port)

@@ -36,14 +36,14 @@ class LiveValue(NamedTuple):
 class LiveLine(NamedTuple):
     """A compiled line: `shown_variables` are the variables whose values it shows after the mark.
 
-    `defs` are the DEFs in it, which are known once it is done; `has_only_defs`: it has nothing
-    but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map` is the
-    map of the line with the DEFs and variables before it, which have `lines_before` lines.
+    `text_by_def` are the DEFs in it, which are known once it is done; `has_only_defs`: it has
+    nothing but DEFs; `loses_values`: it sets variables, but has no room to show them. `whole_map`
+    is the map of the line with the DEFs and variables before it, which have `lines_before` lines.
     """
 
     compilation: Compilation
     shown_variables: tuple[str, ...]
-    defs: dict[str, str]
+    text_by_def: dict[str, str]
     has_only_defs: bool = False
     loses_values: bool = False
     whole_map: SourceMap | None = None
@@ -74,11 +74,11 @@ class LiveState:
 
     def __init__(self, kit: Kit) -> None:
         self.kit = kit
-        self.defs: dict[str, str] = {}
-        self.values: dict[str, LiveValue] = {}
+        self.text_by_def: dict[str, str] = {}
+        self.value_by_name: dict[str, LiveValue] = {}
 
     def names(self) -> list[str]:
-        return [*self.defs, *self.values]
+        return [*self.text_by_def, *self.value_by_name]
 
     def compile_line(self, text: str, room: int) -> LiveLine:
         """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
@@ -124,11 +124,16 @@ class LiveState:
         texts_left = [text]
         while texts_left:
             words = {token.text for token in scan(texts_left.pop()).tokens if token.kind is WORD}
-            texts_left += [self.defs[name] for name in words - used_names if name in self.defs]
+            texts_left += [
+                self.text_by_def[name] for name in words - used_names if name in self.text_by_def
+            ]
             used_names |= words
-        values = "".join(f"{name} = {value_text(*value)}\n" for name, value in self.values.items()
-                         if name in used_names)  # fmt: skip
-        defs = "".join(f"{value}\n" for name, value in self.defs.items()
+        values = "".join(
+            f"{name} = {value_text(*value)}\n"
+            for name, value in self.value_by_name.items()
+            if name in used_names
+        )
+        defs = "".join(f"{value}\n" for name, value in self.text_by_def.items()
                        if name in used_names and name not in def_texts)  # fmt: skip
         return values, defs
 

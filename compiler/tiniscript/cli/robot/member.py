@@ -47,7 +47,7 @@ def targets(options: Namespace) -> list[Target]:
 
     Ports in use come first, then ports of known robots. Opens none.
     """
-    names_by_port = known_ports.remembered_ports().names
+    names_by_port = known_ports.remembered_ports().name_by_port
     candidate_ports = [inputs.check_port(port) for port in options.ports]
     if options.all:
         candidate_ports = [registration.port for registration in find_all()]
@@ -95,17 +95,17 @@ class Member:
         self.connection: Connection | None = None
         self.bug: Exception | None = None
 
-    def tell(self, key: str, **values: object) -> None:
+    def set_state(self, key: str, **values: object) -> None:
         """Say what happens now."""
         self.state = key, values
 
-    def print(self, line: str) -> None:
+    def queue_line(self, line: str) -> None:
         """Queue a line for printing."""
         self.lines.append(line)
 
-    def meet(self, connection: Connection) -> None:
+    def meet_robot(self, connection: Connection) -> None:
         """Send HELLO to the robot. Raises CommandError."""
-        self.tell("crew_asking")
+        self.set_state("crew_asking")
         connection.meet()
         self.name = connection.name
 

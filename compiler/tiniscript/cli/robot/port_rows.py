@@ -21,15 +21,17 @@ def list_rows(
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     remembered_ports = known_ports.remembered_ports()
     virtual_by_address = {entry.address: entry for entry in directory.running_robots()}
-    descriptions = {entry.port: describe_port(entry, language) for entry in ports.list_ports()}
-    descriptions |= in_reach.descriptions
+    description_by_port = {
+        entry.port: describe_port(entry, language) for entry in ports.list_ports()
+    }
+    description_by_port |= in_reach.description_by_port
     verb_of_port = {registration.port: registration.verb for registration in running_servers()}
-    shown_ports = [only_port] if only_port is not None else list(descriptions)
+    shown_ports = [only_port] if only_port is not None else list(description_by_port)
     if only_port is None:
         shown_ports += [
             port
-            for port in remembered_ports.names
-            if port not in descriptions
+            for port in remembered_ports.name_by_port
+            if port not in description_by_port
             and exists(port)
             and port not in in_reach.other_ports
             and not directory.is_gone(port)
@@ -39,14 +41,14 @@ def list_rows(
         ]
         canonical_ports = {canonical_port(port) for port in shown_ports}
         shown_ports += [port for port in verb_of_port if port not in canonical_ports]
-    descriptions |= {
+    description_by_port |= {
         port: describe_virtual_robot(entry, language) for port, entry in virtual_by_address.items()
     }
     return [
         {
             "port": port,
-            "description": descriptions.get(port, ""),
-            "remembered": remembered_ports.names.get(port),
+            "description": description_by_port.get(port, ""),
+            "remembered": remembered_ports.name_by_port.get(port),
             "is_last_used": remembered_ports.last_port == port,
             "is_virtual": port in virtual_by_address,
             "held_by": verb_of_port.get(canonical_port(port)),

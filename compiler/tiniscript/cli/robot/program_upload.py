@@ -72,7 +72,7 @@ def follow_run(
         if options.detach:
             return 0
         if connection.simulator is not None:
-            connection.simulator.watch()
+            connection.simulator.start_drawing()
         if options.breaks:
             exit_code = _follow_halts(connection, ready_program, saving, printer)
         else:
@@ -96,7 +96,7 @@ def _follow_halts(
             saving.poll()
             debugger.poll_keys()
 
-        return RunMonitor(connection, printer, debugger.hold, on_wait).follow(saving.run)
+        return RunMonitor(connection, printer, debugger.hold_event, on_wait).follow(saving.run)
 
 
 def _haltable_program(ready_program: images.ReadyProgram) -> HaltableProgram:
@@ -196,7 +196,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
     simulator = connection.simulator
     assert simulator is not None
     has_person = has_keys(connection)
-    simulator.watch(text("button_keys", connection.language) if has_person else "")
+    simulator.start_drawing(text("button_keys", connection.language) if has_person else "")
     if not has_person:
         simulator.push()
     with Keys() as keys:
@@ -214,7 +214,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
                 continue
             _check_event(connection, timed_event[1], saving.program)
             if timed_event[1].name != "STARTED":
-                printer.tell(*timed_event)
+                printer.print_event(*timed_event)
             exit_code = exit_code_of(timed_event[1], None)
             if exit_code is not None and not (has_person and _is_push(timed_event[1])):
                 return exit_code

@@ -23,29 +23,31 @@ from tiniscript.studio.recordings import END, MOST_MS, Row
 
 
 class Rows:
-    """A file that begins with the row `first`; until that is there, the old file stays.
+    """A file that begins with `header_row`; until that is there, the old file stays.
 
     Threads may add rows at once. All raise CommandError where the file cannot be written, with
-    the sentence `failure`.
+    the sentence `failure_key`.
     """
 
-    def __init__(self, name: str, first: bytes, failure: str = "unwritable_more --csv") -> None:
+    def __init__(
+        self, name: str, header_row: bytes, failure_key: str = "unwritable_more --csv"
+    ) -> None:
         self._name = name
-        self._how = failure
+        self._failure_key = failure_key
         self._lock = Lock()
         try:
             path = Path(name)
             if path.is_file() or not path.exists():
-                files.replace(path, first)
+                files.replace(path, header_row)
                 self._file = path.open("a", encoding="utf-8", newline="\n")
                 return
             self._file = path.open("w", encoding="utf-8", newline="\n")  # a device or a pipe
-            self._file.write(first.decode())
+            self._file.write(header_row.decode())
             self._file.flush()
         except (OSError, ValueError) as error:
             raise self._failure(error) from None
 
-    def add(self, *cells: object) -> None:
+    def add_row(self, *cells: object) -> None:
         try:
             with self._lock:
                 csv.writer(self._file, lineterminator="\n").writerow(cells)
@@ -53,7 +55,7 @@ class Rows:
         except (OSError, ValueError) as error:
             raise self._failure(error) from None
 
-    def line(self, row: str) -> None:
+    def add_line(self, row: str) -> None:
         try:
             with self._lock:
                 self._file.write(row + "\n")
@@ -65,8 +67,8 @@ class Rows:
         with suppress(OSError):  # a write failure was told already
             self._file.close()
 
-    def _failure(self, why: Exception) -> CommandError:
-        return unwritable_error(self._how, printable_name(self._name), why)
+    def _failure(self, error: Exception) -> CommandError:
+        return unwritable_error(self._failure_key, printable_name(self._name), error)
 
 
 ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "MISSED")
@@ -90,24 +92,24 @@ class Recorder:
     ) -> None:
         self._began_s = began_s
         self._robot_ms = robot_ms
-        self._kept = recordings.Rows()
+        self._kept_rows = recordings.Rows()
         self._readings = recordings.ReadingRows(kit or Kit((), ()))
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
-    def add(self, _: int, name: str, text: str, __: str = "") -> None:
+    def add_event(self, _: int, name: str, text: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
         event = f"{name} {text}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
-        row = Row(self._ms(event), event)
-        is_row_kept = self._kept.add(row)
+        row = Row(self._event_ms(event), event)
+        is_row_kept = self._kept_rows.add(row)
         if is_row_kept:
-            self._rows.line(recordings.encode_row(row))
+            self._rows.add_line(recordings.encode_row(row))
         if not is_row_kept or name in ENDING_EVENTS:
-            self._end(row.ms)
+            self._add_end_row(row.ms)
 
     def add_reading(self, event: ReadingEvent) -> None:
         """Add what the program has read, at the time that the robot tells."""
@@ -115,36 +117,36 @@ class Recorder:
             return
         since_s = 0.0 if self._began_s is None else monotonic() - self._began_s
         for row in self._readings.rows(event, round(since_s * 1000)):
-            if self._kept.add(row):
-                self._rows.line(recordings.encode_row(row))
-            elif self._kept.is_full:
-                return self._end(row.ms)
+            if self._kept_rows.add(row):
+                self._rows.add_line(recordings.encode_row(row))
+            elif self._kept_rows.is_full:
+                return self._add_end_row(row.ms)
 
     @property
     def untold(self) -> list[str]:
         """The sensors of which the robot could not tell all readings."""
         return self._readings.incomplete_names
 
-    def end(self, event: str) -> None:
+    def end_recording(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
-            row = Row(self._ms(event), event)
-            if self._kept.add(row):
-                self._rows.line(recordings.encode_row(row))
-            self._end(row.ms)
+            row = Row(self._event_ms(event), event)
+            if self._kept_rows.add(row):
+                self._rows.add_line(recordings.encode_row(row))
+            self._add_end_row(row.ms)
 
     def close(self) -> None:
         """Close the file; a run whose end nobody has told was stopped by this computer."""
         try:
-            self.end("STOPPED")
+            self.end_recording("STOPPED")
         finally:
             self._rows.close()
 
-    def _ms(self, event: str) -> int:
+    def _event_ms(self, event: str) -> int:
         if self._robot_ms is not None:
             return self._robot_ms(event)
         return 0 if self._began_s is None else round((monotonic() - self._began_s) * 1000)
 
-    def _end(self, ms: int) -> None:
+    def _add_end_row(self, ms: int) -> None:
         self._is_over = True
-        self._rows.line(recordings.encode_row(Row(min(ms, MOST_MS), END)))
+        self._rows.add_line(recordings.encode_row(Row(min(ms, MOST_MS), END)))

@@ -35,10 +35,10 @@ class HeldKeys:
     """Which keys are held, as far as a terminal tells."""
 
     def __init__(self) -> None:
-        self._release_s: dict[str, float] = {}
+        self._release_s_by_key: dict[str, float] = {}
         self._unfinished_key = ""
 
-    def take(self, typed_keys: str, now_s: float) -> bool:
+    def press_typed(self, typed_keys: str, now_s: float) -> bool:
         """Take what was typed; return whether somebody wants to leave."""
         text, offset = self._unfinished_key + typed_keys, 0
         self._unfinished_key = ""
@@ -56,16 +56,16 @@ class HeldKeys:
             if letter is not None and letter.upper() in _LETTERS:
                 name = letter.upper()
             if name:
-                self._press(name, now_s)
+                self._hold_key(name, now_s)
         return False
 
-    def _press(self, name: str, now_s: float) -> None:
-        is_repeat = now_s < self._release_s.get(name, now_s)
-        self._release_s[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
+    def _hold_key(self, name: str, now_s: float) -> None:
+        is_repeat = now_s < self._release_s_by_key.get(name, now_s)
+        self._release_s_by_key[name] = now_s + (REPEAT_HOLD_S if is_repeat else FIRST_HOLD_S)
 
     def keys_at(self, now_s: float) -> RemoteState:
         return remote_state_of(
-            name for name, release_s in self._release_s.items() if now_s < release_s
+            name for name, release_s in self._release_s_by_key.items() if now_s < release_s
         )
 
 
@@ -92,7 +92,7 @@ class TerminalRemote:
     def poll(self) -> None:
         """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
         now_s = monotonic()
-        if self._held_keys.take(self._keys.read_keys(), now_s):
+        if self._held_keys.press_typed(self._keys.read_keys(), now_s):
             self.has_quit = True
             raise KeyboardInterrupt
         self._check_reply()

@@ -104,7 +104,7 @@ def use_broker(connection: Connection, broker: BrokerSettings | None, options: N
         lambda session: session.use_broker(broker), "broker_old", "BAD_VALUE"
     )
     if broker is None:
-        connection.say("broker_off")
+        connection.print_text("broker_off")
         return
     wifi_reply = await_state(
         partial(_broker_state, connection), lambda reply: _state(reply) != "SEARCHING"

@@ -67,7 +67,7 @@ class RunMonitor:
             except RobotError as error:
                 raise CommandError(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
-                self.printer.tell(time_ms, event)
+                self.printer.print_event(time_ms, event)
                 if event.name not in ("STARTED", "READING"):
                     self.connection.wait_notice.note_other_output()
             exit_code = exit_code_of(event, run)
@@ -79,7 +79,7 @@ class RunMonitor:
         if not self.connection.stop():
             raise CommandError(3, "not_confirmed", port=printable_name(self.connection.port))
         language = self.connection.language
-        self.printer.say(0, "TIME_OVER", "", text("time_over", language))
+        self.printer.print_values(0, "TIME_OVER", "", text("time_over", language))
         return DONE
 
 
@@ -90,14 +90,14 @@ def exit_code_of(event: Event, run: int | None) -> int | None:
         return None
     if end.name == "DONE":
         return DONE
-    return FAULTY if end.is_by_program else LOST
+    return FAULTY if end.was_caused_by_program else LOST
 
 
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
     is_confirmed = connection.stop()
     if connection.simulator is not None:
-        connection.simulator.unwatch()  # the robot has stopped in the picture, too
+        connection.simulator.stop_drawing()  # the robot has stopped in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C
     if is_confirmed:
         say_aside("robot_stopped", connection.language)
@@ -169,6 +169,8 @@ class Saving:
             is_verbose = getattr(self.connection.options, "verbose", False)
             key = "now_saved_slot" if is_verbose else "now_saved"
             sentence = text(key, language).format(slot=slot)
-            self.printer.say(0, "SAVED", str(slot), sentence, slot=slot)
+            self.printer.print_values(0, "SAVED", str(slot), sentence, slot=slot)
         elif self._progress.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
-            self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)
+            self.printer.print_values(
+                0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True
+            )

@@ -64,12 +64,12 @@ class SelfTest(Conversation):
         try:
             self._run_checks()
         except CommandError as error:
-            self._add("plain", said=error.sentence(self.language))
+            self._add_finding("plain", said=error.sentence(self.language))
         return self.findings
 
     def _run_checks(self) -> None:
-        self._add("is_there")
-        robot = self._examine()
+        self._add_finding("is_there")
+        robot = self._examine_robot()
         self.trim = trim_from_reply(self.connection.request(lambda session: session.trim()).values)
         self.findings.append(self._trim_finding())
         if robot is None:
@@ -84,12 +84,12 @@ class SelfTest(Conversation):
         if robot.board.buzzer is not None:
             self._check_buzzer()
 
-    def _add(self, cause: str, part: str = "", **values: str) -> None:
+    def _add_finding(self, cause: str, part: str = "", **values: str) -> None:
         self.findings.append(Finding(cause, True, values, part))
 
     # -- what the robot says about itself
 
-    def _examine(self) -> Robot | None:
+    def _examine_robot(self) -> Robot | None:
         """Let the doctor examine it; return the robot that it is, where this computer knows it."""
         expected_robot = self.connection.profile
         kit = self.connection.device_info.kit
@@ -102,14 +102,14 @@ class SelfTest(Conversation):
             ] or passed_by_part.get(part, [])
         return known_robot
 
-    def _passed_parts(self, name: str) -> dict[str, list[Finding]]:
+    def _passed_parts(self, robot_name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""
         if self.robot_answers is None:
             return {}
         hello, status, _, trips_ms = self.robot_answers
         sizes = {size: str(getattr(hello, size)) for size in ("room", "largest", "window")}
         findings = [
-            sure_finding("kit_is", robot=name),
+            sure_finding("kit_is", robot=robot_name),
             sure_finding("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
             sure_finding("supply_is", reset=row_name(RESETS, hello.reset)),
             sure_finding(_saved_cause(row_name(SAVED, status.saved))),
@@ -128,7 +128,7 @@ class SelfTest(Conversation):
         except CommandError as error:
             if error.key not in ANSWERED_FAILURES:
                 raise
-            self._add("plain", "discs", said=error.sentence(self.language))
+            self._add_finding("plain", "discs", said=error.sentence(self.language))
             return
         edges_after = self.connection.request(lambda session: session.status()).values.noise
         left, right = (
@@ -136,9 +136,9 @@ class SelfTest(Conversation):
             for count_now, count_before in zip(edges_after, edges_before, strict=True)
         )
         if left == right == "0":
-            self._add("discs_rest")
+            self._add_finding("discs_rest")
         else:
-            self._add("discs_noise", left=left, right=right)
+            self._add_finding("discs_noise", left=left, right=right)
 
     # -- what it senses and does
 
@@ -153,7 +153,7 @@ class SelfTest(Conversation):
         try:
             readings_before = self._read(sensor)
             if wiring.driver == SONAR and not any(readings_before):  # nothing is so near
-                self._add("echo_hung", name=name)
+                self._add_finding("echo_hung", name=name)
                 return
             values = _range(sensor, readings_before)
             self.ask("ask_free", name=name, values=values)
@@ -164,11 +164,11 @@ class SelfTest(Conversation):
         except CommandError as error:
             if error.key not in ANSWERED_FAILURES:
                 raise
-            self._add("no_reading", name=name, said=error.sentence(self.language))
+            self._add_finding("no_reading", name=name, said=error.sentence(self.language))
             return
         except NoPerson:
             is_stuck = not sensor.is_yes_no and {*readings_before} <= {sensor.low, sensor.high}
-            self._add("stuck" if is_stuck else "reads", name=name, values=values)
+            self._add_finding("stuck" if is_stuck else "reads", name=name, values=values)
             return
         range_text = _range(sensor, readings_after)
         least_change = 0 if sensor.is_yes_no else (sensor.high - sensor.low) // NOTICEABLE_PARTS
@@ -176,7 +176,7 @@ class SelfTest(Conversation):
             cause = "changes"
         else:  # a hand may be as bright as the floor
             cause = "as_bright" if sensor.is_yes_no else "same"
-        self._add(cause, name=name, values=values, now=range_text)
+        self._add_finding(cause, name=name, values=values, now=range_text)
 
     def _check_motors(self, is_lifted: bool) -> None:
         """Turn both. A robot with other wires may learn them, and turns both again."""
@@ -199,15 +199,15 @@ class SelfTest(Conversation):
                 raise NoPerson
             turn = self.turn_motor(side)
         except NoPerson:
-            self._add("unasked", side)
+            self._add_finding("unasked", side)
             return None
         except CommandError as error:
             self._record_failure(side, error)
             return None
         if not turn.wheel:
-            self._add("still", side)
+            self._add_finding("still", side)
         else:
-            self._add("turns" if turn == WheelTurn(side, True) else "other_turn", side)
+            self._add_finding("turns" if turn == WheelTurn(side, True) else "other_turn", side)
         return turn
 
     def _offer_wiring(self, left: WheelTurn, right: WheelTurn) -> bool:
@@ -229,14 +229,14 @@ class SelfTest(Conversation):
         try:
             answer = self.ask_what_was_seen("BEEP(0.5, 440)", "ask_buzzer", BUZZER_AGAIN)
         except NoPerson:
-            self._add("unasked", "buzzer")
+            self._add_finding("unasked", "buzzer")
         except CommandError as error:
             self._record_failure("buzzer", error)
         else:
-            self._add("heard" if answer == BUZZER_HEARD else "unheard")
+            self._add_finding("heard" if answer == BUZZER_HEARD else "unheard")
 
     def _record_failure(self, part: str, error: CommandError) -> None:
-        self._add("ended", part, said=error.sentence(self.language))
+        self._add_finding("ended", part, said=error.sentence(self.language))
         if error.key not in ANSWERED_FAILURES:
             raise error
 

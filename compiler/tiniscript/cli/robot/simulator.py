@@ -64,7 +64,7 @@ class CommandSimulator(SimulatorThread):
         self.language = language
         self.screen: Screen | None = None
         self._picture: WorldPicture | None = None
-        self._is_watched = False  # `watch` was called
+        self._is_watched = False  # `start_drawing` was called
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._draw_lock = RLock()
@@ -83,7 +83,8 @@ class CommandSimulator(SimulatorThread):
     def is_time_over(self) -> bool:
         """Whether the time of `--for` is over.
 
-        It begins with the first program, or with `watch` if the program waits for the button.
+        It begins with the first program, or with `start_drawing` if the program waits for the
+        button.
         """
         return self._is_watched and self.simulator.is_over
 
@@ -92,7 +93,7 @@ class CommandSimulator(SimulatorThread):
         """Whether it is drawn on a terminal."""
         return sys.stderr.isatty() and not getattr(self.options, "json", False)
 
-    def watch(self, keys: str = "") -> None:
+    def start_drawing(self, keys: str = "") -> None:
         """Draw it from now on, if there is a terminal. `keys` is the help for the keys."""
         if not self._is_watched:
             self._is_watched = True
@@ -109,18 +110,18 @@ class CommandSimulator(SimulatorThread):
                 self._picture = WorldPicture(self.robot, self.language, keys)
             self.screen.begin()
 
-    def say(self, line: str) -> None:
+    def print_line(self, line: str) -> None:
         """Print a line, above the picture if there is one."""
         with self._draw_lock:
             if self.screen is not None:
-                self.screen.say(line)
+                self.screen.print_line(line)
                 return
         print(line, flush=True)
 
-    def say_error(self, line: str) -> None:
+    def print_error(self, line: str) -> None:
         with self._draw_lock:
             if self.screen is not None and self.screen.is_shared:
-                self.screen.say(line)
+                self.screen.print_line(line)
                 return
         sys.stdout.flush()
         print(line, file=sys.stderr, flush=True)
@@ -148,7 +149,7 @@ class CommandSimulator(SimulatorThread):
                 if told_event.text == event_text:
                     return told_event.time_ms - started_ms
 
-    def unwatch(self) -> None:
+    def stop_drawing(self) -> None:
         """Stop drawing; the last picture stays."""
         if self.screen is not None:
             with self._draw_lock:
@@ -169,7 +170,7 @@ class CommandSimulator(SimulatorThread):
         try:
             super().close()
         finally:
-            self.unwatch()
+            self.stop_drawing()
         if not self._is_watched:
             return
         if self.options.plot is not None:
@@ -195,7 +196,7 @@ class CommandSimulator(SimulatorThread):
             while self._picture is not None and self._undrawn_events:
                 event = self._undrawn_events.popleft()
                 if not self._bookkeeping.filter_trace_event(event.kind, event.values):
-                    self._picture.take(event)
+                    self._picture.add_event(event)
             if self.screen is not None and monotonic() >= self._frame_s:
                 self._frame_s = monotonic() + FRAME_S
                 self._draw(self.screen)

@@ -11,7 +11,7 @@ from tiniscript.cli.texts import text
 
 def stop_one(connection: Connection, member: Member) -> Result:
     """Stop one of many robots. Raises CommandError where it does not confirm."""
-    member.tell("crew_stopping")
+    member.set_state("crew_stopping")
     if connection.stop():
         if connection.options.teacher:
             hold_back(connection)

@@ -35,7 +35,7 @@ MOST_TRIES = 4
 def guide(connection: Connection, old_trim: Trim) -> Trim:
     """Ask until the robot drives straight; return the new trim."""
     try:
-        return TrimWizard(connection).trim(old_trim)
+        return TrimWizard(connection).ask_trim(old_trim)
     except BaseException as error:
         if isinstance(error, KeyboardInterrupt):
             print(file=sys.stderr)
@@ -66,7 +66,7 @@ def _restore_trim(connection: Connection, old_trim: Trim) -> None:
 
 
 class TrimWizard(Conversation):
-    def trim(self, old_trim: Trim) -> Trim:
+    def ask_trim(self, old_trim: Trim) -> Trim:
         self.ask_to_lift()
         self._set_trim(Trim())
         trim = self._find_wiring()

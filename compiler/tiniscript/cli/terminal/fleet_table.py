@@ -32,8 +32,8 @@ class FleetTable:
     def __exit__(self, *_: object) -> None:
         self.screen.end()
 
-    def say(self, line: str) -> None:
-        self.screen.say(line)
+    def print_line(self, line: str) -> None:
+        self.screen.print_line(line)
 
     def end(self, rows: Iterable[str]) -> None:
         """Leave plain rows in place of the table."""
@@ -41,11 +41,11 @@ class FleetTable:
         self.draw()
         self.screen.end()
         for row in rows:
-            self.screen.say(row)
+            self.screen.print_line(row)
 
     def draw(self) -> None:
         """Wait for the next frame, and draw it."""
-        self.screen.rest()
+        self.screen.wait_for_frame()
         self.screen.draw(self, time.monotonic() * 1000)
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:

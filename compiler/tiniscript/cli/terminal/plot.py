@@ -42,9 +42,9 @@ class PlotScreen(Screen):
     def __exit__(self, *_: object) -> None:
         self.end()
 
-    def take(self, time_ms: int, event: Event, name_of: Callable[[ShownEvent], str]) -> None:
+    def add_event(self, time_ms: int, event: Event, name_of: Callable[[ShownEvent], str]) -> None:
         if event.name == "SHOW":
-            self.plot.take(time_ms, event.value, bool(event.is_yes_no), name_of(event))
+            self.plot.add_value(time_ms, event.value, bool(event.is_yes_no), name_of(event))
 
     def draw_plot(self, now_ms: int) -> None:
         """Draw the curves as they are now, where the last frame is over."""
@@ -62,33 +62,37 @@ class Plot:
     def __init__(self, waiting_text: str = "") -> None:
         self.waiting_text = waiting_text
         self.now_ms = 0
-        self.curves: dict[str, Values] = {}  # by name, in the order of their first values
-        self.styles: dict[str, str] = {}
+        self.values_by_name: dict[str, Values] = {}  # by name, in the order of their first values
+        self.style_by_name: dict[str, str] = {}
         self.margin = 0  # columns of the labels
 
-    def take(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
+    def add_value(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
         self.now_ms = time_ms
         name = name or NAMELESS_CURVE
-        if name not in self.curves:
-            self._add(name)
-        self.curves[name].append((time_ms, value * 1000 if is_yes_no else value))
+        if name not in self.values_by_name:
+            self._add_curve(name)
+        self.values_by_name[name].append((time_ms, value * 1000 if is_yes_no else value))
 
-    def _add(self, name: str) -> None:
+    def _add_curve(self, name: str) -> None:
         """Begin a curve; where all styles are taken, the one without a value for longest ends."""
-        if len(self.curves) == len(STYLES):
-            oldest = min(self.curves, key=lambda curve_name: self.curves[curve_name][-1][0])
-            del self.curves[oldest], self.styles[oldest]
-        self.curves[name] = deque(maxlen=MOST_VALUES)
-        self.styles[name] = next(style for style in STYLES if style not in self.styles.values())
+        if len(self.values_by_name) == len(STYLES):
+            oldest = min(
+                self.values_by_name, key=lambda curve_name: self.values_by_name[curve_name][-1][0]
+            )
+            del self.values_by_name[oldest], self.style_by_name[oldest]
+        self.values_by_name[name] = deque(maxlen=MOST_VALUES)
+        self.style_by_name[name] = next(
+            style for style in STYLES if style not in self.style_by_name.values()
+        )
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
         width -= 2  # the ^C of the terminal stands after the last line
         begin_ms = now_ms - SHOWN_SECONDS * 1000
-        for values in self.curves.values():
+        for values in self.values_by_name.values():
             while len(values) > 1 and values[1][0] < begin_ms:
                 values.popleft()
-        values_shown = [value for _, value in chain.from_iterable(self.curves.values())]
+        values_shown = [value for _, value in chain.from_iterable(self.values_by_name.values())]
         low, high, step = scale(min(values_shown, default=0), max(values_shown, default=1000))
         rows = min(MOST_ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
@@ -99,8 +103,8 @@ class Plot:
         if rows < 2 or columns < 4:
             return [title]
         canvases = [
-            (self._curve(values, columns, rows, begin_ms, low, high), self.styles[name])
-            for name, values in self.curves.items()
+            (self._curve(values, columns, rows, begin_ms, low, high), self.style_by_name[name])
+            for name, values in self.values_by_name.items()
         ] or [(Canvas(columns, rows), "")]
         lines = [title]
         marks = {
@@ -115,10 +119,10 @@ class Plot:
     def _title(self, width: int) -> Text:
         """Return the names with their newest values, each in the colour of its curve."""
         title = Text("── ", style="dim")
-        for name, values in self.curves.items():
-            style = f"not dim {self.styles[name]}" if len(self.curves) > 1 else ""
+        for name, values in self.values_by_name.items():
+            style = f"not dim {self.style_by_name[name]}" if len(self.values_by_name) > 1 else ""
             title.append(f"{name} {as_text(values[-1][1])}", style).append("  ")
-        if self.curves:
+        if self.values_by_name:
             title.right_crop(1)
         else:
             title.append(f"{NAMELESS_CURVE} {self.waiting_text} ")

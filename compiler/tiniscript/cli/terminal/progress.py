@@ -61,12 +61,12 @@ class StatusLine:
     def __init__(self, is_shown: bool = True) -> None:
         self._is_shown = is_shown and reads_sequences(sys.stderr)
 
-    def tell(self, sentence: str) -> None:
+    def show(self, sentence: str) -> None:
         if self._is_shown:
             print(f"\r\x1b[K{sentence}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        self.tell("")
+        self.show("")
 
 
 SILENCE_LIMIT_S = 2.0

@@ -42,10 +42,10 @@ def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language:
                 return event
             while pace and event.time_ms > now_ms:
                 screen.draw(picture, now_ms)
-                now_ms += screen.rest() * 1000 * pace
-            picture.take(event)
-            screen.say(str(event))
-            if pace and screen.restart_if_late():
+                now_ms += screen.wait_for_frame() * 1000 * pace
+            picture.add_event(event)
+            screen.print_line(str(event))
+            if pace and screen.reset_frame_clock_if_late():
                 screen.draw(picture, picture.now_ms)
         raise AssertionError("a run without an ending")
     finally:
@@ -61,23 +61,23 @@ class Picture:
         self.labels = {**REMOTE_SIGNS, **robot.labels[language]}
         self.sketch = Sketch(robot)
         self.now_ms = 0  # when the newest event was
-        self.readings: dict[int, int] = {}
-        self.settings: dict[int, int] = {}
+        self.value_by_sensor: dict[int, int] = {}
+        self.value_by_actuator: dict[int, int] = {}
         self.shown_values: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
         self.column_widths = [0, 0]  # columns of values and units, so far
 
-    def take(self, event: Event) -> None:
+    def add_event(self, event: Event) -> None:
         self.now_ms, name, values, event_text, _ = event
         if name == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)
         elif name == "READ":
-            self.readings[values[0]] = values[1]
+            self.value_by_sensor[values[0]] = values[1]
         elif name == "SET":
-            self.settings[values[0]] = values[1]
+            self.value_by_actuator[values[0]] = values[1]
         elif name == "RELEASE":
-            self.settings.pop(values[0], None)
+            self.value_by_actuator.pop(values[0], None)
         elif name == "SHOW":
             self.shown_values.append(event_text.removeprefix("SHOW "))
         elif name == "BEEP":
@@ -128,7 +128,10 @@ class Picture:
             (text("motor_left", language), str(left), "%", _bar(left)),
             (text("motor_right", language), str(right), "%", _bar(right)),
         ]
-        for devices, values in ((kit.readings, self.readings), (kit.actuators, self.settings)):
+        for devices, values in (
+            (kit.readings, self.value_by_sensor),
+            (kit.actuators, self.value_by_actuator),
+        ):
             for number in sorted(values):
                 name, unit = devices[number].name, devices[number].unit
                 rows.append((name, devices[number].text(values[number]), unit, self.labels[name]))

@@ -37,11 +37,11 @@ class Frame:
         self._write(("\n" if self.lines else "") + SHOW_CURSOR)
         self.lines = []
 
-    def draw(self, lines: Sequence[Text], above: str = "") -> None:
-        """Show these lines in place of the last ones, and print `above` over them, to stay."""
+    def draw(self, lines: Sequence[Text], text_above: str = "") -> None:
+        """Show these lines in place of the last ones, and print `text_above` over them, to stay."""
         width = self.console.size.width
-        if above or width != self._width or len(lines) != len(self.lines):
-            text = self._full_picture(lines, above)
+        if text_above or width != self._width or len(lines) != len(self.lines):
+            text = self._full_picture(lines, text_above)
         else:
             text = self._changes(lines)
         self.lines = [line.copy() for line in lines]
@@ -49,14 +49,16 @@ class Frame:
         if text:
             self._write(BEGIN_UPDATE + text + END_UPDATE)
 
-    def _full_picture(self, lines: Sequence[Text], above: str) -> str:
+    def _full_picture(self, lines: Sequence[Text], text_above: str) -> str:
         """Return what writes all of it, from the first line of the last picture on."""
         width = self.console.size.width
         # a terminal that has become narrower has wrapped the last picture
         rows = max(0, len(self.lines) - 1)
         if width != self._width:
             rows += sum(max(0, line.cell_len - 1) // width for line in self.lines)
-        parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
+        parts = (
+            [*(f"{line}{TO_LINE_END}\n" for line in text_above.split("\n"))] if text_above else []
+        )
         parts.append(f"{TO_LINE_END}\n".join(map(self._style, lines)))
         erase_code = TO_SCREEN_END if width != self._width else ""
         return f"\r{_cursor_up(rows)}{erase_code}{''.join(parts)}{TO_SCREEN_END}"
@@ -64,8 +66,10 @@ class Frame:
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were; there are as many as before."""
         rows = [
-            "" if new == old and new.style == old.style else self._style(new) + TO_LINE_END
-            for new, old in zip(lines, self.lines, strict=True)
+            ""
+            if new_line == old_line and new_line.style == old_line.style
+            else self._style(new_line) + TO_LINE_END
+            for new_line, old_line in zip(lines, self.lines, strict=True)
         ]
         return f"\r{_cursor_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
 
@@ -125,7 +129,7 @@ class Screen:
                 else:
                     self.frame.end()
 
-    def say(self, line: str) -> None:
+    def print_line(self, line: str) -> None:
         """Print a line of the trace, at the next frame at the latest."""
         if self.is_shared and self.is_begun and not self.is_still:
             self.lines.append(line)
@@ -139,7 +143,7 @@ class Screen:
             self.lines = []
             self.frame.draw(self.frame.lines, text)
 
-    def warn(self, line: str) -> None:
+    def print_error(self, line: str) -> None:
         """Print a line on standard error, above the picture."""
         self.flush()
         if self.is_begun and not self.is_still:
@@ -147,14 +151,14 @@ class Screen:
         else:
             self.console.print(Text(line), soft_wrap=True)
 
-    def rest(self) -> float:
+    def wait_for_frame(self) -> float:
         """Wait for the next frame; return the seconds since the last one."""
         last_s = self.frame_s
         time.sleep(max(0.0, last_s + FRAME_S - time.monotonic()))
         self.frame_s = time.monotonic()
         return min(self.frame_s - last_s, SLOWEST_FRAME_S)
 
-    def restart_if_late(self) -> bool:
+    def reset_frame_clock_if_late(self) -> bool:
         """Return whether a frame is overdue: much has happened that takes the robot no time."""
         now_s = time.monotonic()
         if now_s - self.frame_s < 2 * FRAME_S:

@@ -42,14 +42,14 @@ class WorldPicture(Picture):
         self.began_ms = 0
         self.is_new = True  # nothing has run yet
 
-    def take(self, event: Event) -> None:
+    def add_event(self, event: Event) -> None:
         if event.kind == "START":
             self.began_ms, self.now_ms, self.ending = event.time_ms, 0, ""
             self.is_new = False
             self.shown_values.clear()
-            self.settings = dict(self.virtual_robot.actuators)
+            self.value_by_actuator = dict(self.virtual_robot.actuators)
             return
-        super().take(event._replace(time_ms=event.time_ms - self.began_ms))
+        super().add_event(event._replace(time_ms=event.time_ms - self.began_ms))
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns."""
@@ -58,7 +58,7 @@ class WorldPicture(Picture):
             self.ending = text("robot_waits" if robot.is_lit else "robot_empty", self.language)
             self.now_ms = 0
         for number in range(len(robot.profile.kit.sensors)):
-            self.readings[number] = robot.sensing.peek(number, robot.pose)
+            self.value_by_sensor[number] = robot.sensing.peek(number, robot.pose)
         has_footer = bool(self.footer) and height > 4
         lines = super().lines(width, height - has_footer, now_ms - self.began_ms)
         if has_footer:

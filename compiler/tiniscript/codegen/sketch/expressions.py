@@ -49,7 +49,7 @@ class Expressions:
         self.sensors = sensors
         self.kept_count = 0  # left sides that need a variable
 
-    def text(self, expression: Expression, reading: tuple[int, str] | None = None) -> str:
+    def code_of(self, expression: Expression, reading: tuple[int, str] | None = None) -> str:
         """Return an expression; `reading` is a sensor, and what stands in the place of its name."""
         stack: list[_Operand] = []
         for op, value in expression:
@@ -72,7 +72,7 @@ class Expressions:
                 stack.append(self._binary(op, left, right))
         return stack[-1].text
 
-    def keep(self) -> str:
+    def new_variable(self) -> str:
         """Return a variable for a left side."""
         self.kept_count += 1
         return f"first{self.kept_count}"
@@ -98,7 +98,7 @@ class Expressions:
         is_random = left.is_random or right.is_random or op == "RANDOM"
         kept_name = assignment = ""
         if left.is_random and right.is_random and op not in ("AND", "OR"):
-            kept_name = self.keep()
+            kept_name = self.new_variable()
             assignment, left = f"{kept_name} = {left.text}, ", _Operand(kept_name, _PRIMARY)
         if op in FUNCTIONS:
             operand = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)

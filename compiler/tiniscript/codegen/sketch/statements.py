@@ -74,7 +74,7 @@ class Statements:
         self.variables_set_by_calls: frozenset[int] = frozenset()  # arguments
         self.argument_values: list[ir.Expression] = []  # of the arguments of the call that is next
 
-    def body(self, body: ir.Body) -> None:
+    def add_body(self, body: ir.Body) -> None:
         for statement in body:
             if (
                 isinstance(statement, ir.Assign)
@@ -82,11 +82,11 @@ class Statements:
             ):
                 self.argument_values.append(statement.value)
             else:
-                self.statement(statement)
+                self.add_statement(statement)
 
     # -- lines
 
-    def line(self, code: str, comment: str = "") -> None:
+    def add_line(self, code: str, comment: str = "") -> None:
         indent = "  " * self.depth
         code_line = f"{indent}{code}"
         if comment:
@@ -125,62 +125,62 @@ class Statements:
             self.pending_comments[-1].start < start or self.pending_comments[-1].line == line
         ):
             for row in _rows(self.pending_comments.pop().text, MOST_COLUMNS - 2 * self.depth - 3):
-                self.line(f"// {row}")
+                self.add_line(f"// {row}")
 
-    def remaining_comments(self) -> None:
+    def add_remaining_comments(self) -> None:
         """Add the comments after the last instruction."""
         self.add_comments(len(self.source.text) + 1)
 
     # -- instructions
 
-    def statement(self, statement: ir.Statement) -> None:
+    def add_statement(self, statement: ir.Statement) -> None:
         start = statement.span.start
         self.add_comments(start)
         _STATEMENTS[type(statement)](self, statement, self.instruction_text(start))
 
     def read(self, read: ir.Read, comment: str) -> None:
         name = comment.upper() if comment.replace("_", "").isalnum() else ""
-        self.line(self.reading(read.sensor), name)
+        self.add_line(self.reading_code(read.sensor), name)
 
     def motors(self, motors: ir.Motors, comment: str) -> None:
         powers = ((motors.left, (-100, 100)), (motors.right, (-100, 100)))
-        self.call("motors", comment, self.arguments(*powers))
+        self.add_call("motors", comment, self.argument_codes(*powers))
 
     def stop(self, _: ir.Stop, comment: str) -> None:
-        self.line(f"{self.use('stop_motors')}();", comment)
+        self.add_line(f"{self.use('stop_motors')}();", comment)
 
     def beep(self, beep: ir.Beep, comment: str) -> None:
         parts = ((beep.time, None), (beep.hertz, (31, 20_000)))
-        self.call("beep", comment, self.arguments(*parts))
+        self.add_call("beep", comment, self.argument_codes(*parts))
 
     def assign(self, assign: ir.Assign, comment: str) -> None:
         name = self.names.variables[assign.variable]
-        self.line(f"{name} = {self.expressions.text(assign.value)};", comment)
+        self.add_line(f"{name} = {self.expressions.code_of(assign.value)};", comment)
 
     def break_(self, _: ir.Break, comment: str) -> None:
-        self.line("break;", comment)
+        self.add_line("break;", comment)
 
     def call_def(self, call: ir.Call, comment: str) -> None:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
         arguments, self.argument_values = self.argument_values, []
-        texts = [self.expressions.text(argument) for argument in arguments]
+        texts = [self.expressions.code_of(argument) for argument in arguments]
         for k in [k for k, terms in enumerate(arguments) if has_random(terms)][:-1]:
-            kept_name = self.expressions.keep()
-            self.line(f"{kept_name} = {texts[k]};")
+            kept_name = self.expressions.new_variable()
+            self.add_line(f"{kept_name} = {texts[k]};")
             texts[k] = kept_name
         name = self.names.procedures[call.procedure]
-        self.line(f"{name}({', '.join(texts)});", comment)
+        self.add_line(f"{name}({', '.join(texts)});", comment)
 
-    def reading(self, sensor: int) -> str:
+    def reading_code(self, sensor: int) -> str:
         self.read_sensors.add(sensor)
         return f"{self.names.reads[sensor]}();"
 
-    def call(self, key: str, comment: str, values: Sequence[str]) -> None:
-        self.line(f"{self.use(key)}({', '.join(values)});", comment)
+    def add_call(self, key: str, comment: str, values: Sequence[str]) -> None:
+        self.add_line(f"{self.use(key)}({', '.join(values)});", comment)
 
     # -- arguments
 
-    def arguments(self, *parts: Part) -> list[str]:
+    def argument_codes(self, *parts: Part) -> list[str]:
         """Return arguments; the first one is calculated before, where both have a RANDOM."""
         must_keep = len(parts) > 1 and all(has_random(value) for value, _ in parts)
         texts: list[str] = []
@@ -192,12 +192,12 @@ class Statements:
                     if limits is None
                     else clamp(whole(constant_value), *limits) * ONE
                 )
-                texts.append(self.expressions.text((Term("NUMBER", rounded),)))
+                texts.append(self.expressions.code_of((Term("NUMBER", rounded),)))
                 continue
-            text = self.expressions.text(value)
+            text = self.expressions.code_of(value)
             if must_keep and not texts:
-                kept_name = self.expressions.keep()
-                self.line(f"{kept_name} = {text};")
+                kept_name = self.expressions.new_variable()
+                self.add_line(f"{kept_name} = {text};")
                 text = kept_name
             low, high = limits or (0, 0)
             texts.append(
@@ -209,68 +209,76 @@ class Statements:
 
     def move(self, move: ir.Move, comment: str) -> None:
         if move.until is not None:
-            self.until(move, move.until, comment)
+            self.move_until(move, move.until, comment)
             return
         assert move.time is not None
         if move.power is None:
-            self.call("wait", comment, self.drive(move))
+            self.add_call("wait", comment, self.move_arguments(move))
         else:
-            self.call(_MOVE_FUNCTIONS[move.direction], comment, self.drive(move))
+            self.add_call(_MOVE_FUNCTIONS[move.direction], comment, self.move_arguments(move))
 
-    def drive(self, move: ir.Move) -> list[str]:
+    def move_arguments(self, move: ir.Move) -> list[str]:
         if move.unit:
             move = to_timed(move, self.kit)
         parts: list[Part] = [] if move.time is None else [(move.time, None)]
         if move.power is not None:
             parts.append((move.power, (0, 100)))
-        texts = self.arguments(*parts)
+        texts = self.argument_codes(*parts)
         return texts if move.time is not None else [self.use("FOREVER"), *texts]
 
     def set(self, statement: ir.Set, comment: str) -> None:
         self.set_actuators.add(statement.actuator)
         device = self.kit.actuators[statement.actuator]
         if device.is_yes_no:
-            value = self.expressions.text(statement.value)
+            value = self.expressions.code_of(statement.value)
         else:
-            (value,) = self.arguments((statement.value, (device.low // ONE, device.high // ONE)))
-        self.line(f"{self.names.sets[statement.actuator]}({value});", comment)
+            (value,) = self.argument_codes(
+                (statement.value, (device.low // ONE, device.high // ONE))
+            )
+        self.add_line(f"{self.names.sets[statement.actuator]}({value});", comment)
 
-    def until(self, move: ir.Move, until: ir.Until, comment: str) -> None:
-        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), comment, self.drive(move))
-        self.line(f"while ({self.use('move_lasts')}()) {{")
+    def move_until(self, move: ir.Move, until: ir.Until, comment: str) -> None:
+        self.add_call(
+            _START_FUNCTIONS.get(move.direction, "start_wait"), comment, self.move_arguments(move)
+        )
+        self.add_line(f"while ({self.use('move_lasts')}()) {{")
         self.depth += 1
-        condition = self.condition(until.reads, until.condition)
-        self.line(f"if ({condition}) break;")
+        condition = self.condition_code(until.reads, until.condition)
+        self.add_line(f"if ({condition}) break;")
         self.depth -= 1
-        self.line("}")
-        self.line(f"{self.use('end_move')}();")
+        self.add_line("}")
+        self.add_line(f"{self.use('end_move')}();")
 
-    def condition(self, reads: Sequence[int], condition: ir.Expression) -> str:
+    def condition_code(self, reads: Sequence[int], condition: ir.Expression) -> str:
         """Return a condition; its readings are taken in it, or in lines before it."""
         if len(reads) == 1 and reads_once(condition, reads[0]):
-            return self.expressions.text(condition, (reads[0], self.reading(reads[0])[:-1]))
+            return self.expressions.code_of(condition, (reads[0], self.reading_code(reads[0])[:-1]))
         for sensor in reads:
-            self.line(self.reading(sensor))
-        return self.expressions.text(condition)
+            self.add_line(self.reading_code(sensor))
+        return self.expressions.code_of(condition)
 
     def show(self, show: ir.Show, comment: str) -> None:
         constant_value = constant(show.value)
         self.use("Serial")
         if show.is_yes_no:
-            self.line(f"{self.use('show_yes_no')}({self.expressions.text(show.value)});", comment)
+            self.add_line(
+                f"{self.use('show_yes_no')}({self.expressions.code_of(show.value)});", comment
+            )
         elif constant_value is not None:
-            self.line(f'Serial.println("{as_text(constant_value)}");', comment)
+            self.add_line(f'Serial.println("{as_text(constant_value)}");', comment)
         elif self.expressions.is_exact:
-            self.line(f"{self.use('show_number')}({self.expressions.text(show.value)});", comment)
+            self.add_line(
+                f"{self.use('show_number')}({self.expressions.code_of(show.value)});", comment
+            )
         else:
-            self.line(f"Serial.println({self.expressions.text(show.value)});", comment)
+            self.add_line(f"Serial.println({self.expressions.code_of(show.value)});", comment)
 
     # -- blocks
 
-    def block(self, body: ir.Body, is_loop: bool = False) -> None:
+    def add_block(self, body: ir.Body, is_loop: bool = False) -> None:
         self.depth += 1
         self.loop_depth += is_loop
-        self.body(body)
+        self.add_body(body)
         self.loop_depth -= is_loop
         self.depth -= 1
 
@@ -282,23 +290,23 @@ class Statements:
             line_count_before = len(self.lines)
             is_inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
             if k and arm.reads and not is_inline:
-                self.line("} else {")
+                self.add_line("} else {")
                 self.depth += 1
                 nested_depth += 1
-                condition = self.condition(arm.reads, arm.condition)
-                self.line(f"if ({condition}) {{", text)
+                condition = self.condition_code(arm.reads, arm.condition)
+                self.add_line(f"if ({condition}) {{", text)
             else:
-                condition = self.condition(arm.reads, arm.condition)
+                condition = self.condition_code(arm.reads, arm.condition)
                 assert line_count_before == len(self.lines)
-                self.line(f"{'} else ' if k else ''}if ({condition}) {{", text)
-            self.block(arm.body)
+                self.add_line(f"{'} else ' if k else ''}if ({condition}) {{", text)
+            self.add_block(arm.body)
         if statement.else_body:
-            self.line("} else {", "ELSE")
-            self.block(statement.else_body)
+            self.add_line("} else {", "ELSE")
+            self.add_block(statement.else_body)
         for _ in range(nested_depth):
-            self.line("}")
+            self.add_line("}")
             self.depth -= 1
-        self.line("}")
+        self.add_line("}")
 
     def add_comments_before_arm(self, start: int, arm: int) -> None:
         """Add comments before an arm: those of an ELSEIF stand in the block before it."""
@@ -308,32 +316,32 @@ class Statements:
 
     def loop(self, loop: ir.Loop, comment: str) -> None:
         if loop.times is None:
-            self.line("while (true) {", comment)
+            self.add_line("while (true) {", comment)
         else:
             name = counter(self.loop_depth)
             constant_value = constant(loop.times)
             if constant_value is None:
-                times = f"{self.use('whole')}({self.expressions.text(loop.times)})"
-                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
+                times = f"{self.use('whole')}({self.expressions.code_of(loop.times)})"
+                self.add_line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
             else:
                 count = whole(constant_value)
                 kind = "int" if abs(count) <= _LARGEST_INT else "long"
-                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
-        self.block(loop.body, is_loop=True)
-        self.line("}")
+                self.add_line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
+        self.add_block(loop.body, is_loop=True)
+        self.add_line("}")
 
     def while_(self, loop: ir.While, comment: str) -> None:
         is_inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
         if is_inline or not loop.reads:
-            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", comment)
+            self.add_line(f"while ({self.condition_code(loop.reads, loop.condition)}) {{", comment)
         else:
-            self.line("while (true) {", comment)
+            self.add_line("while (true) {", comment)
             self.depth += 1
-            condition = self.condition(loop.reads, loop.condition)
-            self.line(f"if (!({condition})) break;")
+            condition = self.condition_code(loop.reads, loop.condition)
+            self.add_line(f"if (!({condition})) break;")
             self.depth -= 1
-        self.block(loop.body, is_loop=True)
-        self.line("}")
+        self.add_block(loop.body, is_loop=True)
+        self.add_line("}")
 
 
 # A statement of the IR that has no row here is a KeyError, not a sketch that lacks it.

@@ -20,36 +20,36 @@ class SketchPlan(DriverPlan):
 
     # -- motors
 
-    def motors(self) -> None:
+    def add_motors(self) -> None:
         wiring = self.robot.board.motors
         driver = motors_of(wiring)
-        body = "\n".join(driver.sketch(self, wiring))
+        body = "\n".join(driver.sketch_lines(self, wiring))
         self.functions["motors"] = f"void $motors(int left, int right) {{\n{body}\n}}"
         self.functions["drive_motor"] = driver.drive
 
     # -- sensors
 
-    def kind(self, sensor: int) -> str:
+    def reading_type(self, sensor: int) -> str:
         """Return the C++ type of a reading."""
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
         if device.is_yes_no:
             return "bool"
         return "$N" if self.is_exact else "int" if reads_counts(device, wiring) else "float"
 
-    def reader(self, sensor: int, name: str, function: str) -> str:
+    def reader_code(self, sensor: int, name: str, function: str) -> str:
         """Return the function that takes a reading; it returns what it has kept."""
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
         label = self.label(device.name)
-        lines = sensor_of(device.kind, wiring).sketch(self, device, wiring, name, label)
+        lines = sensor_of(device.kind, wiring).sketch_lines(self, device, wiring, name, label)
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
-        return f"{self.kind(sensor)} {function}() {{\n{body}\n}}"
+        return f"{self.reading_type(sensor)} {function}() {{\n{body}\n}}"
 
     # -- actuators
 
-    def setter(self, actuator: int, function: str) -> str:
+    def setter_code(self, actuator: int, function: str) -> str:
         device, wiring = self.robot.kit.actuators[actuator], self.robot.board.actuators[actuator]
         label = self.label(device.name)
-        return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, label)
+        return actuator_of(device.kind, wiring).sketch_lines(self, device, wiring, function, label)
 
 
 def reads_counts(device: Device, wiring: Wiring) -> bool:

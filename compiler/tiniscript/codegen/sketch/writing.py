@@ -99,7 +99,7 @@ def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) 
 
     See `robots.firmware.fits`.
     """
-    return _Sketch(source, program, robot, language).text()
+    return _Sketch(source, program, robot, language).sketch_text()
 
 
 class _Sketch:
@@ -133,7 +133,7 @@ class _Sketch:
             *devices, procedures, [variables[variable] for variable in program.variables]
         )
         self.expressions = Expressions(
-            self.use, self.is_exact, self.sketch_names.variables, self.sketch_names.sensors
+            self.use_name, self.is_exact, self.sketch_names.variables, self.sketch_names.sensors
         )
         self.plan = SketchPlan(robot, self.label, self.is_exact)
         self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
@@ -143,7 +143,7 @@ class _Sketch:
         if robot.board.buzzer is None:
             self.functions = {key: _silent(code) for key, code in self.functions.items()}
 
-    def use(self, key: str) -> str:
+    def use_name(self, key: str) -> str:
         self.needed_helpers[key] = None
         return translated_name(key, self.language)
 
@@ -158,7 +158,7 @@ class _Sketch:
 
     # -- the whole
 
-    def text(self) -> str:
+    def sketch_text(self) -> str:
         program, statements = self.program, self.statements()
         loop: ir.Body = ()
         body = program.body
@@ -170,26 +170,28 @@ class _Sketch:
             and not ir.breaks_out(last_statement.body)
         ):
             body, loop = body[:-1], last_statement.body
-        procedures = [self.procedure(statements, procedure) for procedure in program.procedures]
+        procedures = [
+            self.procedure_code(statements, procedure) for procedure in program.procedures
+        ]
         statements.variables_set_by_calls = self.argument_variables
-        statements.body(body)
+        statements.add_body(body)
         if isinstance(last_statement, ir.Loop) and loop:
             start = last_statement.span.start
             statements.add_comments(start)
-            statements.line(
+            statements.add_line(
                 f"// {statements.instruction_text(start)}: {self.text_of_key('in_loop')}"
             )
         main_lines, statements.lines = statements.lines, []
-        statements.body(loop)
-        statements.remaining_comments()
+        statements.add_body(loop)
+        statements.add_remaining_comments()
         repeated_lines, statements.lines = statements.lines, []
         if is_ping:
             main_lines = []
         elif not loop:
-            statements.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
+            statements.add_line(f"{self.use_name('finish')}();", self.text_of_key("no_more"))
             main_lines += [*repeated_lines, *statements.lines]
             repeated_lines = []
-        return self.layout(statements, main_lines, repeated_lines, procedures)
+        return self.assemble_text(statements, main_lines, repeated_lines, procedures)
 
     def statements(self) -> Statements:
         comments = [
@@ -204,7 +206,7 @@ class _Sketch:
             self.source, self.robot.kit, self.sketch_names, self.expressions, comments
         )
 
-    def procedure(self, statements: Statements, procedure: ir.Procedure) -> str:
+    def procedure_code(self, statements: Statements, procedure: ir.Procedure) -> str:
         statements.depth = 0
         statements.add_comments(procedure.span.start)
         statements.depth = 1
@@ -216,8 +218,8 @@ class _Sketch:
         variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in variables_read:  # or a compiler warns
-                statements.line(f"(void){self.sketch_names.variables[k]};")
-        statements.body(procedure.body)
+                statements.add_line(f"(void){self.sketch_names.variables[k]};")
+        statements.add_body(procedure.body)
         body, statements.lines = statements.lines, []
         types = ("bool" if self.are_yes_no[k] else "$N" for k in procedure.values)
         names = (self.sketch_names.variables[k] for k in procedure.values)
@@ -225,7 +227,7 @@ class _Sketch:
         commented_header = f"{header:<38}  // {statements.instruction_text(procedure.span.start)}"
         return "\n".join([*comment_lines, commented_header, *body, "}"])
 
-    def layout(
+    def assemble_text(
         self,
         statements: Statements,
         main_lines: list[str],
@@ -235,17 +237,17 @@ class _Sketch:
         """Return the sketch; what the program uses is known by now."""
         is_ping, plan = self.program.start == "PING", self.plan
         if not is_ping:
-            self.plan.motors()
+            self.plan.add_motors()
         own_functions = {
             **{
-                self.sketch_names.reads[k]: self.plan.reader(
+                self.sketch_names.reads[k]: self.plan.reader_code(
                     k, self.sketch_names.sensors[k], self.sketch_names.reads[k]
                 )
                 for k in sorted(statements.read_sensors)
             },
             **{
                 self.sketch_names.sets[k]: self.translate_code(
-                    self.plan.setter(k, self.sketch_names.sets[k])
+                    self.plan.setter_code(k, self.sketch_names.sets[k])
                 )
                 for k in sorted(statements.set_actuators)
             },
@@ -278,16 +280,16 @@ class _Sketch:
                 self.with_comment(note, code)
                 for note, code in zip(introduction, wiring_functions, strict=True)
             ),
-            *(self.with_comment(self.note(key), code) for key, code in functions.items()),
+            *(self.with_comment(self.note_comment(key), code) for key, code in functions.items()),
         ]
         all_functions = [*procedures, *wiring_functions, *functions.values()]
         pieces = [
-            self.opening(),
+            self.opening_text(),
             "#include <Arduino.h>\n",
-            self.constants(),
+            self.constants_code(),
             self.number_struct() if self.is_exact else "",
-            self.variables(statements),
-            self.prototypes(all_functions),
+            self.variables_code(statements),
+            self.prototypes_code(all_functions),
             f"void setup() {{\n{_lines(setup_lines, main_lines)}}}\n",
             f"void loop() {{\n{_lines(repeated_lines)}}}\n",
         ]
@@ -334,13 +336,13 @@ class _Sketch:
 
     def add_needed_helpers(self, texts: Iterable[str]) -> None:
         """Find the helpers that texts and other helpers need."""
-        by_name = {
+        helper_by_name = {
             translated_name(key, self.language): key for key in self.functions if key in IDENTIFIERS
         }
         for text in texts:
             for word in re.findall(r"\w+", text):
-                if word in by_name and f"{word}(" in text:
-                    self.needed_helpers[by_name[word]] = None
+                if word in helper_by_name and f"{word}(" in text:
+                    self.needed_helpers[helper_by_name[word]] = None
             self._names_in(text)
         pending_keys = list(self.needed_helpers)
         while pending_keys:
@@ -361,7 +363,7 @@ class _Sketch:
             if self.is_exact:
                 self.needed_helpers["exactly"] = None
 
-    def opening(self) -> str:
+    def opening_text(self) -> str:
         file_name = comment_text(self.source.name or "-e")
         robot, board = self.label("robot"), BOARD_TITLES[self.robot.board.chip]
         lines = [self.text_of_key("made", file=file_name, robot=robot, board=board), ""]
@@ -379,7 +381,7 @@ class _Sketch:
             comment_lines += _wrap(self.text_of_key(key, baud=baud), "// - ", "//   ")
         return "\n".join(comment_lines) + "\n"
 
-    def constants(self) -> str:
+    def constants_code(self) -> str:
         if not self.plan.constant_lines:
             return ""
         heading = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
@@ -390,7 +392,7 @@ class _Sketch:
             self.text_of_key("Number"), self.translate_code(numbers.STRUCT.rstrip())
         )
 
-    def variables(self, statements: Statements) -> str:
+    def variables_code(self, statements: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
         for k, name in enumerate(self.sketch_names.variables):
@@ -400,7 +402,7 @@ class _Sketch:
             "SENSOR", ir.all_statements(self.program)
         )  # read or not
         for k in sorted(statements.read_sensors | named_sensors):
-            kind = self.plan.kind(k)
+            kind = self.plan.reading_type(k)
             lines.append(
                 f"{kind} {self.sketch_names.sensors[k]} = {'false' if kind == 'bool' else '0'};"
             )
@@ -415,7 +417,7 @@ class _Sketch:
             pieces.append(f"// {self.text_of_key('shared_first')}\n$N {shared_names};")
         return "\n".join(pieces) + "\n" if pieces else ""
 
-    def prototypes(self, codes: Iterable[str]) -> str:
+    def prototypes_code(self, codes: Iterable[str]) -> str:
         declarations = [
             f"{line[: line.index('{')].rstrip()};"
             for code in codes
@@ -432,7 +434,7 @@ class _Sketch:
         ]
         return "\n".join(lines) + "\n"
 
-    def note(self, key: str) -> str:
+    def note_comment(self, key: str) -> str:
         if key in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG"):
             return self.text_of_key("operator")
         if key in numbers.NUMBERS and not self.text_of_key(key):

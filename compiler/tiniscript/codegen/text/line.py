@@ -99,7 +99,7 @@ class PlainCode(NamedTuple):
 
 def plain_code(program: Program) -> PlainCode:
     """Return the plain code of a checked program, as it is written."""
-    code, locations = lower(program, plain=True)
+    code, locations = lower(program, is_plain=True)
     short_offsets = _short_offsets(code)
     short_locations = tuple(
         PlainLocation(short_offsets[location.offset], location.span) for location in locations

@@ -78,7 +78,7 @@ class MessageReader:
         self.limit_bytes = limit_bytes
         self._incomplete_line = b""
 
-    def put(self, data: bytes) -> list[JsonMessage]:
+    def read_messages(self, data: bytes) -> list[JsonMessage]:
         """Return the messages that are now complete. Raises BadMessage."""
         *lines, self._incomplete_line = (self._incomplete_line + data).split(b"\n")
         if any(len(line) > self.limit_bytes for line in (*lines, self._incomplete_line)):

@@ -228,7 +228,7 @@ class Server:
                 data = self._greet(client, data)
             else:
                 client.heard_s = monotonic()
-            for message in client.messages.put(data) if client.verb else ():
+            for message in client.messages.read_messages(data) if client.verb else ():
                 self._handle_message(client, message)
         except BlockingIOError:
             pass
@@ -385,7 +385,7 @@ class Server:
         self, client: ConnectedClient, event: type[JoinedEvent] | type[LeftEvent]
     ) -> None:
         if client.verb not in ("", protocol.LOOKING_VERB):
-            self._connection.tell(event(client.verb.encode()))
+            self._connection.post_event(event(client.verb.encode()))
 
     # -- what clients are told --------------------------------------------------------------------
 

@@ -96,7 +96,7 @@ class SharedConnection(LinkConnection):
             self._listen(limit_s)
         return self._events.popleft() if self._events else None
 
-    def tell_places(self) -> None:
+    def enable_place_events(self) -> None:
         self._send({"do": "places"})
 
     def stop(self) -> int:
@@ -129,7 +129,7 @@ class SharedConnection(LinkConnection):
             if not data:
                 raise ConnectionError
             self._unanswered_since_s = None
-            for message in self._reader.put(data):
+            for message in self._reader.read_messages(data):
                 self._handle_message(message)
         except TimeoutError:
             if self._unanswered_since_s is not None and now_s - self._unanswered_since_s > DEAF_S:
@@ -229,7 +229,7 @@ def _read_greeting(peer: socket.socket, reader: protocol.MessageReader) -> list[
         data = peer.recv(65536)
         if not data:
             raise ConnectionError
-        messages = reader.put(data)
+        messages = reader.read_messages(data)
         if messages:
             return messages
     raise TimeoutError

@@ -67,12 +67,12 @@ class _Scan:
         async with self._lock:
             if self._search_count == 0:
                 self.seen_devices = {}
-                self._scanner = BleakScanner(self._notice)
+                self._scanner = BleakScanner(self._notice_device)
                 start = asyncio.ensure_future(self._scanner.start())
                 try:
                     await asyncio.shield(start)  # one that begins cannot be ended yet
                     for device in await _connected_devices():
-                        self._keep(SeenDevice(device, device.name or "", True))
+                        self._keep_device(SeenDevice(device, device.name or "", True))
                 except BaseException:
                     await asyncio.wait([start])
                     await self._end()
@@ -92,14 +92,14 @@ class _Scan:
             with suppress(Exception):  # the adapter is gone: the scan is over
                 await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
-    def _notice(self, device: BLEDevice, advertisement: AdvertisementData) -> None:
+    def _notice_device(self, device: BLEDevice, advertisement: AdvertisementData) -> None:
         services = {service_uuid.lower() for service_uuid in advertisement.service_uuids}
         earlier = self.seen_devices.get(device.address)
         name = advertisement.local_name or device.name or (earlier.name if earlier else "")
         is_robot = bool(services & set(SERVICES)) or (earlier is not None and earlier.is_robot)
-        self._keep(SeenDevice(device, name, is_robot))
+        self._keep_device(SeenDevice(device, name, is_robot))
 
-    def _keep(self, seen_device: SeenDevice) -> None:
+    def _keep_device(self, seen_device: SeenDevice) -> None:
         if seen_device.address in self.seen_devices or len(self.seen_devices) < MOST_DEVICES:
             self.seen_devices[seen_device.address] = seen_device
             self.change.set()

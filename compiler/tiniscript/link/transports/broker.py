@@ -166,10 +166,10 @@ class Broker:
         self.driver_heard_s: float | None = None  # last time; None: nobody attends
         self._lock = RLock()
         self._bell = Bell()
-        self._presences: dict[str, dict[str, RobotPresence]] = {}
+        self._presences_by_group: dict[str, dict[str, RobotPresence]] = {}
         self._answered_s = 0.0  # when a robot was told, or a request was answered
         self._acknowledged_numbers: set[int] = set()
-        self._ports: dict[tuple[str, str], BrokerPort] = {}
+        self._port_by_group_and_id: dict[tuple[str, str], BrokerPort] = {}
         self._refusal: str | None = None  # of a refusal; empty: let in
         self._client = _Client(
             CallbackAPIVersion.VERSION2, protocol=mqtt.MQTTv311, reconnect_on_failure=False
@@ -187,7 +187,7 @@ class Broker:
         with self._lock:
             if self.end_reason:
                 raise PortError(errors.UNREACHABLE, self.end_reason)
-            self._ports[group, robot_id] = port
+            self._port_by_group_and_id[group, robot_id] = port
         self._client.subscribe(f"{ROOT}/{group}/{robot_id}/out/{self.peer}")
         return port
 
@@ -200,7 +200,7 @@ class Broker:
         assert is_class_name(group)
         end_s = monotonic() + LIST_S
         with self._lock:
-            self._presences[group] = {}
+            self._presences_by_group[group] = {}
             topics = [f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"]
             subscription_numbers = {self._client.subscribe(topic)[1] or 0 for topic in topics}
         while monotonic() < end_s and not self.end_reason:
@@ -211,7 +211,7 @@ class Broker:
                 break
             self._bell.wait(READ_S)
         with self._lock:
-            presences = list(self._presences.pop(group).values())
+            presences = list(self._presences_by_group.pop(group).values())
             is_answered = subscription_numbers <= self._acknowledged_numbers
             self._acknowledged_numbers -= subscription_numbers
         if not is_answered:
@@ -252,8 +252,8 @@ class Broker:
     def forget(self, port: BrokerPort) -> None:
         """Let another client have the robot."""
         with self._lock:
-            if self._ports.get((port.group, port.robot_id)) is port:
-                del self._ports[port.group, port.robot_id]
+            if self._port_by_group_and_id.get((port.group, port.robot_id)) is port:
+                del self._port_by_group_and_id[port.group, port.robot_id]
         with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
             self.publish(port.topic, b"").wait_for_publish(LEAVE_S)  # before the process ends
 
@@ -302,7 +302,7 @@ class Broker:
         with self._lock:
             self.end_reason = self.end_reason or self._client.size_error or "the broker has gone"
             self._bell.ring()
-            for port in self._ports.values():
+            for port in self._port_by_group_and_id.values():
                 port.end(self.end_reason)
 
     def _on_message(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
@@ -314,12 +314,12 @@ class Broker:
             if len(levels) == 3:
                 self._take_presence(levels[1], levels[2], bytes(message.payload))
             elif len(levels) == 5 and not message.retain:
-                port = self._ports.get((levels[1], levels[2]))
+                port = self._port_by_group_and_id.get((levels[1], levels[2]))
                 if port is not None:
-                    port.take(bytes(message.payload))
+                    port.take_message(bytes(message.payload))
 
     def _take_presence(self, group: str, robot_id: str, payload: bytes) -> None:
-        presences = self._presences.get(group)
+        presences = self._presences_by_group.get(group)
         is_robot = re.fullmatch(r"[0-9a-f]{8}", robot_id) is not None
         if presences is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
             return
@@ -357,7 +357,7 @@ class BrokerPort(PushedTransport):
         self.end("closed")  # whoever writes after the goodbye would come in again
         self._broker.forget(self)
 
-    def take(self, data: bytes) -> None:
+    def take_message(self, data: bytes) -> None:
         """A message of the robot has come; an empty one says that another client has it."""
         if not data:
             if monotonic() > self._patient_until_s:

@@ -40,7 +40,7 @@ class Analog(SensorDriver):
         Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000),
     )
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         zero, full = wiring.settings["zero"], wiring.settings["full"]
         step, remainder = divmod(full - zero, FULL_COUNT)
         lowest, highest = sorted((zero, full))
@@ -51,7 +51,7 @@ class Analog(SensorDriver):
             "      return true;",
         ]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)

@@ -22,15 +22,15 @@ class DigitalActuator(ActuatorDriver):
     pins = (PinKey("pin", "output"),)
     settings = (Setting("yes_is_low", "yes/no"),)
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
-        pin, is_on_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
-        off = "true" if is_on_low else "false"
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+        pin, is_switched_by_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
+        off = "true" if is_switched_by_low else "false"
         part.begin_lines.append(f"begin_output({pin}, {off});")
         part.off_lines.append(f"write({pin}, {off});  // {device.name}")
-        condition = "value == 0" if is_on_low else "value != 0"
+        condition = "value == 0" if is_switched_by_low else "value != 0"
         return [f"      write({pin}, {condition});", "      return;"]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)

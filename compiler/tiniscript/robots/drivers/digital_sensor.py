@@ -23,7 +23,7 @@ class DigitalSensor(SensorDriver):
     pins = (PinKey("pin", "input"),)
     settings = (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin = part.pins.pin(wiring.pins["pin"])
         if wiring.settings["pull_up"]:
             part.begin_lines.append(f"begin_pull_up({pin});")
@@ -32,7 +32,7 @@ class DigitalSensor(SensorDriver):
         low = "!" if wiring.settings["yes_is_low"] else ""
         return [f"      *value = {low}is_high({pin});", "      return true;"]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         mode = "INPUT_PULLUP" if wiring.settings["pull_up"] else "INPUT"

@@ -39,7 +39,7 @@ class HcSr04(SensorDriver):
         needs_5v=True,
     )
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         trigger = part.pins.pin(wiring.pins["trigger"])
         part.begin_lines.append(f"begin_output({trigger}, false);")
         part.ultrasonic_texts.append(f"{{{trigger}, {part.pins.echo(wiring.pins['echo'])}}}")
@@ -49,7 +49,7 @@ class HcSr04(SensorDriver):
             "      return true;",
         ]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         trigger = f"{device.name}_$TRIGGER_$PIN"

@@ -80,7 +80,7 @@ void $drive_motor(int pwmPin, int percent) {
         side, _, motor = key.partition("_")
         return side if motor.upper() in _motors_of_side(side, settings) else ""
 
-    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         pins = ", ".join(part.pins.pin(wiring.pins[key]) for key in REGISTER)
         lines = [f"constexpr ShiftRegister kDirections = {{{pins}}};"]
         for side in SIDES:
@@ -92,7 +92,7 @@ void $drive_motor(int pwmPin, int percent) {
             lines.append(f"    {{{', '.join(pwms)}, {bits}}};")
         return lines
 
-    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+    def sketch_lines(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         names = {key: plan.pin(f"$SHIELD_{key.upper()}_$PIN", wiring.pins[key], "OUTPUT")
                  for key in REGISTER}  # fmt: skip
         direction_terms, lines = [], []

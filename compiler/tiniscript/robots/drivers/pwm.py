@@ -12,9 +12,9 @@ class PwmActuator(ActuatorDriver):
     profile_help = "pin"
     used_by = "actuators number"
     pins = (PinKey("pin", "pwm"),)
-    fixed_shape = lamp_shape(is_on_low=False)
+    fixed_shape = lamp_shape(is_lit_by_low=False)
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, pwm = part.pins.pin(wiring.pins["pin"]), part.pins.pwm(wiring.pins["pin"])
         begin = f"begin_pwm(Pwm{pwm});" if part.is_esp32 else f"begin_output({pin}, false);"
         part.begin_lines.append(begin)
@@ -22,7 +22,7 @@ class PwmActuator(ActuatorDriver):
         share = part.part_of_range(device, 0, 255)
         return [f"      connect(Pwm{pwm}, {share});", "      return;"]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", comment)

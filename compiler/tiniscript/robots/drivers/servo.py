@@ -43,7 +43,7 @@ class Servo(ActuatorDriver):
         note_keys=("mind_servo_supply",),
     )
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         part.servo_pins.append(wiring.pins["pin"])
         pulse = part.part_of_range(device, wiring.settings["low_us"], wiring.settings["high_us"])
         number = len(part.servo_pins) - 1
@@ -51,7 +51,7 @@ class Servo(ActuatorDriver):
         part.off_lines.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
         return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, function: str, comment: str
     ) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)

@@ -55,7 +55,7 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
         note_keys=("mind_servo_supply", "mind_servos"),
     )
 
-    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         lines = []
         for number, side in enumerate(SIDES):
             part.servo_pins.append(wiring.pins[f"{side}_pin"])
@@ -66,7 +66,7 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
             )
         return lines
 
-    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+    def sketch_lines(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         lines = []
         for side in SIDES:
             servo_number = plan.servo(plan.pin(f"${side.upper()}_$PIN", wiring.pins[f"{side}_pin"]))

@@ -26,12 +26,12 @@ class Threshold(SensorDriver):
         Setting("yes_is_low", "yes/no"),
     )
 
-    def firmware(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         operator = "<" if wiring.settings["yes_is_low"] else ">="
         comparison = f"      *value = *value {operator} {wiring.settings['threshold']};"
         return [part.analog_read(wiring), comparison, "      return true;"]
 
-    def sketch(
+    def sketch_lines(
         self, plan: DriverPlan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)

@@ -46,7 +46,7 @@ void $drive_motor(int forwardPin, int backwardPin, int percent) {
         power_key="power_volts_two_wire",
     )
 
-    def firmware(self, part: HeaderPart, wiring: Wiring) -> list[str]:
+    def firmware_lines(self, part: HeaderPart, wiring: Wiring) -> list[str]:
         lines = []
         for side in SIDES:
             forward, backward = (
@@ -56,7 +56,7 @@ void $drive_motor(int forwardPin, int backwardPin, int percent) {
             lines.append(f"constexpr TwoWire {name} = {{{forward}, {backward}}};")
         return lines
 
-    def sketch(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
+    def sketch_lines(self, plan: DriverPlan, wiring: Wiring) -> list[str]:
         return [motor_line(plan, wiring, side, DIRECTIONS) for side in SIDES]
 
 

@@ -266,7 +266,7 @@ def _resistor(value: str, x: float, y: float) -> str:
 
 def _box(box: Box, language: str) -> list[str]:
     part, icon = box.part, ICONS[box.part.shape.icon]
-    outer = box.x + (32 if box.side == LEFT else places.PART_WIDTH - 32)
+    outer_x = box.x + (32 if box.side == LEFT else places.PART_WIDTH - 32)
     middle = box.y + box.height - 30
     inner_width = places.PART_WIDTH - 16
     model = part.shape.model if part.is_device else ""
@@ -276,7 +276,7 @@ def _box(box: Box, language: str) -> list[str]:
         f'fill="#fafafa" stroke="{LINE_COLOUR}" stroke-width="2"/>',
         text_at(title, box.x + 8, box.y + 18, inner_width, size=15, style=BOLD_STYLE),
         text_at(part.label, box.x + 8, box.y + 36, inner_width, size=13) if part.label else "",
-        f'<g transform="translate({outer} {middle:g})" fill="#ffffff" stroke="{LINE_COLOUR}" '
+        f'<g transform="translate({outer_x} {middle:g})" fill="#ffffff" stroke="{LINE_COLOUR}" '
         f'stroke-width="1.5">{icon}</g>',
     ]
     if part.shape.motor_terminals:
@@ -338,21 +338,21 @@ def _circles(layout: Layout) -> list[str]:
 def _motors(box: Box, language: str) -> list[str]:
     lines = []
     outward = -1 if box.side == LEFT else 1
-    outer = box.x if box.side == LEFT else box.x + places.PART_WIDTH
+    outer_x = box.x if box.side == LEFT else box.x + places.PART_WIDTH
     top, step = box.y + places.HEAD_HEIGHT + 12, 100
     for k, (key, terminals) in enumerate(
         zip(("left_motor", "right_motor"), box.part.shape.motor_terminals, strict=True)
     ):
-        x, y = outer + outward * 62, top + k * step + 18
+        x, y = outer_x + outward * 62, top + k * step + 18
         for offset in (-8, 8):
-            lines.append(line_to(outer, y + offset, x, y + offset, LINE_COLOUR))
+            lines.append(line_to(outer_x, y + offset, x, y + offset, LINE_COLOUR))
         lines += [
             f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE_COLOUR}" '
             f'stroke-width="2"/>',
             text_at("M", x, y + 6, 40, "middle", 17, BOLD_STYLE),
             text_at(text(key, language), x - outward * 10, y + 42, 98, "middle", 12),
             text_at(
-                terminals, outer - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11
+                terminals, outer_x - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11
             ),
         ]
     return lines

@@ -59,25 +59,32 @@ class _FinishedDrawing:
         self.height = self.y + self.length / 2 + MARGIN
 
     def svg(self) -> str:
-        parts = (self._plate, self._wheels, self._rows, self._servos, self._sensors, self._sizes)
+        parts = (
+            self._plate_svg,
+            self._wheels_svg,
+            self._rows_svg,
+            self._servos_svg,
+            self._sensors_svg,
+            self._sizes_svg,
+        )
         lines = [line for part in parts for line in part()]
         return svg_of(self.plan, "finished", (round(self.width), round(self.height)), lines)
 
-    def say(self, key: str) -> str:
+    def text(self, key: str) -> str:
         return text(key, self.plan.language)
 
-    def at(self, x_cm: float, y_cm: float) -> tuple[float, float]:
+    def position(self, x_cm: float, y_cm: float) -> tuple[float, float]:
         """Return where a place of the body is drawn: `x_cm` goes forward, `y_cm` to the left."""
         return self.x - y_cm * self.scale, self.y - x_cm * self.scale
 
-    def _plate(self) -> list[str]:
+    def _plate_svg(self) -> list[str]:
         return [
             _box(self.x - self.breadth / 2, self.y - self.length / 2, self.breadth, self.length,
                  PLATE_FILL, corner=22),
-            text_at(self.say("front"), self.x, MARGIN / 2, 400, "middle", style=BOLD_STYLE),
+            text_at(self.text("front"), self.x, MARGIN / 2, 400, "middle", style=BOLD_STYLE),
         ]  # fmt: skip
 
-    def _wheels(self) -> list[str]:
+    def _wheels_svg(self) -> list[str]:
         """Return both wheels on their axle, each with its motor under the plate, and the caster."""
         lines = []
         half_base = self.plan.body.wheel_base_cm / 2 * self.scale
@@ -94,26 +101,26 @@ class _FinishedDrawing:
             ]  # fmt: skip
             label_x = self.left - 10 if side < 0 else self.right + 10
             anchor = "end" if side < 0 else "start"
-            lines.append(text_at(self.say(key), label_x, self.y + 5, SIDE_WIDTH - 20, anchor))
+            lines.append(text_at(self.text(key), label_x, self.y + 5, SIDE_WIDTH - 20, anchor))
         radius = diameter * 0.17
         caster_y = self.y + self.length / 2 - radius - 12
         lines += [
             f'<circle cx="{self.x:g}" cy="{caster_y:g}" r="{radius:g}" fill="none" '
             f'stroke="{LINE_COLOUR}"{DASHED_STYLE}/>',
-            text_at(self.say("caster"), self.right + 10, caster_y + 5, SIDE_WIDTH - 20),
+            text_at(self.text("caster"), self.right + 10, caster_y + 5, SIDE_WIDTH - 20),
             line_to(self.x + radius, caster_y, self.right + 6, caster_y, *THIN_LINE),
         ]  # fmt: skip
         return lines
 
-    def _rows(self) -> list[str]:
+    def _rows_svg(self) -> list[str]:
         """Return board, breadboard and batteries: boxes on the plate, from front to back."""
         driver = self.plan.parts[0].title
         supplies = [part for part in self.plan.parts if _is_supply(part)]
         boxes = [
-            (SIDES[self.plan.chip.name].name, self.say("on_top_usb"), LINE_COLOUR),
-            (driver, self.say("beside_driver"), LINE_COLOUR),
+            (SIDES[self.plan.chip.name].name, self.text("on_top_usb"), LINE_COLOUR),
+            (driver, self.text("beside_driver"), LINE_COLOUR),
             *((supply.title, supply.label, RAIL_COLOURS["M+"]) for supply in supplies),
-            (self.say("power_bank"), self.say("for_the_board"), RAIL_COLOURS["5V"]),
+            (self.text("power_bank"), self.text("for_the_board"), RAIL_COLOURS["5V"]),
         ]
         room = self.length * 0.72
         gap = 10.0
@@ -157,7 +164,7 @@ class _FinishedDrawing:
                 return place
         return None
 
-    def _servos(self) -> list[str]:
+    def _servos_svg(self) -> list[str]:
         """Return each servo at the front edge with its name: two jaws around a button, or an arm.
 
         The profile does not say where they are: they share the edge.
@@ -176,7 +183,7 @@ class _FinishedDrawing:
             x = self.x + share * self.breadth
             lines.append(_box(x - 26, front_y + 4, 52, 30, PART_FILL))
             if k == 0 and touch_place is not None:
-                tip_y = self.at(touch_place.x_cm, 0)[1] - ARROW_LENGTH
+                tip_y = self.position(touch_place.x_cm, 0)[1] - ARROW_LENGTH
                 for side in (-1, 1):
                     inner_x, outer_x = self.x + side * 24, self.x + side * 46
                     lines.append(
@@ -206,7 +213,7 @@ class _FinishedDrawing:
             ]
         return lines
 
-    def _sensors(self) -> list[str]:
+    def _sensors_svg(self) -> list[str]:
         """Return each sensor where it sits, with an arrow to what it looks at, and its name."""
         lines: list[str] = []
         label_y_of_side = {"left": MARGIN + 14.0, "right": MARGIN + 14.0}
@@ -215,7 +222,7 @@ class _FinishedDrawing:
         labels = {part.title: part.label for part in self.plan.parts if part.is_device}
         for name, place in sorted_places:
             side = "left" if place.y_cm > 0 else "right"
-            x, y = self.at(place.x_cm, place.y_cm)
+            x, y = self.position(place.x_cm, place.y_cm)
             label_x = self.left - 10 if side == "left" else self.right + 10
             anchor = "end" if side == "left" else "start"
             label_y = label_y_of_side[side]
@@ -257,7 +264,7 @@ class _FinishedDrawing:
             f'stroke-width="2"/>',
         ]
 
-    def _sizes(self) -> list[str]:
+    def _sizes_svg(self) -> list[str]:
         """Return how long and how wide the plate is, in centimetres."""
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"

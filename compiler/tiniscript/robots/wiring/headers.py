@@ -20,12 +20,12 @@ def _slots(text: str) -> tuple[Slot, ...]:
     """Return the slots of `"5V - 13..8"`: names, a gap, and pins from 13 down to 8."""
     slots: list[Slot] = []
     for word in text.split():
-        first, _, last = word.partition("..")
-        if not first.isdigit():
+        first_word, _, last_word = word.partition("..")
+        if not first_word.isdigit():
             slots.append(None if word == "-" else word)
         else:
-            step = 1 if int(last or first) >= int(first) else -1
-            slots += range(int(first), int(last or first) + step, step)
+            step = 1 if int(last_word or first_word) >= int(first_word) else -1
+            slots += range(int(first_word), int(last_word or first_word) + step, step)
     return tuple(slots)
 
 

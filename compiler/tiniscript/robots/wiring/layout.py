@@ -89,11 +89,11 @@ class _Channel:
     """
 
     def __init__(self) -> None:
-        self.spans: dict[int, tuple[int, int]] = {}
+        self.span_by_wire: dict[int, tuple[int, int]] = {}
 
     def tracks(self) -> dict[int, int]:
         """Return the track of each wire (0 is next to the board), chosen for few crossings."""
-        order = sorted(self.spans, key=lambda wire: self.spans[wire])
+        order = sorted(self.span_by_wire, key=lambda wire: self.span_by_wire[wire])
         has_improved = True
         while has_improved:
             has_improved = False
@@ -113,8 +113,8 @@ class _Channel:
 
     def _crossings(self, near_wire: int, far_wire: int) -> int:
         """Count where two wires cross if `near_wire` has the track that is nearer to the board."""
-        near_from, near_to = self.spans[near_wire]
-        far_from, far_to = self.spans[far_wire]
+        near_from, near_to = self.span_by_wire[near_wire]
+        far_from, far_to = self.span_by_wire[far_wire]
         crosses_from = min(near_from, near_to) < far_from < max(near_from, near_to)
         return crosses_from + (min(far_from, far_to) < near_to < max(far_from, far_to))
 
@@ -147,7 +147,7 @@ class _Layout:
                 if slot is not None:
                     self.pins.append(self._pin(side, self.board_top + STEP * (k + 1), slot))
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
-        self.tops: dict[int, int] = {}  # of parts, by their place in the plan
+        self.top_by_part: dict[int, int] = {}  # of parts, by their place in the plan
         bottom = MARGIN + STEP + full_height
         for column_parts in parts:
             self._stack(column_parts, bottom)
@@ -199,7 +199,7 @@ class _Layout:
             latest_y = bottom - sum(_room(part) for part in sorted_parts[k:])
             wanted_y = min(self._wanted_y(part), latest_y)
             y = max(y, _snap(int(wanted_y)))
-            self.tops[id(part)] = y
+            self.top_by_part[id(part)] = y
             y += _room(part)
 
     # -- the wires
@@ -207,28 +207,28 @@ class _Layout:
     def compute(self) -> Layout:
         channels = (_Channel(), _Channel())
         crossing_wires: list[int] = []  # wires from a pin of one side to a part of the other
-        ends: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal
+        end_by_wire: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal
         for part in self.plan.parts:
-            top = self.tops[id(part)]
+            top = self.top_by_part[id(part)]
             for end, row in zip(part.ends, _rows_of(part), strict=True):
                 if end.wire:
-                    ends[end.wire.number] = (self._side_of(part), top + row)
+                    end_by_wire[end.wire.number] = (self._side_of(part), top + row)
         first_lane_y = self._free_y()
         lane_y_of_wire: dict[int, int] = {}
         for wire in self.plan.wires:
-            side, y = ends[wire.number]
+            side, y = end_by_wire[wire.number]
             pin_side = self.pin_side[wire.pin]
             if side == pin_side:
-                channels[side].spans[wire.number] = (self.pin_y[wire.pin], y)
+                channels[side].span_by_wire[wire.number] = (self.pin_y[wire.pin], y)
                 continue
             lane_y_of_wire[wire.number] = first_lane_y + STEP * len(crossing_wires)
             crossing_wires.append(wire.number)
-            channels[pin_side].spans[wire.number] = (
+            channels[pin_side].span_by_wire[wire.number] = (
                 self.pin_y[wire.pin],
                 lane_y_of_wire[wire.number],
             )
-            channels[side].spans[wire.number] = (lane_y_of_wire[wire.number], y)
-        widths = [TRACK_WIDTH * (len(channel.spans) + 1) for channel in channels]
+            channels[side].span_by_wire[wire.number] = (lane_y_of_wire[wire.number], y)
+        widths = [TRACK_WIDTH * (len(channel.span_by_wire) + 1) for channel in channels]
         has_motors = [
             any(
                 part.shape.motor_terminals and self._side_of(part) == side
@@ -251,26 +251,26 @@ class _Layout:
 
         routes = tuple(
             self._route(
-                wire, ends[wire.number], lane_y_of_wire.get(wire.number), edges, zones, x_of
+                wire, end_by_wire[wire.number], lane_y_of_wire.get(wire.number), edges, zones, x_of
             )
             for wire in self.plan.wires
         )
         boxes = tuple(self._box(part, (left_part, right_part)) for part in self.plan.parts)
         width = right_part + PART_WIDTH + MARGIN + MOTORS_WIDTH * has_motors[RIGHT]
-        lowest = max(
+        bottom_y = max(
             self.board_top + self.board_height,
             *(box.y + box.height for box in boxes),
             *(y for route in routes for _, y in route.points),
         )
         board = (board_left, self.board_top, BOARD_WIDTH, self.board_height)
-        return Layout(width, lowest + MARGIN, board, tuple(self.pins), boxes, routes)
+        return Layout(width, bottom_y + MARGIN, board, tuple(self.pins), boxes, routes)
 
     def _free_y(self) -> int:
         """Return the first height below the board, a quarter step beside pins and terminals."""
         return self.board_top + _snap(self.board_height) + STEP + STEP // 4
 
     def _box(self, part: Part, columns: tuple[int, int]) -> Box:
-        side, top = self._side_of(part), self.tops[id(part)]
+        side, top = self._side_of(part), self.top_by_part[id(part)]
         rows = tuple(top + row for row in _rows_of(part))
         return Box(part, side, columns[side], top, _height_of(part), rows)
 

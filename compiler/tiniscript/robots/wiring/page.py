@@ -90,11 +90,11 @@ class _Page:
         self.language = plan.language
         self.board_name = SIDES[plan.chip.name].name
 
-    def say(self, key: str, **values: object) -> str:
+    def text(self, key: str, **values: object) -> str:
         return text(key, self.language).format(**values)
 
     def blocks(self) -> list[Block]:
-        say = self.say
+        say = self.text
         return [
             Block("title", say("title", robot=self.plan.robot)),
             Block("paragraph", say("intro", board=self.board_name)),
@@ -125,21 +125,21 @@ class _Page:
         for part in self.plan.parts:
             if part.shape.need_key:
                 parts_by_need.setdefault(part.shape.need_key, []).append(part)
-        need_texts = [self.say("need_board", board=self.board_name)]
+        need_texts = [self.text("need_board", board=self.board_name)]
         for key, parts in parts_by_need.items():
-            need_text = f"{len(parts)} × {self.say(key)}"
+            need_text = f"{len(parts)} × {self.text(key)}"
             if any(part.is_device for part in parts):
-                need_text = self.say(
+                need_text = self.text(
                     "for_part", need=need_text, parts=", ".join(p.title for p in parts)
                 )
             need_texts.append(need_text)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
-        need_texts.append(self.say("need_resistors", values=values))
+        need_texts.append(self.text("need_resistors", values=values))
         join_count = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
-        need_texts.append(self.say("need_breadboard", count=join_count + SPARE_WIRES))
+        need_texts.append(self.text("need_breadboard", count=join_count + SPARE_WIRES))
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
-        need_texts += [self.say("need_plate", size=size), self.say("need_power_bank")]
+        need_texts += [self.text("need_plate", size=size), self.text("need_power_bank")]
         return need_texts
 
     def _unconnected(self) -> list[str]:
@@ -148,10 +148,10 @@ class _Page:
         motors = self.plan.parts[0].shape.motor_terminals
         if motors:
             ends = [
-                self.say("motors_join", motor=self.say(key), terminals=terminals)
+                self.text("motors_join", motor=self.text(key), terminals=terminals)
                 for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
             ]
-            sentences.append(self.say("motor_wires", ends=", ".join(ends)))
+            sentences.append(self.text("motor_wires", ends=", ".join(ends)))
         free_pins = [
             f"{part.title} {end.name}"
             for part in self.plan.parts
@@ -159,17 +159,17 @@ class _Page:
             if not end.wire and not end.rail
         ]
         if free_pins:
-            sentences.append(self.say("free", ends=", ".join(free_pins)))
+            sentences.append(self.text("free", ends=", ".join(free_pins)))
         return sentences
 
     def _power_lines(self) -> list[str]:
         sentences = [
-            self.say("power_own"),
-            self.say("power_common"),
-            self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
+            self.text("power_own"),
+            self.text("power_common"),
+            self.text("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
         ]
         shapes = [part.shape for part in self.plan.parts if part.shape.power_key]
-        sentences += [self.say(shape.power_key, model=shape.model) for shape in shapes]
+        sentences += [self.text(shape.power_key, model=shape.model) for shape in shapes]
         return sentences
 
     def _pull_downs(self) -> str:
@@ -179,48 +179,48 @@ class _Page:
     def _warnings(self) -> list[str]:
         sentences = []
         if self._pull_downs():
-            sentences.append(self.say("mind_floating", ends=self._pull_downs()))
+            sentences.append(self.text("mind_floating", ends=self._pull_downs()))
         is_5v = self.plan.chip.pin_volts == FIVE_VOLTS
         board_values = (
             {"rail": BOARD_5V, "volts": "5"} if is_5v else {"rail": BOARD_3V3, "volts": "3.3"}
         )
         for part in self.plan.parts:
             for key in part.shape.note_keys:
-                sentence = self.say(key, part=part.title, **board_values)
+                sentence = self.text(key, part=part.title, **board_values)
                 if sentence not in sentences:
                     sentences.append(sentence)
         return sentences
 
     def _connection_rows(self) -> list[str]:
         if not self.plan.has_radio:
-            return [self.say("usb_link", baud=self.plan.baud), self.say("usb_reset")]
+            return [self.text("usb_link", baud=self.plan.baud), self.text("usb_reset")]
         speed = "bluetooth_speed" if self.plan.baud == 9600 else "bluetooth_other_speed"
         state = "bluetooth_state" if self.plan.has_state else "bluetooth_no_state"
         return [
-            self.say("bluetooth_flash"),
-            self.say("bluetooth_divider"),
-            self.say(speed, baud=self.plan.baud),
-            self.say(state),
+            self.text("bluetooth_flash"),
+            self.text("bluetooth_divider"),
+            self.text(speed, baud=self.plan.baud),
+            self.text(state),
         ]
 
     def _checks(self) -> list[str]:
         grounded_titles = ", ".join(part.title for part in self.plan.parts if _is_grounded(part))
         sentences = [
-            self.say("check_wheels"),
-            self.say("check_polarity"),
-            self.say("check_ground", parts=grounded_titles),
-            self.say("check_5v" if self.plan.has_radio else "check_3v3"),
+            self.text("check_wheels"),
+            self.text("check_polarity"),
+            self.text("check_ground", parts=grounded_titles),
+            self.text("check_5v" if self.plan.has_radio else "check_3v3"),
         ]
         if self._pull_downs():
-            sentences.append(self.say("check_pull_downs", ends=self._pull_downs()))
-        sentences += [self.say(key) for part in self.plan.parts for key in part.shape.check_keys]
+            sentences.append(self.text("check_pull_downs", ends=self._pull_downs()))
+        sentences += [self.text(key) for part in self.plan.parts for key in part.shape.check_keys]
         keys: tuple[str, ...] = ("check_bare",)
         if self.plan.has_radio:
             keys = ("check_divider", "check_bare", "check_unplugged")
         elif any(end.series_resistor == "1 kΩ" for part in self.plan.parts for end in part.ends):
             keys = ("check_echo", "check_bare")
-        sentences += [self.say(key) for key in keys]
-        return [*sentences, self.say("check_hot"), self.say("check_way")]
+        sentences += [self.text(key) for key in keys]
+        return [*sentences, self.text("check_hot"), self.text("check_way")]
 
 
 def _is_grounded(part: Part) -> bool:

@@ -178,7 +178,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
     if board.status_led is not None and not has_lamp:
         pin = {"pin": board.status_led}
         wired_parts.append(
-            counter.part(label_of("part_lamp"), "", lamp_shape(is_on_low=False), pin)
+            counter.part(label_of("part_lamp"), "", lamp_shape(is_lit_by_low=False), pin)
         )
     radio_pins = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:

@@ -268,7 +268,7 @@ class _Conditions:
             for statement in self._program.body
             if isinstance(statement, ir.Assign) and statement.variable == variable
         ]
-        if len(assignments) != 1 or self._context.variables.assigned_values[variable] != [
+        if len(assignments) != 1 or self._context.variables.values_by_variable[variable] != [
             assignments[0].value
         ]:
             return False
@@ -304,15 +304,17 @@ class _Conditions:
 
     def _report_late_arms(self, statement: ir.If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
-        widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
+        widest_comparisons: dict[
+            tuple[str, str], Comparison
+        ] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
             comparison = self._comparison(arm.condition)
             if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
                 continue
             key = (comparison.device.name, _SIDE_BY_COMPARATOR[comparison.op])
-            wider = widest.get(key)
+            wider = widest_comparisons.get(key)
             if wider is None or not _is_within(comparison, wider):
-                widest[key] = comparison
+                widest_comparisons[key] = comparison
             elif k:
                 self._context.report(codes.LATE_ARM, arm.span, wide=str(wider),
                                      narrow=str(comparison))  # fmt: skip
@@ -433,8 +435,8 @@ def _sensors(condition: ir.Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 
-def _is_within(inner: Comparison, outer: Comparison) -> bool:
+def _is_within(narrower: Comparison, wider: Comparison) -> bool:
     """Whether one comparison is true only where the other one is; their signs go the same way."""
-    if inner.number == outer.number:
-        return inner.op == outer.op or outer.op in ("LE", "GE")
-    return (inner.number < outer.number) == (_SIDE_BY_COMPARATOR[outer.op] == "below")
+    if narrower.number == wider.number:
+        return narrower.op == wider.op or wider.op in ("LE", "GE")
+    return (narrower.number < wider.number) == (_SIDE_BY_COMPARATOR[wider.op] == "below")

@@ -87,10 +87,10 @@ class Variables:
     def __init__(self, program: ir.Program, kit: Kit) -> None:
         self._program = program
         self._kit = kit
-        self.assigned_values: dict[int, list[ir.Expression]] = {}
+        self.values_by_variable: dict[int, list[ir.Expression]] = {}
         for statement in ir.all_statements(program):
             if isinstance(statement, ir.Assign):
-                self.assigned_values.setdefault(statement.variable, []).append(statement.value)
+                self.values_by_variable.setdefault(statement.variable, []).append(statement.value)
         # By a loop's start, the variables that get a value in it; None where it takes no time.
         self._assigned_in_loop: dict[int, set[int] | None] = {}
         self._terms_of_loop: dict[int, set[ir.Term]] = {}  # by a loop's start
@@ -116,7 +116,7 @@ class Variables:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
         sensor_of_variable = {}
         for variable in variables:
-            values = set(self.assigned_values.get(variable, ()))
+            values = set(self.values_by_variable.get(variable, ()))
             value = next(iter(values)) if len(values) == 1 else ()
             if len(value) != 1 or value[0].op != "SENSOR":
                 return {}

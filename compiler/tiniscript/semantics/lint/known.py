@@ -119,17 +119,20 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
 def report_no_room(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for arm, next_arm in pairwise(statement.arms) if statement.has_else else ():
-        first, second = arm.condition, next_arm.condition
-        is_same_value = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDE_OPS
+        first_condition, second_condition = arm.condition, next_arm.condition
+        is_same_value = (
+            first_condition[:-1] == second_condition[:-1]
+            and {first_condition[-1].op, second_condition[-1].op} == _SIDE_OPS
+        )
         if (
             is_same_value
-            and first[-2].op == "NUMBER"
-            and _has_many_values(first[:-2], first[-2].value, context)
+            and first_condition[-2].op == "NUMBER"
+            and _has_many_values(first_condition[:-2], first_condition[-2].value, context)
         ):
             text = context.condition_text(next_arm.span, "ELSEIF")
             name = text.partition("<")[0].partition(">")[0].strip()
             if name:
-                values = {"value": name, "number": as_text(first[-2].value)}
+                values = {"value": name, "number": as_text(first_condition[-2].value)}
                 context.report(codes.EXACT, next_arm.span, **values)
 
 
@@ -139,7 +142,7 @@ def _has_many_values(value: ir.Expression, number: int, context: LintContext) ->
         if op == "SENSOR" and is_one_of_many(context.kit.readings[index], max(number, 1)):
             return True
         if op == "VARIABLE":
-            values_set = context.variables.assigned_values.get(index, ())
+            values_set = context.variables.values_by_variable.get(index, ())
             if any(term.op == "SENSOR" and is_one_of_many(context.kit.readings[term.value], 1)
                    for expression in values_set for term in expression):  # fmt: skip
                 return True

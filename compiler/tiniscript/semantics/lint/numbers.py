@@ -105,11 +105,13 @@ def _check_named_time(move: Move, context: LintContext) -> list[Diagnostic]:
     variable = time[0].value
     if not any(variable in procedure.values for procedure in context.program.procedures):
         return []
-    values = [known_value(value) for value in context.variables.assigned_values.get(variable, ())]
+    values = [
+        known_value(value) for value in context.variables.values_by_variable.get(variable, ())
+    ]
     if not values or None in values or is_time(context.program.variables[variable]):
         return []
-    longest, text = max(value or 0 for value in values), context.source[move.span]
-    diagnostics = _warn_of_long_time(move, longest, known_value(move.power), context.kit, text)
+    longest_ms, text = max(value or 0 for value in values), context.source[move.span]
+    diagnostics = _warn_of_long_time(move, longest_ms, known_value(move.power), context.kit, text)
     return [
         diagnostic._replace(values={**diagnostic.values, "fix": ""}) for diagnostic in diagnostics
     ]
@@ -303,24 +305,24 @@ def report_swapped_names(move: Move, body_context: BodyContext, context: LintCon
     operands = (move.time, move.power)
     if not all(len(operand) == 1 and operand[0].op == "VARIABLE" for operand in operands):
         return
-    assigned_values = context.variables.assigned_values
+    assigned_values = context.variables.values_by_variable
     values = [
         [*map(known_value, assigned_values.get(operand[0].value, ()))] for operand in operands
     ]
     if not all(len(value) == 1 and value[0] is not None for value in values):
         return
     time, power = (value[0] or 0 for value in values)
-    first, second = (context.program.variables[operand[0].value] for operand in operands)
-    if _is_swapped(time, power) and not _is_right_order(first, second):
-        fix = f"{move.direction}({second}, {first})"
+    first_name, second_name = (context.program.variables[operand[0].value] for operand in operands)
+    if _is_swapped(time, power) and not _is_right_order(first_name, second_name):
+        fix = f"{move.direction}({second_name}, {first_name})"
         context.report(codes.SWAPPED, move.span, fix=fix, time=as_text(time), power=as_text(power))
 
 
-def _is_right_order(first: str, second: str) -> bool:
+def _is_right_order(first_name: str, second_name: str) -> bool:
     """Whether no name of `F(first, second)` says that it is in the other's place."""
-    if is_time(first) or is_power(second):
+    if is_time(first_name) or is_power(second_name):
         return True
-    return not is_power(first) and not is_time(second)
+    return not is_power(first_name) and not is_time(second_name)
 
 
 def _is_swapped(time: int, power: int | None) -> bool:

@@ -89,13 +89,13 @@ def _diagnostic(
 
 def _loop_repair(span: Span, body: ir.Body, context: LintContext) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
-    rest = [statement for statement in body if statement.span.end > span.start]
+    later_statements = [statement for statement in body if statement.span.end > span.start]
     if not any(
         isinstance(statement, _VISIBLE_STATEMENTS)
-        for statement in ir.walk_with_calls((*rest,), context.program.procedures)
+        for statement in ir.walk_with_calls((*later_statements,), context.program.procedures)
     ):
         return None
-    first_statement, end = rest[0], rest[-1].span.end
+    first_statement, end = later_statements[0], later_statements[-1].span.end
     start = (
         first_statement.arms[0].span.start
         if isinstance(first_statement, ir.If)

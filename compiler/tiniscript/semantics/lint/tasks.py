@@ -56,9 +56,11 @@ def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
     first_text = context.source[first_moves[0].span]
     values = {"first": first_text, "both": "M(60, 30);W(4)"}
     spans = sorted(statement.span for body in (*tasks, context.program.body) for statement in body)
-    orders = [context.source[span] for span in spans]
-    if len(orders) <= _MOST_INSTRUCTIONS and not any("\n" in order for order in orders):
-        values["after"] = ";".join(orders)
+    instructions = [context.source[span] for span in spans]
+    if len(instructions) <= _MOST_INSTRUCTIONS and not any(
+        "\n" in instruction for instruction in instructions
+    ):
+        values["after"] = ";".join(instructions)
     for move in first_moves[1:]:
         context.report(codes.NO_MOTORS, move.span, **values)
 

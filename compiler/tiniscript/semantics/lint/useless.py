@@ -21,7 +21,7 @@ from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.lexer import NEWLINE, Token
 
 _LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
-_NOTE_AFTER = r"[ \t;]{0,99}//"
+_NOTE_BEHIND = r"[ \t;]{0,99}//"
 MOST_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
 _CALL = (
     r"(?:[FBLR]\(\s*(?:-?[0-9.]+(?:\s*(?:CM|DEG))?|FOREVER)\s*,\s*-?[0-9.]+\s*\)"
@@ -174,7 +174,7 @@ def report_empty_blocks(body: ir.Body, body_context: BodyContext, context: LintC
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        note_match = re.compile(_NOTE_AFTER).match(source.text, statement.span.end)
+        note_match = re.compile(_NOTE_BEHIND).match(source.text, statement.span.end)
         if "//" in text or note_match:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"

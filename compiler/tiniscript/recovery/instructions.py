@@ -1,4 +1,4 @@
-"""Orders: the instructions that one sentence says, all of them or none, and the block they are in.
+"""The instructions that one sentence says, all of them or none, and the block they are in.
 
 Knows no separators of programs and no row. A sentence with a word that has no place says none.
 """
@@ -32,7 +32,7 @@ _SIDEWAYS_MOVES = ("L", "R", "B")  # DISTANCE looks ahead
 _TURNS = _SIDEWAYS_MOVES[:2]
 
 
-class Order(NamedTuple):
+class SpokenInstruction(NamedTuple):
     """An instruction as it is written; `samples` are the values that no word says: `2 s`.
 
     `is_side_free`: which way it turns is not said.
@@ -45,18 +45,20 @@ class Order(NamedTuple):
     is_repeated: bool = False
 
 
-def orders_text(orders: Sequence[Order]) -> str:
-    return ";".join(order.text for order in orders)
+def instructions_text(spoken_instructions: Sequence[SpokenInstruction]) -> str:
+    return ";".join(instruction.text for instruction in spoken_instructions)
 
 
-def samples_text(orders: Sequence[Order]) -> str:
+def samples_text(spoken_instructions: Sequence[SpokenInstruction]) -> str:
     """Return what no word says: `2 s, 80 %`."""
-    return ", ".join(sorted({sample for order in orders for sample in order.samples}))
+    return ", ".join(
+        sorted({sample for instruction in spoken_instructions for sample in instruction.samples})
+    )
 
 
-def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
-    """Return the orders of a sentence, in turn."""
-    found_orders: list[Order] = []
+def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenInstruction]:
+    """Return the instructions of a sentence, in turn."""
+    found_instructions: list[SpokenInstruction] = []
     if len(words) > MOST_WORDS:
         return []
     words = [
@@ -71,8 +73,8 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         (k for k, concept in enumerate(words_meant) if concept in ("IF", "WHEN")), 0
     )
     if question_index:
-        return _orders_with_condition(
-            orders(words[:question_index], names), words[question_index:], names
+        return _instructions_with_condition(
+            spoken_instructions(words[:question_index], names), words[question_index:], names
         )
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(
@@ -81,17 +83,18 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     for is_joint, group in groups:
         group_words = list(group)
         if is_joint or (
-            not found_orders
-            and all(lexicon_meaning(lexeme.text, "filler") for lexeme in group_words)
+            not found_instructions
+            and all(lexicon_meaning(token.text, "filler") for token in group_words)
         ):
             continue  # `Hola robot, …`
-        part_orders = _orders(group_words, names)
-        if not part_orders or any(
-            order.is_repeated for order in part_orders[bool(not found_orders) :]
+        part_instructions = _joined_instructions(group_words, names)
+        if not part_instructions or any(
+            instruction.is_repeated
+            for instruction in part_instructions[bool(not found_instructions) :]
         ):
             return []  # nobody knows how much of it is done so often
-        found_orders += part_orders
-    return found_orders
+        found_instructions += part_instructions
+    return found_instructions
 
 
 def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
@@ -101,112 +104,131 @@ def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
     return words
 
 
-def _orders_with_condition(
-    orders_before: list[Order], words: Sequence[Lexeme], names: Names
-) -> list[Order]:
-    """Return orders and the condition after them; a move that it stops is watched meanwhile."""
+def _instructions_with_condition(
+    instructions_before: list[SpokenInstruction], words: Sequence[Lexeme], names: Names
+) -> list[SpokenInstruction]:
+    """Return instructions and the condition behind; a move that it stops is watched meanwhile."""
     question = block(words, names, goes_on=False)
-    if not question and [order.word for order in orders_before[-1:]] in (["S"], ["STOP"]):
-        return _stopped_when(orders_before[:-1], words, names)
-    if not orders_before or not question:
+    if not question and [instruction.word for instruction in instructions_before[-1:]] in (
+        ["S"],
+        ["STOP"],
+    ):
+        return _stopped_when(instructions_before[:-1], words, names)
+    if not instructions_before or not question:
         return []
     header, first_instruction, *later_instructions = question.split(";")
     has_number = any(word.kind is NUMBER for word in words)
     samples = () if has_number else (f"{NEAR_CM} cm",)
     if (
         first_instruction in ("S", "STOP")
-        and orders_before[-1].word in MOVES
-        and "UNTIL" not in orders_before[-1].text
+        and instructions_before[-1].word in MOVES
+        and "UNTIL" not in instructions_before[-1].text
     ):
-        move, move_samples = orders_before[-1], orders_before[-1].samples + samples
+        move, move_samples = instructions_before[-1], instructions_before[-1].samples + samples
         bounded_move = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=move_samples)
-        branch_orders = (
-            [Order("IF", ";".join((header, *later_instructions)), ())]
+        branch_instructions = (
+            [SpokenInstruction("IF", ";".join((header, *later_instructions)), ())]
             if len(later_instructions) > 1
             else []
         )
-        return [*orders_before[:-1], bounded_move, *branch_orders]
-    return [*orders_before, Order("IF", question, samples)]
+        return [*instructions_before[:-1], bounded_move, *branch_instructions]
+    return [*instructions_before, SpokenInstruction("IF", question, samples)]
 
 
-def _stopped_when(orders_before: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
-    """Return orders of which a condition ends the last one: `anda y para cuando …`."""
+def _stopped_when(
+    instructions_before: list[SpokenInstruction], words: Sequence[Lexeme], names: Names
+) -> list[SpokenInstruction]:
+    """Return instructions of which a condition ends the last one: `anda y para cuando …`."""
     condition, condition_samples = _parse_condition(words[1:], names)
     if (
-        not orders_before
+        not instructions_before
         or not condition
-        or orders_before[-1].word not in MOVES
-        or "UNTIL" in orders_before[-1].text
+        or instructions_before[-1].word not in MOVES
+        or "UNTIL" in instructions_before[-1].text
     ):
         return []
-    move = orders_before[-1]
+    move = instructions_before[-1]
     move_samples = tuple(sample for sample in move.samples if not sample.endswith(" s"))
     text = move.text if move_samples == move.samples else f"{move.word}(FOREVER, {POWER.sample})"
     bounded_move = move._replace(
         text=f"{text} UNTIL({condition})", samples=move_samples + condition_samples
     )
-    return [*orders_before[:-1], bounded_move]
+    return [*instructions_before[:-1], bounded_move]
 
 
-def _orders(words: list[Lexeme], names: Names) -> list[Order]:
-    """Return the orders between two words that join, of which each begins with its own."""
-    if order := _order(words, names):
-        return [order]
+def _joined_instructions(words: list[Lexeme], names: Names) -> list[SpokenInstruction]:
+    """Return the instructions between two words that join, of which each begins with its own."""
+    if instruction := _spoken_instruction(words, names):
+        return [instruction]
     for k in range(2, len(words) - 1):
-        first_order = _order(words[:k], names) if _begins_order(words[k], names) else None
-        if first_order and first_order.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
+        first_instruction = (
+            _spoken_instruction(words[:k], names) if _begins_instruction(words[k], names) else None
+        )
+        if (
+            first_instruction
+            and first_instruction.word == "BEEP"
+            and lexicon_meaning(words[k].text, "note")
+        ):
             return []
-        rest = _orders(words[k:], names) if first_order and len(first_order.samples) < 2 else []
-        if first_order and rest:
-            return [first_order, *rest]
+        later_instructions = (
+            _joined_instructions(words[k:], names)
+            if first_instruction and len(first_instruction.samples) < 2
+            else []
+        )
+        if first_instruction and later_instructions:
+            return [first_instruction, *later_instructions]
     return []
 
 
-def _begins_order(token: Lexeme, names: Names) -> bool:
-    """Whether a word begins an order."""
+def _begins_instruction(token: Lexeme, names: Names) -> bool:
+    """Whether a word begins an instruction."""
     is_turn = bool(lexicon_meaning(token.text, "turn"))
     return is_turn or names.meant(token.text) in (*CALL_WORDS, "S", "STOP")
 
 
-def _order(words: list[Lexeme], names: Names) -> Order | None:
+def _spoken_instruction(words: list[Lexeme], names: Names) -> SpokenInstruction | None:
     if bounded_move := _move_until(words, names):
         return bounded_move
     concept = names.meant(words[0].text)
-    texts_after = [lexeme.text for lexeme in words[1:]]
+    texts_after = [token.text for token in words[1:]]
     if concept in ("S", "STOP") and texts_after:
         if all(lexicon_meaning(text, "the", "engine", "filler") for text in texts_after):
-            return Order("S", "S", ())
-        if any(lexeme.kind is NUMBER for lexeme in words):
+            return SpokenInstruction("S", "S", ())
+        if any(token.kind is NUMBER for token in words):
             wait_call = fill_call([make_token("W"), *words[1:]], names, has_until=False)
             return (
-                Order("S", f"{concept};{format_line(wait_call.tokens)}", ()) if wait_call else None
+                SpokenInstruction("S", f"{concept};{format_line(wait_call.tokens)}", ())
+                if wait_call
+                else None
             )
-    call = fill_call(words, names, has_until=False, is_order=True)
-    is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
+    call = fill_call(words, names, has_until=False, is_instruction=True)
+    is_free_turn = call is None and any(lexicon_meaning(token.text, "turn") for token in words)
     if is_free_turn:
-        other_words = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
-        call = fill_call([make_token("R"), *other_words], names, has_until=False, is_order=True)
+        other_words = [token for token in words if not lexicon_meaning(token.text, "turn")]
+        call = fill_call(
+            [make_token("R"), *other_words], names, has_until=False, is_instruction=True
+        )
     if call is None:
         return None
     text, word = format_line(call.tokens), call.tokens[0].text
     if call.times:
         pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
         text = f"LOOP({call.times});{text};{pause_s}{BLOCK_ENDS['LOOP']}"
-    return Order(word, text, call.samples, is_free_turn, bool(call.times))
+    return SpokenInstruction(word, text, call.samples, is_free_turn, bool(call.times))
 
 
-def _move_until(words: Sequence[Lexeme], names: Names) -> Order | None:
+def _move_until(words: Sequence[Lexeme], names: Names) -> SpokenInstruction | None:
     """Return the move that words say up to a condition."""
     until_index = next(
         (
             until_index
-            for until_index, lexeme in enumerate(words)
-            if names.meant(lexeme.text) == "UNTIL"
+            for until_index, token in enumerate(words)
+            if names.meant(token.text) == "UNTIL"
         ),
         0,
     )
     call: FilledCall | None = (
-        fill_call(words[:until_index], names, has_until=True, is_order=True)
+        fill_call(words[:until_index], names, has_until=True, is_instruction=True)
         if until_index
         else None
     )
@@ -217,7 +239,7 @@ def _move_until(words: Sequence[Lexeme], names: Names) -> Order | None:
         words[until_index + 1 :], names, may_be_distance=word == "F"
     )
     text = f"{format_line(call.tokens)} UNTIL({condition})"
-    return Order(word, text, call.samples + condition_samples) if condition else None
+    return SpokenInstruction(word, text, call.samples + condition_samples) if condition else None
 
 
 def _parse_condition(
@@ -255,16 +277,18 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     else_index = next(
         (k for k, text in enumerate(texts) if names.meant(text) == "ELSE"), len(texts)
     )
-    else_orders = orders(tokens[else_index + 1 :], names)
+    else_instructions = spoken_instructions(tokens[else_index + 1 :], names)
     comma_index = next((k for k in range(2, else_index) if texts[k] == "," and word != "LOOP"), 0)
     for k in [comma_index] if comma_index else range(2, else_index):
         header = _block_header(word, tokens[1:k], names)
         if is_when and ("(KEY_" in header or "(PAD_" in header):
             word, header = "WHEN", f"WHEN{header[2:]}"
-        body_orders = orders(tokens[k:else_index], names) if header else []
-        if header and not body_orders and _begins_order(tokens[k], names):
-            return ""  # another order than the words after it say
-        if not body_orders or any(order.is_side_free for order in (*body_orders, *else_orders)):
+        body_instructions = spoken_instructions(tokens[k:else_index], names) if header else []
+        if header and not body_instructions and _begins_instruction(tokens[k], names):
+            return ""  # another instruction than the words after it say
+        if not body_instructions or any(
+            instruction.is_side_free for instruction in (*body_instructions, *else_instructions)
+        ):
             continue
         is_side_word = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
         if word != "LOOP" and tokens[k].source and is_side_word:
@@ -277,12 +301,12 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
         is_mixed = any(
             lexicon_meaning(text, "then") and not lexicon_meaning(text, "and") for text in texts[k:]
         )
-        if (word == "LOOP" and is_mixed) or (else_index < len(texts) and not else_orders):
+        if (word == "LOOP" and is_mixed) or (else_index < len(texts) and not else_instructions):
             return ""
         parts = [
             header,
-            orders_text(body_orders),
-            *(["ELSE", orders_text(else_orders)] if else_orders else []),
+            instructions_text(body_instructions),
+            *(["ELSE", instructions_text(else_instructions)] if else_instructions else []),
         ]
         return ";".join(parts if goes_on else [*parts, BLOCK_ENDS[word]])
     return ""
@@ -291,7 +315,7 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
 def _block_header(word: str, words: Sequence[Lexeme], names: Names) -> str:
     """Return the header that words say: how often, or what is asked."""
     if word == "LOOP":
-        number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
+        number = next((token.text for token in words if token.kind is NUMBER), "")
         return f"LOOP({number})" if number and lexicon_meaning(words[-1].text, "times") else ""
     condition = _parse_condition(words, names)[0]
     return f"{word}({condition})" if condition else ""
@@ -307,9 +331,13 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
         [make_token("IF"), make_token("("), *words, make_token(")")], names, is_quick=True
     )
     tokens = readings[0].tokens if readings else []
-    end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
-    lexemes = tokens[2:end]
-    return lexemes if any(_is_question_word(lexeme.text, names) for lexeme in lexemes) else []
+    end = next((k for k, token in enumerate(tokens) if token.text == ";"), len(tokens)) - 1
+    condition_tokens = tokens[2:end]
+    return (
+        condition_tokens
+        if any(_is_question_word(token.text, names) for token in condition_tokens)
+        else []
+    )
 
 
 def _is_question_word(word: str, names: Names) -> bool:
