@@ -202,12 +202,12 @@ def _check_hello(robot: WireRobot) -> tuple[str, ...]:
     if answer.status:
         return (answer_text(answer),)
     field_of = answer.number
-    has_large_frames = field_of("largest") >= SMALL_FRAME and field_of("window") >= 1
+    takes_small_frames = field_of("largest") >= SMALL_FRAME and field_of("window") >= 1
     isa = f"isa {field_of('isa_major')}.{field_of('isa_minor')}"
     epoch = robot.epoch
     robot.hello()
     session_text = "the same session" if robot.epoch == epoch else "another session"
-    frames = "frames of 63 bytes" if has_large_frames else "smaller frames"
+    frames = "frames of 63 bytes" if takes_small_frames else "smaller frames"
     return (f"link {field_of('major')}", isa, frames, f"the same nonce again: {session_text}")
 
 

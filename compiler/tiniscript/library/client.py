@@ -27,7 +27,7 @@ from tiniscript.link.connection import (
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
-from tiniscript.link.port_names import is_at_broker, is_bluetooth
+from tiniscript.link.port_names import is_at_broker, is_bluetooth_le
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, status_text
 from tiniscript.robots.profile import Robot
@@ -261,7 +261,7 @@ class Client:
     def _reason_of_end(self, loss: ConnectionLost) -> str:
         if loss.is_server:
             return "holder_ended"
-        if is_bluetooth(self.port):
+        if is_bluetooth_le(self.port):
             return "radio_gone"
         if is_at_broker(self.port):
             return "port_taken" if str(loss) == errors.TAKEN else "broker_gone"

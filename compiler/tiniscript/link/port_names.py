@@ -27,7 +27,7 @@ def is_built_in(port: str) -> bool:
     return re.fullmatch(r"/dev/tty(S|AMA)\d+", port) is not None
 
 
-def is_bluetooth(port: str) -> bool:
+def is_bluetooth_le(port: str) -> bool:
     """Return whether a port is reached by Bluetooth LE."""
     return port[: len(BLE)].lower() == BLE
 
@@ -44,7 +44,7 @@ def is_at_broker(port: str) -> bool:
 
 def is_name(port: str) -> bool:
     """Return whether a port is a robot's name, whose address has to be found first."""
-    return is_network_name(port) or (is_bluetooth(port) and not is_device_address(name_in(port)))
+    return is_network_name(port) or (is_bluetooth_le(port) and not is_device_address(name_in(port)))
 
 
 def name_in(port: str) -> str:
@@ -76,7 +76,7 @@ def canonical_port(port: str) -> str:
     A udev link (`/dev/serial/by-id/...`) becomes its target, `/dev/cu.X` of macOS becomes
     `/dev/tty.X`, and Windows ignores case; so do the names of robots.
     """
-    if is_bluetooth(port):
+    if is_bluetooth_le(port):
         return BLE + name_in(port)
     if is_network_name(port):
         return TCP + name_in(port).removesuffix(".local")

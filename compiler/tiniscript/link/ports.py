@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from tiniscript.base.source import printable
 from tiniscript.link.errors import NOT_INSTALLED, PortError
-from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_network_name
+from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth_le, is_network_name
 from tiniscript.link.transports import Port, Transport
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 # which ports a transport has; all others are of `serial`
-_TRANSPORTS = ((is_bluetooth, "bluetooth"), (is_at_broker, "broker"), (is_network_name, "network"))
+_TRANSPORTS = ((is_bluetooth_le, "bluetooth"), (is_at_broker, "broker"), (is_network_name, "network"))
 
 
 class ListedPort(NamedTuple):

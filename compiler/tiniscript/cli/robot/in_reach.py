@@ -21,7 +21,7 @@ from tiniscript.link.port_names import (
     TCP,
     canonical_name,
     canonical_port,
-    is_bluetooth,
+    is_bluetooth_le,
     is_network_name,
     name_in,
 )
@@ -70,7 +70,7 @@ def _find_by_radio(known_ports: list[str], language: str) -> ReachableRobots:
         sentence = f"{device.name}, {sentence}" if device.name else sentence
         meanings = {canonical_name(device.address)} | ({name} if names.count(name) == 1 else set())
         rows.append((BLE + device.address, {BLE + device for device in meanings}, sentence))
-    canonical_of = {port: BLE + name_in(port) for port in known_ports if is_bluetooth(port)}
+    canonical_of = {port: BLE + name_in(port) for port in known_ports if is_bluetooth_le(port)}
     return _name_robots(rows, canonical_of)
 
 
