@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 
 OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 # which ports a transport has; all others are of `serial`
-_TRANSPORTS = ((is_bluetooth_le, "bluetooth"), (is_at_broker, "broker"), (is_network_name, "network"))
+_TRANSPORTS = (
+    (is_bluetooth_le, "bluetooth"),
+    (is_at_broker, "broker"),
+    (is_network_name, "network"),
+)
 
 
 class ListedPort(NamedTuple):
