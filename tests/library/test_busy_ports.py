@@ -123,7 +123,7 @@ class Line:
 # The steps of a connection that may fail, each by its place.
 STEPS = (
     "tiniscript.link.ports.open_port",
-    "tiniscript.library.opening.directory.is_of_another",
+    "tiniscript.library.opening.directory.belongs_to_another",
     "tiniscript.link.keys.KeyFile",
     "tiniscript.link.session.Session",
     "tiniscript.library.client.Client._share",
@@ -156,7 +156,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         return Client(ADDRESS, "upload", profile, is_shared=True)
 
     whys: list[BaseException | bool] = [PortError("missing", "gone"), KeyboardInterrupt()]
-    if step.endswith("is_of_another"):
+    if step.endswith("belongs_to_another"):
         whys.append(True)
     if step.endswith("_shared"):
         whys.append(RuntimeError("a bug"))

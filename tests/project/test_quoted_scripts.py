@@ -1,4 +1,4 @@
-"""Scripts that tests and tools have in quotation marks name what is there: no linter sees them."""
+"""What tests and tools have in quotation marks names what is there: no linter sees it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 from tests.support.casefile import ROOT
@@ -14,22 +15,22 @@ from tests.support.rows import go_through
 FOLDERS = ("tests", "tools")
 IMPORTED = re.compile(r"from (tiniscript(?:\.\w+)*) import ([\w ]+(?:,[\w ]+)*)")
 ALIAS = re.compile(r"(\w+)(?: as (\w+))?")
+DOTTED = re.compile(r"tiniscript(?:\.\w+)+")
 
 
-def scripts() -> Iterator[tuple[str, str]]:
-    """Give each text in quotation marks that imports something of ours, and where it stands."""
+def quoted() -> Iterator[tuple[str, str]]:
+    """Give each text in quotation marks, and where it stands."""
     for folder in FOLDERS:
         for path in sorted((ROOT / folder).rglob("*.py")):
             if "node_modules" in path.parts or path == Path(__file__):
                 continue
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                    if IMPORTED.search(node.value):
-                        yield f"{path.relative_to(ROOT)}:{node.lineno}", node.value
+                    yield f"{path.relative_to(ROOT)}:{node.lineno}", node.value
 
 
 def test_what_a_quoted_script_names_is_there() -> None:
-    rows = list(scripts())
+    rows = [row for row in quoted() if IMPORTED.search(row[1])]
     assert len(rows) > 20
 
     def names_what_is_there(row: tuple[str, str]) -> None:
@@ -45,3 +46,21 @@ def test_what_a_quoted_script_names_is_there() -> None:
                     assert hasattr(owner, attribute), f"{name}.{attribute}"
 
     go_through(names_what_is_there, rows, lambda row: row[0])
+
+
+def test_what_a_dotted_name_names_is_there() -> None:
+    """As `monkeypatch.setattr` takes it; other names begin with no module of ours."""
+    rows = [
+        row for row in quoted() if DOTTED.fullmatch(row[1])
+        and find_spec(".".join(row[1].split(".")[:2])) is not None
+    ]  # fmt: skip
+    assert len(rows) > 20
+
+    def is_there(row: tuple[str, str]) -> None:
+        owner = import_module("tiniscript")
+        for number, name in enumerate(row[1].split(".")[1:], 2):
+            if not hasattr(owner, name):
+                import_module(".".join(row[1].split(".")[:number]))
+            owner = getattr(owner, name)
+
+    go_through(is_there, rows, lambda row: row[0])
