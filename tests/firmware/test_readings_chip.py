@@ -36,8 +36,9 @@ RUN_MS = 1500
 CHANGES_MS = 25  # between two changes of the light
 LIGHT = ("A0", "A1")
 TOGETHER_MS = 0.05  # pins of one setting
-# Runs that begin at another time beside the computer's PINGs are apart, too.
-MOST_APART_MS = 1
+# A byte, and what the main loop takes until it looks; runs that begin at another time beside the
+# computer's PINGs are apart, too.
+MOST_APART_MS = 1.5
 
 
 def ran(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
