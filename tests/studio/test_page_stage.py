@@ -183,6 +183,33 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     page.click("#view_text")
 
 
+def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) -> None:
+    """Until the run is over, and after it; the next one is in sight again."""
+    page.select_option("#world", "free")
+    write(page, "SI|LOOP(FOREVER)\n" + "F(0.1, 60)\n" * 30 + "END_LOOP")
+    page.click("#view_blocks")
+    shown(page)
+    canvas = page.locator("#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas")
+    page.click("#run")
+    in_phase(page, "running")
+    before = canvas.get_attribute("transform")
+    hears(page, lambda: canvas.get_attribute("transform") != before, "it is scrolled")
+    page.hover("#blocks")
+    page.mouse.wheel(0, 40)
+    page.wait_for_timeout(300)
+    chosen = canvas.get_attribute("transform")
+    page.wait_for_timeout(2500)
+    assert canvas.get_attribute("transform") == chosen
+    page.click("#stop")
+    in_phase(page, "ended")
+    page.wait_for_timeout(1000)
+    assert canvas.get_attribute("transform") == chosen
+    page.click("#run")
+    hears(page, lambda: canvas.get_attribute("transform") != chosen, "it is scrolled again")
+    page.click("#stop")
+    page.click("#view_text")
+
+
 def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
     """As a lesson's is, whose goal would be out of sight."""
     write(page, "SI|F(0.1, 20);\n")

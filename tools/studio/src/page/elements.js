@@ -1,7 +1,5 @@
 // The elements of `index.html`, by their ids.
 
-const TEXT_NODE = 3; // of `Node.nodeType`
-
 /**
  * @template {HTMLElement} T
  * @param {string} id
@@ -16,10 +14,7 @@ export function element(id, kind) {
 
 /** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} place @param {string} said */
 export function say(place, said) {
-  const { firstChild } = place;
-  if (place.textContent === said) return;
-  if (said && firstChild?.nodeType === TEXT_NODE && !firstChild.nextSibling) firstChild.nodeValue = said; // for which less is laid out
-  else place.textContent = said;
+  if (place.textContent !== said) place.textContent = said;
 }
 
 /** Hides it or shows it, unless it is so. @param {HTMLElement} place @param {boolean} isHidden */
