@@ -317,9 +317,9 @@ export class Blocks {
     this.#offer();
   }
 
-  /** @param {Taught} taught what the open lesson speaks of */
+  /** No lesson takes away what another one has offered. @param {Taught} taught what the open lesson speaks of */
   setTaught({ offered, fresh }) {
-    this.#taught = offered;
+    this.#taught = [...new Set([...this.#taught, ...offered])];
     this.#new = fresh;
     this.#offer();
   }
