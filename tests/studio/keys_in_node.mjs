@@ -6,7 +6,7 @@ import { freshPage, later, learns, now, passes, playsFetch, playsNavigator, word
 const sent = [];
 const keep = (asked) => sent.push(...asked.filter((each) => each.do === 'keys').map(({ y }) => [now(), y]));
 const answers = (value) => ({ ok: true, status: 200, json: async () => value });
-const heard = { event() {}, over() {} };
+const heard = { onEvent() {}, onEnd() {} };
 playsNavigator({});
 const page = freshPage();
 await learns(page);

@@ -129,7 +129,7 @@ async function story(random, bad, isWild = false, dies = false) {
   server.late_ms = () => (bad && random() < 0.2 ? Math.floor(random() * (isWild ? 2500 : 400)) : 1);
   server.lost_ms = () => (bad && random() < 0.5 ? Math.floor(random() * 600) : 1);
   server.again = bad ? 0.1 : 0;
-  const robot = new HostRobot({ event: (event) => heard.push(event.event), over: () => (over += 1) });
+  const robot = new HostRobot({ onEvent: (event) => heard.push(event.event), onEnd: () => (over += 1) });
   robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (met += 1));
   await until(now_ms + 3000);
   const asks = 1 + Math.floor(random() * 12);

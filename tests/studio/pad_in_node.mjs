@@ -44,7 +44,7 @@ const does = {
   event: (name) => dispatchEvent(new Event(name)),
   hide: () => { document.visibilityState = 'hidden'; heard.dispatchEvent(new Event('visibilitychange')); },
   see: () => { document.visibilityState = 'visible'; heard.dispatchEvent(new Event('visibilitychange')); },
-  side: (id) => pageState.side.set(id),
+  side: (id) => pageState.sideId.set(id),
   stop: () => page.byId('stop').click(),
   passes,
 };

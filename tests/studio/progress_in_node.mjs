@@ -2,7 +2,7 @@
 
 import { mock } from 'node:test';
 
-const { watched, watchedFetch } = await import(`${process.argv[2]}/page/progress.js`);
+const { watchPromise, watchedFetch } = await import(`${process.argv[2]}/page/progress.js`);
 
 mock.timers.enable({ apis: ['setTimeout'] });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
@@ -17,7 +17,7 @@ async function fetched(act) {
       signal.addEventListener('abort', () => controller.error(signal.reason));
     },
   }));
-  const found = watchedFetch('x', { waits: () => { waits += 1; }, cancelled: cancelling.signal }, by)
+  const found = watchedFetch('x', { onWait: () => { waits += 1; }, cancelSignal: cancelling.signal }, by)
     .then((answer) => answer.text()).catch((why) => why.name);
   await settle();
   await act(put, cancelling);
@@ -54,11 +54,11 @@ told.push(await fetched(async (put) => {
 }));
 told.push(await fetched(async (_, cancelling) => cancelling.abort()));
 let waits = 0;
-const never = watched(new Promise(() => {}), { waits: () => { waits += 1; } }).catch((why) => why.name);
+const never = watchPromise(new Promise(() => {}), { onWait: () => { waits += 1; } }).catch((why) => why.name);
 await passes(3001);
 await passes(17_000);
 told.push(`${await never} ${waits}`);
-const cancelled = AbortSignal.abort();
-told.push(await watched(new Promise(() => {}), { cancelled }).catch((why) => why.name));
-told.push(await watched(Promise.resolve('there'), {}));
+const cancelSignal = AbortSignal.abort();
+told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((why) => why.name));
+told.push(await watchPromise(Promise.resolve('there'), {}));
 console.log(JSON.stringify(told));

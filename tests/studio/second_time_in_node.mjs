@@ -125,11 +125,11 @@ const PARTS = {
     playsNavigator({});
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
-    const { kept } = await page.load('page/kept.js');
+    const { storedText } = await page.load('page/kept.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
-    const panel = { isFree: true, byHost: () => notes.push('to the robot'), seeNothing() {} };
+    const panel = { isFree: true, connectByHost: () => notes.push('to the robot'), endWitness() {} };
     const work = { text: 'F(1)', robot: 'tinibot' };
     const puts = (given) => {
       notes.push(['given', given.text]);
@@ -215,8 +215,8 @@ const PARTS = {
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
       over = chance.of(['', 'kept', 'erased']);
       await passes(5000);
-      if (over && (!join.hidden || late > 1 || kept('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
-      if (does('empty') !== Number(over === 'erased') || Boolean(kept('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${kept('tiniscript.pupil_before')}`);
+      if (over && (!join.hidden || late > 1 || storedText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
+      if (does('empty') !== Number(over === 'erased') || Boolean(storedText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${kept('tiniscript.pupil_before')}`);
       return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
@@ -286,13 +286,13 @@ const PARTS = {
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
+      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { SimulatorPanel } = await page.load('virtual/simulator_panel.js');
     pageState.robotName.set('tinibot');
-    pageState.checked.set(PROGRAM);
+    pageState.checkResult.set(PROGRAM);
     let robot = null;
     const python = {
       async ask(request) {
@@ -405,12 +405,12 @@ const PARTS = {
   async stopping() {
     const page = freshPage();
     await learns(page);
-    const { Stopping } = await page.load('robot/stopping.js');
+    const { StopNotice } = await page.load('robot/stopping.js');
     const { LINK } = await page.load('page/words.js');
     let notes = [];
     let began_ms = 0;
     const speech = { isHeld: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeld]) };
-    const stopping = new Stopping(speech);
+    const stopping = new StopNotice(speech);
     const acts = {
       stop: () => stopping.begin(),
       hide: () => stopping.begin('say_file'),
@@ -446,7 +446,7 @@ const PARTS = {
     };
     const page = freshPage({
       hasSerial: true,
-      chosenPort: () => failed('port', 'port'),
+      choosePort: () => failed('port', 'port'),
       firmwares: async () => [{ board: 'uno' }],
       firmwareOf: (which, board) => {
         notes.push([which.name ?? structuredClone(which), board, page.byId('flash_progress').value]);
@@ -538,7 +538,7 @@ const PARTS = {
       },
     };
     const checking = new Checking(python, (why) => notes.push(String(why)));
-    pageState.checked.subscribe((answer) => {
+    pageState.checkResult.subscribe((answer) => {
       if (answer && answer.image !== `of ${pageState.programText.value}`) throw new Error('it is said of another text');
       notes.push(answer?.image);
     });
@@ -552,7 +552,7 @@ const PARTS = {
         if (isGood) pageState.programText.set('');
         notes = [];
         pageState.programText.set(text);
-        if (pageState.checked.value) throw new Error('what is said is of the text before');
+        if (pageState.checkResult.value) throw new Error('what is said is of the text before');
         notes.push(document.documentElement.dataset['state']);
         if (!isGood && chance() < 0.3) {
           open += 1;
@@ -592,7 +592,7 @@ const PARTS = {
 
   // A check of a lesson, which may be ended at any time.
   async lessons() {
-    const page = freshPage({ offer() {}, pictured() {}, worldPicture() {} });
+    const page = freshPage({ replaceOptions() {}, pictureOption() {}, worldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
@@ -651,15 +651,15 @@ const PARTS = {
   // What is asked of a robot, also of one that is gone or goes meanwhile.
   async asking() {
     const page = freshPage();
-    const { Asking, Failed } = await page.load('robot/transport.js');
+    const { RequestQueue, ConnectionFailure } = await page.load('robot/transport.js');
     return async (chance, isGood) => {
       const told = [];
       let open = 0;
       let isOver = false;
       const end = chance.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
-      const asking = new Asking({ event: ({ event }) => told.push(event), over: (why) => told.push(why.reason) });
-      asking.go = async () => {
-        const sent = asking.asked.splice(0);
+      const asking = new RequestQueue({ onEvent: ({ event }) => told.push(event), onEnd: (why) => told.push(why.reason) });
+      asking.send = async () => {
+        const sent = asking.requests.splice(0);
         await later(isGood ? 5 : chance.below(300));
         for (const { id, what } of sent) if (!isOver) asking.take({ id, ok: what });
       };
@@ -669,7 +669,7 @@ const PARTS = {
         await passes(chance.below(100));
         if (end === 'goes' && !isOver && chance() < 0.4) {
           isOver = true;
-          asking.end(new Failed('gone'));
+          asking.end(new ConnectionFailure('gone'));
         }
       }
       await passes(1000);
@@ -851,7 +851,7 @@ const PARTS = {
     let failure = '';
     let ways = [];
     const page = freshPage({
-      offer() {}, pictured() {}, drawnPicture() {}, hasSerial: false, chosenPort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      replaceOptions() {}, pictureOption() {}, symbolPicture() {}, hasSerial: false, choosePort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
       hostPorts: async () => [],
       HostRobot: class {
         constructor(heard) {
@@ -862,20 +862,20 @@ const PARTS = {
           await later(late());
           if (failure || this.isOver) {
             this.isOver = true;
-            throw new Failed(failure || 'left');
+            throw new ConnectionFailure(failure || 'left');
           }
           return { name: `A${ways.length}`, id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true };
         }
         async ask({ do: what }) {
           await later(late());
-          if (this.isOver) throw new Failed('left');
+          if (this.isOver) throw new ConnectionFailure('left');
           return { ok: true, program: 'ff', trim: what === 'trim' ? null : undefined };
         }
         stop() { notes.push('stop'); }
-        tell(event) { if (!this.isOver) this.heard.event(event); }
+        tell(event) { if (!this.isOver) this.heard.onEvent(event); }
         end(why) {
           this.isOver = true;
-          this.heard.over(new Failed(why));
+          this.heard.onEnd(new ConnectionFailure(why));
         }
         leave() { this.end('left'); }
       },
@@ -883,14 +883,14 @@ const PARTS = {
     playsNavigator({});
     playsFetch(async () => { throw new Broken(); });
     await learns(page);
-    const { Failed } = await page.load('robot/transport.js');
+    const { ConnectionFailure } = await page.load('robot/transport.js');
     const { pageState } = await page.load('page/page_state.js');
-    const { RobotPlace } = await page.load('robot/place.js');
+    const { RunningPlace } = await page.load('robot/place.js');
     const { RobotPanel } = await page.load('robot/panel.js');
     pageState.robotName.set('tinibot');
-    pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
+    pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9 });
     const { text } = await page.load('page/texts.js');
-    const panel = new RobotPanel({ python: { again() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
+    const panel = new RobotPanel({ python: { again() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RunningPlace(), pad: noting(notes, 'pad') });
     await passes(10);
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
     const said = () => page.byId('link_said').textContent;
@@ -902,7 +902,7 @@ const PARTS = {
       notes.length = 0;
       late = () => (isGood ? 5 : 5 + chance.below(300));
       failure = isGood || chance() < 0.7 ? '' : 'link_silent';
-      panel.byHost('p');
+      panel.connectByHost('p');
       const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
       await passes(isGood ? 50 : chance.below(600));
       const isMet = () => document.documentElement.dataset['robot'] === 'connected';
@@ -935,12 +935,12 @@ const PARTS = {
         },
         breaks() {
           if (!isMet()) return;
-          pageState.checked.set({ ...PROGRAM, image: '', program: '' });
+          pageState.checkResult.set({ ...PROGRAM, image: '', program: '' });
           notes.length = 0;
           page.byId('link_upload').click();
           if (!noted('stop')) throw new Error('what runs is not what is seen');
           stop = 'pressed';
-          pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
+          pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9 });
         },
         async renames() {
           if (!isMet()) return;
@@ -979,7 +979,7 @@ const PARTS = {
     let started = 0;
     let robot = null;
     const page = freshPage({
-      offer() {}, pictured() {}, drawnPicture() {}, hasSerial: false, chosenPort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      replaceOptions() {}, pictureOption() {}, symbolPicture() {}, hasSerial: false, choosePort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
       hostPorts: async () => [],
       HostRobot: class {
         constructor(heard) {
@@ -997,7 +997,7 @@ const PARTS = {
           if (before !== stops) return { failure: 'stopped_elsewhere' };
           if (starts) {
             started += 1;
-            this.heard.event({ event: 'STARTED', program: 'ff', is_program: what !== 'live' });
+            this.heard.onEvent({ event: 'STARTED', program: 'ff', is_program: what !== 'live' });
           }
           await later(late());
           return { ok: true, program: 'ff' };
@@ -1010,15 +1010,15 @@ const PARTS = {
     playsFetch(async () => { throw new Broken(); });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
-    const { RobotPlace } = await page.load('robot/place.js');
+    const { RunningPlace } = await page.load('robot/place.js');
     const { RobotPanel } = await page.load('robot/panel.js');
     pageState.robotName.set('tinibot');
     const whole = { ...PROGRAM, program: 'ff', bytes: 9, halts: [0], findings: [], start: 'SI' };
-    pageState.checked.set(whole);
+    pageState.checkResult.set(whole);
     const python = { again() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
-    const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RobotPlace(), pad: noting([], 'pad') });
+    const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RunningPlace(), pad: noting([], 'pad') });
     await passes(10);
-    panel.byHost('p');
+    panel.connectByHost('p');
     await passes(100);
     const presses = {
       run: () => page.byId('link_upload').click(),
@@ -1032,8 +1032,8 @@ const PARTS = {
     const others = {
       send: () => page.byId('link_send').click(),
       points: (chance) => pageState.breakpoints.set(chance() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
-      halts: () => robot.heard.event({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
-      ends: (chance) => robot.heard.event(chance.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
+      halts: () => robot.heard.onEvent({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
+      ends: (chance) => robot.heard.onEvent(chance.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
     };
     const stop = (chance) => {
       wants = '';
@@ -1329,7 +1329,7 @@ const PARTS = {
 
   // The steps of the lesson that is chosen, after others that came late or not at all.
   async steps() {
-    const page = freshPage({ offer() {}, pictured() {}, worldPicture() {} });
+    const page = freshPage({ replaceOptions() {}, pictureOption() {}, worldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
@@ -1423,7 +1423,7 @@ const PARTS = {
     const runs = new Runs();
     page.byId('record_play').hidden = true; // as in index.html
     const recorder = new Recorder({ runs, play() {} });
-    recorder.sends({ program: 'aa', places: [], shows: [], variables: [] });
+    recorder.addProgram({ program: 'aa', places: [], shows: [], variables: [] });
     let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
     let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
@@ -1454,7 +1454,7 @@ const PARTS = {
       },
       waits() {
         begins(null);
-        recorder.wait('aa');
+        recorder.awaitButton('aa');
       },
       theirs() {
         ends('STOPPED');
@@ -1624,7 +1624,7 @@ const PARTS = {
       return Promise.resolve();
     } } });
     const { DirectRobot } = await page.load('robot/direct.js');
-    const { Failed } = await page.load('robot/transport.js');
+    const { ConnectionFailure } = await page.load('robot/transport.js');
     let state = 'closed';
     let late = () => 5;
     let fails = () => false;
@@ -1646,12 +1646,12 @@ const PARTS = {
       goneBy: 'port_gone',
       async open(_, gone) {
         wasLeft ||= own.robot.isOver;
-        if (state !== 'closed') throw new Failed('port_busy');
+        if (state !== 'closed') throw new ConnectionFailure('port_busy');
         state = 'opening';
         await later(late());
         if (fails()) {
           state = 'closed';
-          throw new Failed('port_broken');
+          throw new ConnectionFailure('port_broken');
         }
         state = 'open';
         goes = gone;
@@ -1708,7 +1708,7 @@ const PARTS = {
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
+      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -1733,7 +1733,7 @@ const PARTS = {
     };
     const whenCompiled = async () => {
       await later(late());
-      pageState.checked.set(PROGRAM);
+      pageState.checkResult.set(PROGRAM);
       return PROGRAM;
     };
     robot = virtualRobot(chanceOf(1), true);
@@ -1750,7 +1750,7 @@ const PARTS = {
         pause: () => page.byId('pause').disabled || page.byId('pause').click(),
         stop: () => page.byId('stop').click(),
         escape: () => dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' })),
-        edits: () => pageState.checked.set(null),
+        edits: () => pageState.checkResult.set(null),
       };
       let end = '';
       for (let k = 3 + chance.below(8); k > 0; k -= 1) {

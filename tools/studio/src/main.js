@@ -3,33 +3,33 @@
 import { element } from './page/elements.js';
 import { Checking } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
-import { bugSaid } from './page/faults.js';
-import { bytesOf, download, whenChosen } from './page/files.js';
+import { bugSentence } from './page/faults.js';
+import { bytesOf, download, onFileChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
 import { showMessages, showRepair, summary, whole } from './writing/messages.js';
-import { whenOffline } from './page/offline.js';
+import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { pictured, robotPicture } from './page/pictures.js';
+import { pictureOption, robotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
-import { beginOwnRobot } from './page/own_robot.js';
+import { showOwnRobot } from './page/own_robot.js';
 import { bringsProgram } from './programs/links.js';
-import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
+import { labelOf, currentLanguage, textKey, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
 import { isRun } from './virtual/runs_window.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
 import { Pad } from './remote/pad.js';
 import { Recorder } from './robot/recorder.js';
-import { whyOutside } from './robot/host.js';
+import { entryFailure } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
-import { RobotPlace } from './robot/place.js';
-import { chooseSide } from './page/sides.js';
-import { beginTwice } from './page/twice.js';
+import { RunningPlace } from './robot/place.js';
+import { listenToSideButtons } from './page/sides.js';
+import { ignoreSecondPresses } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
 import { OwnWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
-import { beginTheme } from './page/theme.js';
+import { startTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
 import { ROBOTS } from './page/words.js';
 import { keep, keptWork, LONGEST } from './programs/work.js';
@@ -46,9 +46,9 @@ const status = element('status', HTMLElement);
 const note = element('note', HTMLElement);
 const list = element('messages', HTMLElement);
 
-beginTheme();
-beginOwnRobot();
-beginTwice();
+startTheme();
+showOwnRobot();
+ignoreSecondPresses();
 const kept = keptWork();
 const work = kept ?? {
   text: FIRST_PROGRAM,
@@ -108,7 +108,7 @@ const driving = new SimulatorPanel({
 const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
 
 const recorder = new Recorder({ runs: driving.runs, play: (run) => driving.playAgain(run) });
-const place = new RobotPlace();
+const place = new RunningPlace();
 const panel = new RobotPanel({
   recorder,
   place,
@@ -126,7 +126,7 @@ const lessons = new Lessons({
   },
   driving,
 });
-chooseSide();
+listenToSideButtons();
 pageState.language.subscribe(() => {
   showRobots();
   pageState.note.set('');
@@ -134,10 +134,10 @@ pageState.language.subscribe(() => {
   remember();
 });
 const checking = new Checking(python, (why) => {
-  sayStatus(bugSaid(why), 'wrong');
+  sayStatus(bugSentence(why), 'wrong');
 });
 const phone = new Phone(() => panel.run());
-beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
+beginScreens(entryFailure !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (kept) programs.keep();
 new OwnWindow();
 new Start({
@@ -168,7 +168,7 @@ if ('class' in document.documentElement.dataset) {
 let isReady = false;
 let unchecked = 0; // while what is said may be of the text before
 
-pageState.checked.subscribe((answer) => {
+pageState.checkResult.subscribe((answer) => {
   if (!answer) {
     unchecked ||= window.setTimeout(() => {
       if (isReady) sayStatus('…', '');
@@ -179,11 +179,11 @@ pageState.checked.subscribe((answer) => {
   showMessages(list, answer.findings, (finding) => views.goTo(finding));
   sayStatus(summary(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
-pageState.offeredFinding.subscribe((which) => {
-  const finding = pageState.checked.value?.findings[which];
+pageState.offeredFindingIndex.subscribe((which) => {
+  const finding = pageState.checkResult.value?.findings[which];
   if (finding) showRepair(list, which, finding, repair);
 });
-if (whyOutside) pageState.note.set(text(known(`why_${whyOutside}`)));
+if (entryFailure) pageState.note.set(text(textKey(`why_${entryFailure}`)));
 editor.replace(work.text);
 status.textContent = text('starting');
 python.heed({
@@ -218,12 +218,12 @@ function sayStatus(said, look) {
 
 /** @param {Finding} finding */
 function repair(finding) {
-  if (pageState.checked.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
+  if (pageState.checkResult.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
 }
 
 function showRobots() {
   robots.replaceChildren(
-    ...ROBOTS.map((robot) => pictured(called(robot.labels), robot.name, robotPicture(robot))),
+    ...ROBOTS.map((robot) => pictureOption(labelOf(robot.labels), robot.name, robotPicture(robot))),
   );
   robots.value = work.robot;
 }
@@ -271,7 +271,7 @@ words.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
 
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
 
-whenChosen('file', async (chosen) => {
+onFileChosen('file', async (chosen) => {
   if (isRun(chosen.name)) {
     driving.openRun(chosen);
     return;
@@ -319,5 +319,5 @@ function hasItsOwnUndo(target) {
   return target instanceof Element && target.closest('input:not([type=checkbox]), textarea, [contenteditable=true], dialog') !== null;
 }
 
-whenOffline();
+registerServiceWorker();
 programs.openLink();

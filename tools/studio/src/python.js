@@ -1,6 +1,6 @@
 // Asks the Python in the worker. Knows the form of requests and answers, and no program.
 
-import { watched } from './page/progress.js';
+import { watchPromise } from './page/progress.js';
 
 /**
  * @typedef {object} Change
@@ -147,7 +147,7 @@ export class Python {
         }
       });
     });
-    watched(begun, { waits: () => this.#wait(worker) }).catch((why) => this.#settle(worker, String(why)));
+    watchPromise(begun, { onWait: () => this.#wait(worker) }).catch((why) => this.#settle(worker, String(why)));
     worker.addEventListener('error', (event) => {
       const why = event.message || 'worker';
       this.#rejectAll(why);

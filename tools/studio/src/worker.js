@@ -10,17 +10,17 @@ postMessage({ id: 0, begun: true });
 const waits = () => postMessage({ id: 0, waits: true });
 const plainFetch = self.fetch.bind(self);
 // Pyodide's own module. An import tells of no progress: while something else comes, the line carries it, too.
-const module = new Progress({ waits });
-const came = () => module.came();
+const module = new Progress({ onWait: waits });
+const came = () => module.advance();
 // What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
 const fails = (/** @type {unknown} */ why) => postMessage({ id: 0, error: String(why) });
-self.fetch = (what, options) => watchedFetch(what, { ...options, waits, came, fails }, plainFetch);
+self.fetch = (what, options) => watchedFetch(what, { ...options, onWait: waits, onProgress: came, onFail: fails }, plainFetch);
 
 const SOURCE = languages[0]?.[0] ?? ''; // the language that is always there
 
 /** @param {string} name */
 async function fetched(name) {
-  const found = await watchedFetch(`./${name}`, { waits, came }, plainFetch).catch((why) => {
+  const found = await watchedFetch(`./${name}`, { onWait: waits, onProgress: came }, plainFetch).catch((why) => {
     throw new Error(`${name}: ${why}`);
   });
   if (!found.ok) throw new Error(`${name}: ${found.status}`);
@@ -33,7 +33,7 @@ const learnt = new Set();
 const coming = new Map();
 
 async function begin() {
-  const imported = module.until(import(new URL('./pyodide.asm.mjs', self.location.href).href));
+  const imported = module.watch(import(new URL('./pyodide.asm.mjs', self.location.href).href));
   const archive = fetched('tiniscript.zip');
   const wanted = [...new Set([SOURCE, self.name || SOURCE])];
   const messages = wanted.map((language) => fetched(`messages.${language}.json`).catch((why) => {

@@ -20,7 +20,7 @@ import { text, textsOf } from '../page/texts.js';
 /** @import { Form, Range } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
-/** @typedef {import('../page/page_state.js').Taught} Taught */
+/** @typedef {import('../page/page_state.js').TaughtBlocks} Taught */
 /**
  * @typedef {object} Told who is told of what is done to blocks
  * @property {() => void} changed

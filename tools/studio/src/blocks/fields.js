@@ -4,7 +4,7 @@ import * as Blockly from 'blockly/core';
 import { Piano } from './piano.js';
 import { rangeAt } from './places.js';
 import { noteAt, stepFrom } from './tones.js';
-import { onBlock } from '../page/words.js';
+import { blockLabel } from '../page/words.js';
 
 export const WAY = 'way'; // not for so long, but so far
 
@@ -143,7 +143,7 @@ export class UnitField extends Blockly.FieldDropdown {
   constructor(units) {
     /** @this {any} */
     super(function () {
-      return [[onBlock('seconds'), 'seconds'], [onBlock(/** @type {any} */ (this).unit?.() ?? ''), WAY]];
+      return [[blockLabel('seconds'), 'seconds'], [blockLabel(/** @type {any} */ (this).unit?.() ?? ''), WAY]];
     });
     this.units = units;
   }
@@ -158,7 +158,7 @@ export class UnitField extends Blockly.FieldDropdown {
   }
 
   getText_() {
-    return onBlock(this.written() || 'seconds');
+    return blockLabel(this.written() || 'seconds');
   }
 }
 

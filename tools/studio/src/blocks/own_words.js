@@ -2,7 +2,7 @@
 
 import * as Blockly from 'blockly/core';
 import { NameField } from './fields.js';
-import { LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
+import { FREE_LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
 
 const FINGER = 32; // units of a button on a block
 
@@ -49,7 +49,7 @@ export const DEF = {
     const names = this.names();
     if (names.length >= MOST_PARAMETERS) return;
     const taken = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ each) => each.getFieldValue('WORD'))]);
-    const name = LETTERS.find((each) => !taken.has(each)) ?? `A_${names.length + 1}`;
+    const name = FREE_LETTERS.find((each) => !taken.has(each)) ?? `A_${names.length + 1}`;
     changed(this, () => this.setNames([...names, name]));
   },
 

@@ -1,12 +1,12 @@
 // The keys of a piano, one octave of them: a tone by its name. Knows no blocks.
 
-import { button, made } from '../page/made.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 import { HIGHEST, keyAt, LOWEST, nameOf, noteAt, OCTAVE, WHITE } from './tones.js';
 
 export class Piano {
-  place = made('div');
-  #keys = made('div');
+  place = makeElement('div');
+  #keys = makeElement('div');
   #chosen;
   #first = LOWEST; // of the octave that is seen
 
@@ -18,7 +18,7 @@ export class Piano {
     this.place.ariaLabel = text('piano');
     this.place.addEventListener('mousedown', (event) => event.preventDefault()); // what is typed into stays so
     const turns = [['lower', '◀', -OCTAVE], ['higher', '▶', OCTAVE]].map(([name, sign, by]) => {
-      const turn = button('', () => this.#turn(Number(by)), String(sign));
+      const turn = makeButton('', () => this.#turn(Number(by)), String(sign));
       turn.ariaLabel = text(name === 'lower' ? 'piano_lower' : 'piano_higher');
       return turn;
     });
@@ -46,7 +46,7 @@ export class Piano {
     const all = Array.from({ length: OCTAVE + 1 }, (_, k) => this.#first + k);
     this.#keys.replaceChildren(...all.map((key) => {
       const isWhite = WHITE.includes(key % OCTAVE);
-      const tone = button('', () => this.#chosen(noteAt(key)), isWhite ? nameOf(key, names) : '');
+      const tone = makeButton('', () => this.#chosen(noteAt(key)), isWhite ? nameOf(key, names) : '');
       tone.className = isWhite ? 'white' : 'black';
       tone.tabIndex = -1;
       tone.title = tone.ariaLabel = `${nameOf(key, names)}, ${noteAt(key)} Hz`;

@@ -1,7 +1,7 @@
 // What a block says, as words: for a sentence that names a block, and for who looks for one. Knows no Blockly.
 
 import { COLOURS } from './colours.js';
-import { devicesOf, KINDS, nameOf, onBlock, REMOTE } from '../page/words.js';
+import { devicesOf, KINDS, deviceName, blockLabel, REMOTE } from '../page/words.js';
 import { pageState } from '../page/page_state.js';
 import { hasText } from '../page/texts.js';
 
@@ -19,7 +19,7 @@ const COLOUR_OF_WORD = { ELSE: 'control', ELSEIF: 'control', CM: 'move', DEG: 'm
 function deviceCalled(name) {
   const robot = pageState.robotName.value;
   const device = [...devicesOf(robot, 'sensor'), ...REMOTE, ...devicesOf(robot, 'actuator')].find(({ text }) => text === name);
-  return device ? nameOf(device) : '';
+  return device ? deviceName(device) : '';
 }
 
 /** @param {string} label in which %1 and so on are gaps @param {string[]} fillings of them @returns {string} */
@@ -32,12 +32,12 @@ export function labelOf(kind, word, values) {
   const shape = KINDS[kind];
   if (!shape) return { said: '', colour: '' };
   const [plain = '', unit = ''] = word.split(' ');
-  const name = shape.words.length ? onBlock(plain) : shape.field ? deviceCalled(plain) || plain : '';
+  const name = shape.words.length ? blockLabel(plain) : shape.field ? deviceCalled(plain) || plain : '';
   const places = values ?? [];
-  const fillings = Object.keys(shape.units).length ? [name, places[0] ?? GAP, onBlock(unit || 'seconds'), ...places.slice(1)]
+  const fillings = Object.keys(shape.units).length ? [name, places[0] ?? GAP, blockLabel(unit || 'seconds'), ...places.slice(1)]
     : name ? [name, ...places] : places;
   const more = kind === 'call' || kind === 'def' ? ` ${places.join(', ')}` : '';
-  return { said: filled(onBlock(kind), fillings) + more.trimEnd(), colour: COLOURS[shape.colour] ?? '' };
+  return { said: filled(blockLabel(kind), fillings) + more.trimEnd(), colour: COLOURS[shape.colour] ?? '' };
 }
 
 /** @param {Value} value @returns {Label} its parts are those of a stack machine */
@@ -87,12 +87,12 @@ export function labelOfWord(word) {
   const device = deviceCalled(word);
   if (device) return { said: device, colour: COLOURS['sensors'] ?? '' };
   if (word === 'UNTIL') { // what a wait has more with it
-    const whole = filled(onBlock('wait_until'), []), alone = filled(onBlock('wait'), []);
+    const whole = filled(blockLabel('wait_until'), []), alone = filled(blockLabel('wait'), []);
     return whole.startsWith(alone) ? { said: whole.slice(alone.length).replace(/^[\s,]+/, ''), colour: COLOURS['time'] ?? '' } : null;
   }
   const colour = COLOUR_OF_WORD[word];
-  if (colour) return { said: onBlock(hasText(`block/${word.toLowerCase()}`) ? word.toLowerCase() : word).replace(/%1/, GAP), colour: COLOURS[colour] ?? '' };
+  if (colour) return { said: blockLabel(hasText(`block/${word.toLowerCase()}`) ? word.toLowerCase() : word).replace(/%1/, GAP), colour: COLOURS[colour] ?? '' };
   const kind = kindOf(word);
   if (!kind) return null;
-  return KINDS[kind]?.words.includes(word) ? { said: onBlock(word), colour: COLOURS[KINDS[kind]?.colour ?? ''] ?? '' } : labelOf(kind, '', null);
+  return KINDS[kind]?.words.includes(word) ? { said: blockLabel(word), colour: COLOURS[KINDS[kind]?.colour ?? ''] ?? '' } : labelOf(kind, '', null);
 }

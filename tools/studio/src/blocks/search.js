@@ -1,14 +1,14 @@
 // A field above the groups of blocks: what is typed there is looked for in all of them.
 
 import * as Blockly from 'blockly/core';
-import { drawn, made } from '../page/made.js';
+import { makeSvg, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 
 const GLASS = 'M10.500 4a6.500 6.500 0 1 0 0 13 6.500 6.500 0 0 0 0-13zM15.500 15.500 21 21';
 
 export class Search {
-  place = made('label');
-  #field = made('input');
+  place = makeElement('label');
+  #field = makeElement('input');
   #workspace;
   #find;
 
@@ -22,8 +22,8 @@ export class Search {
     this.place.className = 'search';
     Object.assign(this.#field, { type: 'search', maxLength: 40, autocomplete: 'off', spellcheck: false, placeholder: text('search') });
     this.#field.ariaLabel = text('search_blocks');
-    this.place.append(drawn('svg', { viewBox: '0 0 24 24', width: 20, height: 20, 'aria-hidden': 'true' },
-      drawn('path', { d: GLASS, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.4, 'stroke-linecap': 'round' })), this.#field);
+    this.place.append(makeSvg('svg', { viewBox: '0 0 24 24', width: 20, height: 20, 'aria-hidden': 'true' },
+      makeSvg('path', { d: GLASS, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.4, 'stroke-linecap': 'round' })), this.#field);
     this.#field.addEventListener('input', () => this.#show());
     this.#field.addEventListener('focus', () => {
       if (this.#field.value) this.#show();

@@ -5,10 +5,10 @@ import * as Blockly from 'blockly/core';
 import { ArrowField, LineField, NameField, NumberField, UnitField } from './fields.js';
 import { CALL, DEF } from './own_words.js';
 import { rangeOf } from './places.js';
-import { called } from '../page/texts.js';
-import { devicesOf, KINDS, nameOf, onBlock, pieceOf, REMOTE, tipOf } from '../page/words.js';
+import { labelOf } from '../page/texts.js';
+import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE, tipOf } from '../page/words.js';
 
-/** @import { Place, Kind } from '../page/words.js' */
+/** @import { ValueKind, BlockKind } from '../page/words.js' */
 
 const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
 /** @type {string} */
@@ -53,11 +53,11 @@ export class Checker extends Blockly.ConnectionChecker {
 
 /**
  * @param {Blockly.Block} block
- * @param {Kind} shape
+ * @param {BlockKind} shape
  * @returns {Blockly.Field | null} what stands before its values
  */
 function firstField(block, shape) {
-  if (shape.words.length) return options(shape.words.map((word) => [onBlock(word), word]));
+  if (shape.words.length) return options(shape.words.map((word) => [blockLabel(word), word]));
   if (shape.field === 'name') return new NameField('X');
   if (shape.field === 'line') return new LineField('');
   if (shape.field) return new DeviceField(shape.field);
@@ -75,7 +75,7 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const rows = [...devices(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([nameOf(device), device.text]));
+      const rows = [...devices(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
       const kept = /** @type {any} */ (this).kept;
       if (kept && !rows.some(([, name]) => name === kept)) rows.push([kept, kept]);
       return rows.length ? rows : [['?', '?']];
@@ -95,7 +95,7 @@ class DeviceField extends Blockly.FieldDropdown {
  * @param {Blockly.Block} block
  * @param {string} message
  * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
- * @param {(name: string) => Place} kindOf
+ * @param {(name: string) => ValueKind} kindOf
  * @param {boolean} [isFolded] a question begins a row, so that it is seen beside a lesson, too
  * @param {boolean} [isBroken] so does its second value
  */
@@ -162,7 +162,7 @@ function glow(block, kind) {
   });
 }
 
-/** @param {Blockly.Block} block @param {string} kind @param {Kind} shape */
+/** @param {Blockly.Block} block @param {string} kind @param {BlockKind} shape */
 function build(block, kind, shape) {
   const first = firstField(block, shape);
   const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
@@ -171,12 +171,12 @@ function build(block, kind, shape) {
     first?.setValidator((word) => {
       unit.forceRerender();
       arrow?.forceRerender();
-      if (kind === 'move') fold(block, isNarrow && onBlock(word).length > LONG);
+      if (kind === 'move') fold(block, isNarrow && blockLabel(word).length > LONG);
     });
   }
   if (kind === 'set') first?.setValidator((word) => fill(block, kind, shape.values, word));
   let value = 0;
-  add(block, onBlock(kind), (number) => {
+  add(block, blockLabel(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
     if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
@@ -198,7 +198,7 @@ function build(block, kind, shape) {
  * Gives every place a value of its kind that is there while nothing else is.
  * @param {Blockly.Block} block
  * @param {string} kind
- * @param {Place[]} values
+ * @param {ValueKind[]} values
  * @param {string} [word] that is on it from now on
  */
 function fill(block, kind, values, word = String(block.getFieldValue('WORD') ?? '')) {
@@ -239,7 +239,7 @@ const IF = {
     this.hasElse = hasElse;
     for (let k = 0; k < arms; k += 1) {
       if (this.getInput(`V${k}`)) continue;
-      add(this, onBlock(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
+      add(this, blockLabel(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
       this.getInput(`V${k}`).connection.setShadowState(truth());
       this.appendStatementInput(`B${k}`);
       if (this.getInput('ELSE')) {
@@ -251,7 +251,7 @@ const IF = {
       this.removeInput(`B${k}`);
     }
     if (hasElse && !this.getInput('ELSE')) {
-      this.appendDummyInput('ELSE').appendField(onBlock('else'));
+      this.appendDummyInput('ELSE').appendField(blockLabel('else'));
       this.appendStatementInput('OTHERWISE');
     } else if (!hasElse && this.getInput('ELSE')) {
       this.removeInput('ELSE');
@@ -304,7 +304,7 @@ export function defineBlocks() {
   Blockly.Blocks['program'] = {
     /** @this {Blockly.Block} */
     init() {
-      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [onBlock(word), word])), 'WORD');
+      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [blockLabel(word), word])), 'WORD');
       this.setNextStatement(true);
       this.setDeletable(false);
       this.setMovable(false); // what is dragged is all that is seen
@@ -332,6 +332,6 @@ export function defineBlocks() {
 function deviceTip(block) {
   const name = block.getFieldValue('WORD');
   const device = [...devices('sensor'), ...REMOTE, ...devices('actuator')].find((each) => each.text === name);
-  const label = device && `${name}: ${called(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
+  const label = device && `${name}: ${labelOf(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
   return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

@@ -4,8 +4,8 @@
 
 import { labelOf } from './said.js';
 import { devices } from './shapes.js';
-import { hasText, known, text } from '../page/texts.js';
-import { KINDS, onBlock, pieceOf, PLAIN, plainKind, tipOf, writtenOn } from '../page/words.js';
+import { hasText, textKey, text } from '../page/texts.js';
+import { KINDS, blockLabel, pieceOf, PLAIN_WORDS, plainKind, tipOf, wordsOnBlock } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
 /** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
@@ -33,7 +33,7 @@ function item(type, values = [], word = '') {
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
-/** @param {typeof PLAIN[number]} word @returns {Item} */
+/** @param {typeof PLAIN_WORDS[number]} word @returns {Item} */
 function plain({ text, arguments: values }) {
   return item(plainKind(values.length), values.map(({ sample }) => Number(sample)), text);
 }
@@ -91,7 +91,7 @@ function groups(used) {
     ]],
     ['time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
-      ...PLAIN.map((word) => /** @type {[Level, Item]} */ (['few', plain(word)])),
+      ...PLAIN_WORDS.map((word) => /** @type {[Level, Item]} */ (['few', plain(word)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['control', [
@@ -152,9 +152,9 @@ export function found(words, used) {
   const wanted = plainly(words).split(/\s+/).filter(Boolean);
   const rows = groups(used).flatMap(([group, items]) => items.map(([, each]) => {
     const word = wordOf(each);
-    const choices = word ? [] : (KINDS[each.type]?.words ?? []).map(onBlock);
+    const choices = word ? [] : (KINDS[each.type]?.words ?? []).map(blockLabel);
     const label = plainly([labelOf(each.type, word, null).said, word, each.type, ...choices].join(' '));
-    const called = ` ${peopleSay(each.type, word)}`, tip = plainly(tipOf(each.type)), over = ` ${plainly(text(known(`group/${group}`)))}`;
+    const called = ` ${peopleSay(each.type, word)}`, tip = plainly(tipOf(each.type)), over = ` ${plainly(text(textKey(`group/${group}`)))}`;
     const ranks = wanted.map((part) => [label.startsWith(part), label.includes(part), called.includes(` ${part}`), tip.includes(part), over.includes(` ${part}`), true].indexOf(true));
     return { each, rank: Math.max(...ranks) };
   }));
@@ -164,8 +164,8 @@ export function found(words, used) {
 /** What people say for the words that a block stands for, by the lexicon of their language. @param {string} kind @param {string} word @returns {string} */
 function peopleSay(kind, word) {
   const words = word ? [word] : KINDS[kind]?.words ?? [];
-  const meant = [...words, ...[kind, ...words].flatMap((each) => writtenOn(each)), ...words.some((each) => KINDS['move']?.units[each] === 'DEG') ? ['turn'] : []];
-  return plainly(meant.map((each) => (hasText(`words/${each}`) ? text(known(`words/${each}`)) : '')).join(' '));
+  const meant = [...words, ...[kind, ...words].flatMap((each) => wordsOnBlock(each)), ...words.some((each) => KINDS['move']?.units[each] === 'DEG') ? ['turn'] : []];
+  return plainly(meant.map((each) => (hasText(`words/${each}`) ? text(textKey(`words/${each}`)) : '')).join(' '));
 }
 
 /**
@@ -197,7 +197,7 @@ export function toolbox(level, used, taught, fresh) {
     kind: 'categoryToolbox',
     contents: shown.filter(([, items]) => items.length).map(([name, items]) => ({
       kind: 'category',
-      name: text(known(`group/${name}`)),
+      name: text(textKey(`group/${name}`)),
       categorystyle: name,
       cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, each]) => fresh.includes(pieceOf(each.type, wordOf(each)))) ? ' fresh' : ''}` },
       contents: items.map(([, each]) => ({ ...each, gap: 8 })),

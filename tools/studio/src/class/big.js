@@ -1,7 +1,7 @@
 // What is shown on the big screen: a pupil's program, or how to come into the class.
 
 import { correction, generate } from 'lean-qr';
-import { button, made } from '../page/made.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { sign } from './signs.js';
 import { element, say } from '../page/elements.js';
 import { text } from '../page/texts.js';
@@ -10,10 +10,10 @@ const QUIET = 4; // white modules around a QR code
 
 /** A window over the whole page. STOP is in it, too: what is behind cannot be pressed. */
 class Big {
-  window = made('dialog');
-  title = made('h2');
-  head = made('header', '', this.title);
-  body = made('div');
+  window = makeElement('dialog');
+  title = makeElement('h2');
+  head = makeElement('header', '', this.title);
+  body = makeElement('div');
 
   /** @param {string} id */
   constructor(id) {
@@ -29,9 +29,9 @@ class Big {
   }
 
   finish() {
-    const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    const stop = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stop.className = 'stop';
-    this.head.append(button('close', () => this.window.close()), stop);
+    this.head.append(makeButton('close', () => this.window.close()), stop);
   }
 }
 
@@ -40,22 +40,22 @@ class Big {
 
 export class BigPupil extends Big {
   key = '';
-  #said = made('p');
-  #picture = made('img');
-  #text = made('pre');
-  #history = made('pre');
+  #said = makeElement('p');
+  #picture = makeElement('img');
+  #text = makeElement('pre');
+  #history = makeElement('pre');
   #stop; #next; #lower; #remove;
 
   /** @param {Told} told */
   constructor(told) {
     super('big_pupil');
-    const act = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
+    const act = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => makeButton(key, () => what(this.key));
     this.#lower = act('class_lower_hand', told.lower);
     this.#stop = act('stop', told.stop);
     this.#next = act('class_next', told.next);
     this.#remove = act('class_remove', told.remove);
     const step = (/** @type {'left' | 'right'} */ name, /** @type {number} */ by) => {
-      const found = button('', () => told.step(by), sign(name));
+      const found = makeButton('', () => told.step(by), sign(name));
       found.dataset['label'] = `class_${name}`;
       found.setAttribute('aria-label', text(`class_${name}`));
       return found;
@@ -67,7 +67,7 @@ export class BigPupil extends Big {
     this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, this.#remove);
     this.finish();
     this.#picture.alt = '';
-    const paper = made('div', '', this.#picture);
+    const paper = makeElement('div', '', this.#picture);
     paper.className = 'paper';
     this.#history.tabIndex = 0;
     this.#history.setAttribute('translate', 'no');
@@ -103,13 +103,13 @@ export class BigPupil extends Big {
 }
 
 export class BigCode extends Big {
-  #code = made('strong');
-  #address = made('strong', '', location.origin);
-  #picture = made('canvas');
+  #code = makeElement('strong');
+  #address = makeElement('strong', '', location.origin);
+  #picture = makeElement('canvas');
 
   constructor() {
     super('big_code');
-    this.head.append(made('span'));
+    this.head.append(makeElement('span'));
     this.finish();
     this.title.dataset['text'] = 'class_come';
     say(this.title, text('class_come'));
@@ -118,10 +118,10 @@ export class BigCode extends Big {
     this.#picture.setAttribute('aria-label', text('class_picture'));
     generate(location.origin, { minCorrectionLevel: correction.M })
       .toCanvas(this.#picture, { padX: QUIET, padY: QUIET, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
-    this.body.append(this.#picture, made('ol', '',
-      made('li', '', made('span', 'class_step_wifi')),
-      made('li', '', made('span', 'class_step_open'), this.#address),
-      made('li', '', made('span', 'class_step_code'), this.#code)));
+    this.body.append(this.#picture, makeElement('ol', '',
+      makeElement('li', '', makeElement('span', 'class_step_wifi')),
+      makeElement('li', '', makeElement('span', 'class_step_open'), this.#address),
+      makeElement('li', '', makeElement('span', 'class_step_code'), this.#code)));
   }
 
   /** @param {string} code */

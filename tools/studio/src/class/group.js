@@ -1,13 +1,13 @@
 // A pupil's group: joins one by its name, shows who is in it, and leaves it.
 
-import { button, labelled, made } from '../page/made.js';
+import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { element, say } from '../page/elements.js';
-import { whenEscaped } from '../page/escape.js';
-import { bugSaid } from '../page/faults.js';
+import { onEscapeKey } from '../page/escape.js';
+import { bugSentence } from '../page/faults.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { hearStops, post } from '../robot/host.js';
-import { shown } from '../robot/plain_text.js';
+import { plainText } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { Membership } from './member.js';
 import { named } from './together.js';
@@ -18,12 +18,12 @@ const STOP_TRIES = 5;
 
 export class Group {
   #box;
-  #name = made('input');
-  #form = made('form', '', labelled('group_name', this.#name), made('button', 'group_join'));
-  #there = made('p');
-  #said = made('p');
-  #mates = made('p');
-  #leave = button('group_leave', () => this.leave());
+  #name = makeElement('input');
+  #form = makeElement('form', '', makeLabel('group_name', this.#name), makeElement('button', 'group_join'));
+  #there = makeElement('p');
+  #said = makeElement('p');
+  #mates = makeElement('p');
+  #leave = makeButton('group_leave', () => this.leave());
   /** @type {Membership} */
   #member;
   #stops = 0; // that were pressed while somebody else drives
@@ -34,10 +34,10 @@ export class Group {
   constructor(page, box) {
     this.#member = new Membership(page, {
       say: (key) => this.#show(key),
-      fails: (why) => say(this.#said, bugSaid(why)),
-      others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: shown(each.name) })))),
+      fails: (why) => say(this.#said, bugSentence(why)),
+      others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: plainText(each.name) })))),
     });
-    this.#box = made('section', '', made('h2', 'group'), this.#form, this.#there, this.#said, this.#mates, this.#leave);
+    this.#box = makeElement('section', '', makeElement('h2', 'group'), this.#form, this.#there, this.#said, this.#mates, this.#leave);
     this.#box.id = 'class_group';
     this.#box.hidden = true;
     this.#name.maxLength = 24;
@@ -52,7 +52,7 @@ export class Group {
     box.append(this.#box);
     element('run', HTMLButtonElement).addEventListener('click', () => this.#member.finish());
     element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
-    whenEscaped(() => this.#stop());
+    onEscapeKey(() => this.#stop());
     this.#show('');
   }
 
@@ -76,7 +76,7 @@ export class Group {
     const said = JSON.stringify(groups);
     if (this.#there.dataset['groups'] === said) return;
     this.#there.dataset['groups'] = said;
-    this.#there.replaceChildren(...groups.map(({ name, members }) => button('', () => this.#join(name), members.length ? `${shown(name)} (${members.map((each) => shown(each)).join(', ')})` : shown(name))));
+    this.#there.replaceChildren(...groups.map(({ name, members }) => makeButton('', () => this.#join(name), members.length ? `${plainText(name)} (${members.map((each) => plainText(each)).join(', ')})` : plainText(name))));
   }
 
   leave() {
@@ -108,6 +108,6 @@ export class Group {
     const { isIn } = this.#member;
     this.#form.hidden = this.#there.hidden = isIn;
     this.#leave.hidden = !isIn;
-    say(this.#said, key ? text(key, { group: shown(pageState.group.value) }) : text('group_told'));
+    say(this.#said, key ? text(key, { group: plainText(pageState.groupName.value) }) : text('group_told'));
   }
 }

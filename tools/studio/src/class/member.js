@@ -1,9 +1,9 @@
 // A page's part in a group: the editor, the blocks and what is said of the robot are the group's until it leaves. The
 // teacher's computer has the program (`together.js`); the page's own one from before stays in My programs.
 
-import { keepAt, keptForm } from '../page/kept.js';
+import { storeText, storedJson } from '../page/kept.js';
 import { pageState } from '../page/page_state.js';
-import { known, text } from '../page/texts.js';
+import { textKey, text } from '../page/texts.js';
 import { post } from '../robot/host.js';
 import { Together } from './together.js';
 
@@ -34,7 +34,7 @@ export class Membership {
 
   /** A page that was loaded again goes on, if it was in a group; returns whether it was. */
   goOn() {
-    const before = keptForm(PLACE, 'sessionStorage');
+    const before = storedJson(PLACE, 'sessionStorage');
     const wasIn = Boolean(before?.request?.do && before.page?.name);
     if (wasIn) this.join(before.request, before.page);
     return wasIn;
@@ -49,8 +49,8 @@ export class Membership {
       this.#page.keep();
       const answer = await post({ ...request, text: work.text, ...(before && { before: before.name }) });
       if (answer.failure) {
-        keepAt(PLACE, '', 'sessionStorage');
-        this.#told.say(known(answer.failure));
+        storeText(PLACE, '', 'sessionStorage');
+        this.#told.say(textKey(answer.failure));
         return;
       }
       const together = this.#together = new Together(python, editor, {
@@ -68,9 +68,9 @@ export class Membership {
         runs: (event) => panel.witness(event),
         isBusy: () => views.isBusy,
         answers: (isHeard) => this.#told.say(isHeard ? 'group_in' : 'class_silent'),
-        keep: (page) => keepAt(PLACE, JSON.stringify({ request, page }), 'sessionStorage'),
+        keep: (page) => storeText(PLACE, JSON.stringify({ request, page }), 'sessionStorage'),
       });
-      pageState.group.set(String(answer.group));
+      pageState.groupName.set(String(answer.group));
       this.#told.say('group_in');
       await together.begin(answer, before ?? null).then(() => {
         views.join(together);
@@ -96,10 +96,10 @@ export class Membership {
     this.#together?.end();
     this.#together = null;
     this.#page.views.join(null);
-    this.#page.panel.seeNothing();
+    this.#page.panel.endWitness();
     delete document.documentElement.dataset['group'];
-    keepAt(PLACE, '', 'sessionStorage');
-    pageState.group.set('');
+    storeText(PLACE, '', 'sessionStorage');
+    pageState.groupName.set('');
     this.#told.others([]);
     this.#told.say('');
   }

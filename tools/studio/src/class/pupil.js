@@ -5,12 +5,12 @@
 //
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
-import { button, labelled, made } from '../page/made.js';
+import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { element, say } from '../page/elements.js';
 import { askAs, hearStops, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
-import { shown } from '../robot/plain_text.js';
-import { Failed } from '../robot/transport.js';
+import { plainText } from '../robot/plain_text.js';
+import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
 import { giveRun } from './run.js';
 import { sign } from './signs.js';
@@ -18,7 +18,7 @@ import { clock } from './wall.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
-import { forgetAll, keepAt, kept } from '../page/kept.js';
+import { forgetAll, storeText, storedText } from '../page/kept.js';
 
 const PLACE = 'tiniscript.pupil';
 const BEFORE = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
@@ -48,17 +48,17 @@ export class Pupil {
   #box = element('class_pupil', HTMLElement);
   /** Where the box is until the pupil has joined: whoever opens the class's address sees nothing before it. */
   #entry = element('class_entry', HTMLElement);
-  #code = made('input');
-  #name = made('input');
-  #join = made('form', '', labelled('class_code', this.#code), labelled('class_name', this.#name), made('button', 'class_join'));
-  #said = made('p');
-  #ask = button('class_ask', () => this.#want(true));
-  #quit = button('class_quit', () => this.#want(false));
+  #code = makeElement('input');
+  #name = makeElement('input');
+  #join = makeElement('form', '', makeLabel('class_code', this.#code), makeLabel('class_name', this.#name), makeElement('button', 'class_join'));
+  #said = makeElement('p');
+  #ask = makeButton('class_ask', () => this.#want(true));
+  #quit = makeButton('class_quit', () => this.#want(false));
   /** In the own turn, where the page has not come to its robot by itself. */
-  #connect = button('link_connect', () => this.#panel.byHost());
+  #connect = makeButton('link_connect', () => this.#panel.connectByHost());
   /** There is no first screen in a class. */
-  #own = button('own_robot', () => element('start_own', HTMLButtonElement).click());
-  #hands = button('', () => {
+  #own = makeButton('own_robot', () => element('start_own', HTMLButtonElement).click());
+  #hands = makeButton('', () => {
     this.#stay.hand = !this.#isUp;
     this.#look();
   }, sign('hand', 26));
@@ -91,10 +91,10 @@ export class Pupil {
       event.preventDefault();
       this.#enter();
     });
-    this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit, this.#connect, this.#own));
+    this.#box.append(this.#join, this.#said, makeElement('p', '', this.#ask, this.#quit, this.#connect, this.#own));
     this.#box.hidden = false;
     this.#group = new Group(page, this.#box);
-    const token = kept(PLACE, 'sessionStorage');
+    const token = storedText(PLACE, 'sessionStorage');
     if (token) this.#begin(token);
     else {
       this.#leave('class_welcome');
@@ -106,7 +106,7 @@ export class Pupil {
     if (this.#isEntering) return; // who presses twice is one pupil
     this.#isEntering = true;
     try {
-      const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value, before: kept(BEFORE) });
+      const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value, before: storedText(BEFORE) });
       if (answer.failure) this.#say(answer.failure);
       else this.#begin(answer.token);
     } catch {
@@ -118,8 +118,8 @@ export class Pupil {
   /** @param {string} token */
   #begin(token) {
     askAs(token);
-    keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
-    keepAt(BEFORE, token);
+    storeText(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
+    storeText(BEFORE, token);
     this.#join.hidden = this.#entry.hidden = true;
     element('class_place', HTMLElement).append(this.#box);
     this.#hands.hidden = false;
@@ -134,7 +134,7 @@ export class Pupil {
     this.#showHand(false);
     this.#group.exit();
     askAs('');
-    keepAt(PLACE, '', 'sessionStorage');
+    storeText(PLACE, '', 'sessionStorage');
     this.#join.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
     this.#entry.append(this.#box);
     this.#ask.hidden = this.#quit.hidden = this.#connect.hidden = this.#hands.hidden = true;
@@ -179,7 +179,7 @@ export class Pupil {
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
       if (stay !== this.#stay) return;
-      if (why instanceof Failed && why.reason === 'host_other') {
+      if (why instanceof ConnectionFailure && why.reason === 'host_other') {
         this.#leave('class_gone');
         return;
       }
@@ -210,7 +210,7 @@ export class Pupil {
     if (!given) return;
     const stay = this.#stay;
     if (stay.taken?.key !== given.key) {
-      if (stay.refused === given.key && pageState.group.value) return;
+      if (stay.refused === given.key && pageState.groupName.value) return;
       if (!this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot })) {
         stay.refused = given.key;
         return;
@@ -243,10 +243,10 @@ export class Pupil {
     this.#quit.hidden = place <= 0;
     const time = clock(left_s);
     const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : driver ? 'group_drives' : waiting ? 'class_turn' : 'class_turn_alone';
-    this.#say(key, { place, waiting, robots, time, name: shown(driver || name), robot: shown(robot) });
+    this.#say(key, { place, waiting, robots, time, name: plainText(driver || name), robot: plainText(robot) });
     if (isNew && this.#panel.isFree) {
       element('side_real', HTMLButtonElement).click();
-      this.#panel.byHost();
+      this.#panel.connectByHost();
     }
     this.#connect.hidden = place !== 0 || !this.#panel.isFree;
   }

@@ -1,6 +1,6 @@
 // Signs of a class: drawn with lines, in the color of what is around them.
 
-import { drawn } from '../page/made.js';
+import { makeSvg } from '../page/made.js';
 
 /** What is drawn in 24 by 24. @type {Record<string, string>} */
 const LINES = {
@@ -17,6 +17,6 @@ const LINES = {
 
 /** @param {string} name @param {number} [size] */
 export function sign(name, size = 24) {
-  return drawn('svg', { viewBox: '0 0 24 24', width: size, height: size, 'aria-hidden': 'true' },
-    drawn('path', { d: LINES[name] ?? '', fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' }));
+  return makeSvg('svg', { viewBox: '0 0 24 24', width: size, height: size, 'aria-hidden': 'true' },
+    makeSvg('path', { d: LINES[name] ?? '', fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' }));
 }

@@ -8,16 +8,16 @@ import { Giving } from './giving.js';
 import { openWork, saveWork } from './keeping.js';
 import { Membership } from './member.js';
 import { runOf } from './run.js';
-import { button, labelled, made } from '../page/made.js';
+import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { sign } from './signs.js';
 import { clock, Wall } from './wall.js';
 import { element, say } from '../page/elements.js';
-import { bugSaid } from '../page/faults.js';
+import { bugSentence } from '../page/faults.js';
 import { hostPorts, post } from '../robot/host.js';
-import { shown } from '../robot/plain_text.js';
+import { plainText } from '../robot/plain_text.js';
 import { pageState } from '../page/page_state.js';
-import { known, text } from '../page/texts.js';
-import { isSecond } from '../page/twice.js';
+import { textKey, text } from '../page/texts.js';
+import { isSecondPress } from '../page/twice.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[], own_robot: import('../page/own_robot.js').OwnRobot}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
@@ -49,22 +49,22 @@ export class Teacher {
     lower: (key) => this.#ofPupil('class_hand', key),
   });
   #bigCode = new BigCode();
-  #code = made('strong');
-  #said = made('p');
-  #chips = made('ul');
-  #robots = made('ul');
-  #empty = made('div', '', made('h2', 'class_nobody'), made('p', 'class_nobody_told'));
-  #ports = made('select');
+  #code = makeElement('strong');
+  #said = makeElement('p');
+  #chips = makeElement('ul');
+  #robots = makeElement('ul');
+  #empty = makeElement('div', '', makeElement('h2', 'class_nobody'), makeElement('p', 'class_nobody_told'));
+  #ports = makeElement('select');
   #minutes = number('1', '60');
   #places = number('1', '60');
-  #erases = made('input');
-  #settings = made('dialog');
-  #file = made('input');
+  #erases = makeElement('input');
+  #settings = makeElement('dialog');
+  #file = makeElement('input');
   #end = pressedTwice('class_end', () => this.#ask({ do: 'class_over', erases: this.#erases.checked }));
   #giving = new Giving((key, pupil) => this.#ask({ do: 'class_give_back', key, pupil }));
-  #giveBack = button('class_give_back', () => this.#giving.window.showModal());
+  #giveBack = makeButton('class_give_back', () => this.#giving.window.showModal());
   #anew = pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' }));
-  #leave = button('', () => this.#leaveGroup());
+  #leave = makeButton('', () => this.#leaveGroup());
   /** @type {Membership} */
   #member;
   #visitSaid = ''; // of the group in which the teacher is
@@ -86,7 +86,7 @@ export class Teacher {
     this.#pictures = new Pictures(page.python, 'class_blocks');
     this.#member = new Membership(page, {
       say: (key) => this.#showVisit(key),
-      fails: (why) => pageState.note.set(bugSaid(why)),
+      fails: (why) => pageState.note.set(bugSentence(why)),
       others: () => {}, // their names are beside the lines
     });
     const side = element('side_class', HTMLButtonElement);
@@ -102,9 +102,9 @@ export class Teacher {
     this.#putTop();
     this.#putSettings();
     this.#giveBack.hidden = this.#anew.hidden = true;
-    const gear = button('class_settings', () => this.#openSettings());
+    const gear = makeButton('class_settings', () => this.#openSettings());
     gear.id = 'class_settings';
-    const bar = made('div', '', this.#said, this.#chips, this.#giveBack, this.#anew, gear);
+    const bar = makeElement('div', '', this.#said, this.#chips, this.#giveBack, this.#anew, gear);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#empty);
     pageState.language.subscribe(() => this.#showWords());
@@ -121,9 +121,9 @@ export class Teacher {
     const stop = element('stop', HTMLButtonElement);
     stop.dataset['text'] = 'class_stop_all';
     stop.textContent = text('class_stop_all');
-    const come = button('', () => this.#bigCode.show(this.#code.textContent ?? ''), made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
+    const come = makeButton('', () => this.#bigCode.show(this.#code.textContent ?? ''), makeElement('span', 'class_address'), makeElement('strong', '', location.origin), makeElement('span', 'class_code'), this.#code);
     come.id = 'class_come';
-    const studio = button('class_studio', () => this.#showStudio());
+    const studio = makeButton('class_studio', () => this.#showStudio());
     studio.id = 'class_studio';
     this.#leave.id = 'class_leave';
     this.#leave.hidden = true;
@@ -132,27 +132,27 @@ export class Teacher {
   }
 
   #putSettings() {
-    const close = button('close', () => this.#settings.close());
-    const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    const close = makeButton('close', () => this.#settings.close());
+    const stop = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stop.className = 'stop';
     this.#settings.id = this.#settings.className = 'class_window';
     this.#settings.setAttribute('aria-labelledby', 'class_window_title');
-    const title = made('h2', 'class_settings');
+    const title = makeElement('h2', 'class_settings');
     title.id = 'class_window_title';
     this.#erases.type = 'checkbox';
     this.#file.type = 'file';
     this.#file.accept = '.json,application/json';
     this.#file.hidden = true;
     this.#file.addEventListener('change', () => this.#open());
-    this.#settings.append(made('header', '', title, close, stop),
-      made('section', '', made('h3', 'class_robots'), this.#robots,
-        made('p', '', labelled('link_port', this.#ports), button('class_give', () => this.#give()), button('link_look', () => this.#lookForPorts())),
-        made('p', '', labelled('class_minutes', this.#minutes)), made('p', '', labelled('class_places', this.#places))),
-      made('section', '', made('h3', 'class_work'), made('p', 'class_work_told'),
-        made('p', '', button('class_save', () => this.#save()), button('class_open', () => this.#file.click()), this.#file)),
-      made('section', '', made('h3', 'class_code'),
-        made('p', '', button('class_new_code', () => this.#ask({ do: 'class_code' })), pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' })))),
-      made('section', '', made('h3', 'class_end'), made('p', '', made('label', '', this.#erases, made('span', 'class_erases')), this.#end)));
+    this.#settings.append(makeElement('header', '', title, close, stop),
+      makeElement('section', '', makeElement('h3', 'class_robots'), this.#robots,
+        makeElement('p', '', makeLabel('link_port', this.#ports), makeButton('class_give', () => this.#give()), makeButton('link_look', () => this.#lookForPorts())),
+        makeElement('p', '', makeLabel('class_minutes', this.#minutes)), makeElement('p', '', makeLabel('class_places', this.#places))),
+      makeElement('section', '', makeElement('h3', 'class_work'), makeElement('p', 'class_work_told'),
+        makeElement('p', '', makeButton('class_save', () => this.#save()), makeButton('class_open', () => this.#file.click()), this.#file)),
+      makeElement('section', '', makeElement('h3', 'class_code'),
+        makeElement('p', '', makeButton('class_new_code', () => this.#ask({ do: 'class_code' })), pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' })))),
+      makeElement('section', '', makeElement('h3', 'class_end'), makeElement('p', '', makeElement('label', '', this.#erases, makeElement('span', 'class_erases')), this.#end)));
     document.body.append(this.#settings);
   }
 
@@ -186,7 +186,7 @@ export class Teacher {
 
   /** @param {import('../page/texts.js').Key | ''} key */
   #showVisit(key) {
-    const group = shown(pageState.group.value);
+    const group = plainText(pageState.groupName.value);
     this.#leave.hidden = !this.#member.isIn;
     say(this.#leave, text('class_leave_of', { name: group }));
     if (this.#visitSaid === key) return;
@@ -199,13 +199,13 @@ export class Teacher {
     const pupil = this.#pupil(key);
     if (!pupil || this.#playing) return;
     this.#playing = key;
-    this.#tell(text('class_run_asked', { name: shown(pupil.name) }));
+    this.#tell(text('class_run_asked', { name: plainText(pupil.name) }));
     const run = await runOf(pupil.number).catch(() => null);
     this.#playing = '';
-    this.#tell(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: shown(pupil.name) }));
+    this.#tell(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: plainText(pupil.name) }));
     if (!run) return;
     this.#showStudio();
-    await this.#page.openRun(new File([run], `${shown(pupil.name)}.tsr`));
+    await this.#page.openRun(new File([run], `${plainText(pupil.name)}.tsr`));
   }
 
   /** @param {string} said beside the count, until the next one */
@@ -268,7 +268,7 @@ export class Teacher {
   async #lookForPorts() {
     try {
       const found = await hostPorts();
-      this.#ports.replaceChildren(...found.map(({ port, name }) => new Option(shown([name, port].filter(Boolean).join(' · ')), port)));
+      this.#ports.replaceChildren(...found.map(({ port, name }) => new Option(plainText([name, port].filter(Boolean).join(' · ')), port)));
     } catch {
       this.#say('why_host_gone');
     }
@@ -289,7 +289,7 @@ export class Teacher {
     this.#file.value = '';
     if (!file) return;
     const count = await openWork(file);
-    this.#told = count ? text('class_opened', { count }) : text('class_not_opened', { name: shown(file.name) });
+    this.#told = count ? text('class_opened', { count }) : text('class_not_opened', { name: plainText(file.name) });
     this.#known.forEach((known, key) => {
       if (!this.#pupil(key)) known.version = -1;
     });
@@ -315,7 +315,7 @@ export class Teacher {
       return;
     }
     const hands = pupils.filter(({ hand }) => hand).sort((one, other) => one.hand - other.hand);
-    const named = hands.slice(0, MOST_NAMED).map(({ name }) => shown(name)).join(', ') + (hands.length > MOST_NAMED ? ` +${hands.length - MOST_NAMED}` : '');
+    const named = hands.slice(0, MOST_NAMED).map(({ name }) => plainText(name)).join(', ') + (hands.length > MOST_NAMED ? ` +${hands.length - MOST_NAMED}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
     say(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
@@ -349,12 +349,12 @@ export class Teacher {
 
   /** @param {RobotRow[]} robots */
   #showRobots(robots) {
-    const rows = robots.map((each) => ({ ...each, title: shown(each.name || each.port), said: each.pupil ? text('class_held', { name: shown(each.pupil), time: clock(each.left_s) }) : text('class_free') }));
+    const rows = robots.map((each) => ({ ...each, title: plainText(each.name || each.port), said: each.pupil ? text('class_held', { name: plainText(each.pupil), time: clock(each.left_s) }) : text('class_free') }));
     const seen = JSON.stringify(rows.map(({ title, pupil }) => [title, Boolean(pupil)]));
     if (this.#chips.dataset['seen'] !== seen) {
       this.#chips.dataset['seen'] = seen;
       this.#chips.replaceChildren(...rows.map(({ title, pupil }) => {
-        const chip = made('li', '', sign('robot', 20), made('strong', '', title), made('span'));
+        const chip = makeElement('li', '', sign('robot', 20), makeElement('strong', '', title), makeElement('span'));
         chip.classList.toggle('held', Boolean(pupil));
         return chip;
       }));
@@ -364,8 +364,8 @@ export class Teacher {
     const ports = JSON.stringify(robots.map(({ port, name }) => [port, name]));
     if (this.#robots.dataset['seen'] === ports) return;
     this.#robots.dataset['seen'] = ports;
-    this.#robots.replaceChildren(...robots.map(({ port, name }) => made('li', '', made('strong', '', shown([name, port].filter(Boolean).join(' · '))), ' ',
-      button('class_take', () => this.#ask({ do: 'class_robot', port, gives: false })))));
+    this.#robots.replaceChildren(...robots.map(({ port, name }) => makeElement('li', '', makeElement('strong', '', plainText([name, port].filter(Boolean).join(' · '))), ' ',
+      makeButton('class_take', () => this.#ask({ do: 'class_robot', port, gives: false })))));
   }
 
   /** Fetches a program that is another one now, and wants its picture. @param {string} key @param {number} version */
@@ -399,10 +399,10 @@ export class Teacher {
     }
     const { pupil } = tile;
     const known = this.#known.get(key);
-    const drives = pupil?.robot ? text('class_drives', { robot: shown(pupil.robot) }) : '';
+    const drives = pupil?.robot ? text('class_drives', { robot: plainText(pupil.robot) }) : '';
     const done = text('class_lessons', { done: tile.lessons.length, all: this.#state?.lessons ?? 0 });
     this.#big.show({
-      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'), history: known?.history ?? [],
+      key, title: plainText(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'), history: known?.history ?? [],
       drives: Boolean(drives), hand: Boolean(pupil?.hand),
     });
   }
@@ -425,14 +425,14 @@ export class Teacher {
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
   let isSure = false, timer = 0;
-  const found = button(key, (event) => {
-    if (isSecond(event)) return; // a habit is no second thought
+  const found = makeButton(key, (event) => {
+    if (isSecondPress(event)) return; // a habit is no second thought
     if (isSure) act();
     sure(!isSure);
   });
   const sure = (/** @type {boolean} */ now) => {
     isSure = now;
-    const said = now ? known(`${key}_sure`) : key;
+    const said = now ? textKey(`${key}_sure`) : key;
     found.dataset['text'] = said;
     found.textContent = text(said);
     clearTimeout(timer);
@@ -473,7 +473,7 @@ function keptOf(key) {
 
 /** @param {string} least @param {string} most */
 function number(least, most) {
-  const field = made('input');
+  const field = makeElement('input');
   Object.assign(field, { type: 'number', min: least, max: most });
   return field;
 }

@@ -5,9 +5,9 @@
 
 import { Annotation, ChangeSet, StateEffect, StateField, Transaction } from '@codemirror/state';
 import { Decoration, EditorView, WidgetType } from '@codemirror/view';
-import { made } from '../page/made.js';
+import { makeElement } from '../page/made.js';
 import { post } from '../robot/host.js';
-import { Failed, pause } from '../robot/transport.js';
+import { ConnectionFailure, pause } from '../robot/transport.js';
 
 const HELD_MS = 12_000; // the class holds a request for 8 s
 const AGAIN_MS = 700; // where the class does not answer
@@ -46,7 +46,7 @@ const DECIDED_MS = 2000; // for what was done before an undo
  * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
  * @property {(isHeard: boolean) => void} answers whether the class answers
  * @property {(places: Place[]) => void} places where the others are in the text
- * @property {(event: import('../robot/panel.js').Witnessed) => void} runs the group's robot, which another page drives, has told this
+ * @property {(event: import('../robot/panel.js').GroupRobotEvent) => void} runs the group's robot, which another page drives, has told this
  * @property {() => boolean} isBusy whether somebody has a block in the hand, or a field open
  */
 
@@ -69,7 +69,7 @@ class Name extends WidgetType {
 
   toDOM() {
     const { name, mark, writes } = this.other;
-    const found = made('span', '', writes ? `${name} …` : name);
+    const found = makeElement('span', '', writes ? `${name} …` : name);
     found.className = `cm-mate cm-mate-${mark}`;
     return found;
   }
@@ -107,7 +107,7 @@ const looks = EditorView.baseTheme({
 /** Mates as a list of names in their colours. @param {Other[]} all */
 export function named(all) {
   return all.map(({ name, mark }) => {
-    const found = made('span', '', name);
+    const found = makeElement('span', '', name);
     found.className = 'mate';
     found.style.setProperty('--mate', COLORS[mark] ?? '');
     return found;
@@ -335,7 +335,7 @@ export class Together {
     } catch (why) {
       if (this.#isOver) return null;
       this.#heard.answers(false);
-      await pause(why instanceof Failed ? SLOW_MS : AGAIN_MS);
+      await pause(why instanceof ConnectionFailure ? SLOW_MS : AGAIN_MS);
       return null;
     }
     if (this.#isOver) return null;
@@ -364,7 +364,7 @@ export class Together {
     await this.#step();
   }
 
-  /** Two answers may tell the same. @param {{ran: [string, number], runs?: import('../robot/panel.js').Witnessed[]}} news */
+  /** Two answers may tell the same. @param {{ran: [string, number], runs?: import('../robot/panel.js').GroupRobotEvent[]}} news */
   #hearRuns({ ran: [key, newest], runs = [] }) {
     const known = key === this.#ran[0] ? this.#ran[1] : 0;
     this.#ran = [key, Math.max(known, newest)];

@@ -3,10 +3,10 @@
 // Names and robots are put there as text, never as markup.
 
 import { say } from '../page/elements.js';
-import { button, drawn, made } from '../page/made.js';
+import { makeButton, makeSvg, makeElement } from '../page/made.js';
 import { COLOURS } from '../page/own_robot.js';
 import { sign } from './signs.js';
-import { shown } from '../robot/plain_text.js';
+import { plainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */
@@ -28,7 +28,7 @@ const HIGHEST = 260;
 const GAP = 6;
 
 export class Wall {
-  element = made('ul');
+  element = makeElement('ul');
   #told;
   /** @type {Map<string, Tile>} */
   #tiles = new Map();
@@ -77,34 +77,34 @@ export class Wall {
 
   /** @param {Seen} of @returns {Tile} */
   #made({ key }) {
-    const see = button('', () => this.#told.see(key));
-    const hand = button('', () => this.#told.lower(key), sign('hand', 26));
-    const out = button('', () => this.#told.remove(key), sign('out', 20));
-    const play = button('', () => this.#told.play(key), sign('run', 20));
-    const join = button('', () => this.#told.join(key), sign('join', 20));
-    const name = made('strong'), picture = made('img'), empty = made('span', 'class_empty');
-    const badge = made('span'), pips = made('span'), said = made('span');
+    const see = makeButton('', () => this.#told.see(key));
+    const hand = makeButton('', () => this.#told.lower(key), sign('hand', 26));
+    const out = makeButton('', () => this.#told.remove(key), sign('out', 20));
+    const play = makeButton('', () => this.#told.play(key), sign('run', 20));
+    const join = makeButton('', () => this.#told.join(key), sign('join', 20));
+    const name = makeElement('strong'), picture = makeElement('img'), empty = makeElement('span', 'class_empty');
+    const badge = makeElement('span'), pips = makeElement('span'), said = makeElement('span');
     for (const [looks, each] of Object.entries({ see, hand, out, play, join, badge, pips, said, empty })) each.className = looks;
     picture.alt = '';
     picture.hidden = true;
     empty.hidden = true; // until its program is known
-    const own = drawn('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, drawn('use', { href: '#drawn_robot' }));
-    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, own, see, hand, play, join, out);
+    const own = makeSvg('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
+    const item = makeElement('li', '', name, makeElement('div', '', picture, empty), makeElement('p', '', pips, said), badge, own, see, hand, play, join, out);
     return { item, see, own, name, hand, out, play, join, picture, empty, badge, pips, said };
   }
 
   /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
   #fill(tile, { key, name, lessons: done, pupil }, lessons) {
     const isGroup = key.startsWith('group '); // whose pupils leave it
-    const plain = shown(name);
+    const plain = plainText(name);
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
-    const drives = pupil?.robot ? shown(pupil.robot) : '';
+    const drives = pupil?.robot ? plainText(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
     const { name: own_name = '', colour = 0 } = pupil?.own_robot ?? {};
     const [body, edge] = COLOURS[colour] ?? COLOURS[0];
     tile.own.style.setProperty('--robot', body);
     tile.own.style.setProperty('--robot-edge', edge);
-    say(tile.name, [plain, shown(own_name)].filter(Boolean).join(' · '));
+    say(tile.name, [plain, plainText(own_name)].filter(Boolean).join(' · '));
     say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
     tile.play.hidden = isGroup || state === 'gone' || state === 'away';
@@ -114,14 +114,14 @@ export class Wall {
     tile.badge.hidden = !badge;
     if (tile.badge.dataset['said'] !== badge) {
       tile.badge.dataset['said'] = badge;
-      tile.badge.replaceChildren(sign(drives ? 'robot' : 'queue', 18), made('span', '', badge));
+      tile.badge.replaceChildren(sign(drives ? 'robot' : 'queue', 18), makeElement('span', '', badge));
       tile.badge.classList.toggle('drives', Boolean(drives));
     }
     const marks = Array.from({ length: lessons }, (_, k) => (done.some((each) => Number.parseInt(each, 10) === k + 1) ? '●' : '○')).join('');
     if (tile.pips.dataset['marks'] !== marks) {
       tile.pips.dataset['marks'] = marks;
       tile.pips.replaceChildren(...[...marks].map((mark) => {
-        const pip = made('i');
+        const pip = makeElement('i');
         if (mark === '●') pip.className = 'done';
         return pip;
       }));

@@ -1,6 +1,6 @@
 // What is seen when somebody has solved a task: confetti over the page, for a moment. Nothing moves for whoever wants that.
 
-import { made } from '../page/made.js';
+import { makeElement } from '../page/made.js';
 
 const LASTS_MS = 1600;
 const PIECES = 90;
@@ -11,7 +11,7 @@ const FALL = 1.1; // heights of the page in a second, squared
 export function celebrate() {
   if (matchMedia('(prefers-reduced-motion: reduce)').matches) return;
   document.querySelector('.confetti')?.remove();
-  const canvas = made('canvas'), pen = canvas.getContext('2d');
+  const canvas = makeElement('canvas'), pen = canvas.getContext('2d');
   if (!pen) return;
   canvas.className = 'confetti';
   canvas.setAttribute('aria-hidden', 'true');

@@ -4,17 +4,17 @@
 // ended and nothing else has to wait for it. Then the run that was judged is seen.
 
 import { element } from '../page/elements.js';
-import { button, made } from '../page/made.js';
-import { bugSaid } from '../page/faults.js';
+import { makeButton, makeElement } from '../page/made.js';
+import { bugSentence } from '../page/faults.js';
 import { labelOfBlock, labelOfWord } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { elementOf, filled } from './page.js';
 import { celebrate } from './celebration.js';
 import { keepDone, keepStars, lessonsDone, starsInAll } from './progress.js';
-import { offer, pictured, worldPicture } from '../page/pictures.js';
+import { replaceOptions, pictureOption, worldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
-import { isSecond } from '../page/twice.js';
+import { isSecondPress } from '../page/twice.js';
 
 /** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {{text: string, robot: string, name: string}} Program */
@@ -102,7 +102,7 @@ export class Lessons {
       this.#check.focus();
     });
     this.#next.addEventListener('click', (event) => {
-      if (isSecond(event)) return; // one step is seen after the other
+      if (isSecondPress(event)) return; // one step is seen after the other
       if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
@@ -119,7 +119,7 @@ export class Lessons {
       this.#fill();
     });
     pageState.robotName.subscribe(() => this.#fill());
-    pageState.side.subscribe((side) => {
+    pageState.sideId.subscribe((side) => {
       if (side !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
     });
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
@@ -184,9 +184,9 @@ export class Lessons {
 
   #list() {
     const done = lessonsDone();
-    offer(this.#choice, this.#lessons.map((lesson, k) => {
+    replaceOptions(this.#choice, this.#lessons.map((lesson, k) => {
       const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return pictured(`${k + 1}. ${this.#titleOf(lesson)}${mark}`, String(k + 1), worldPicture(lesson.world));
+      return pictureOption(`${k + 1}. ${this.#titleOf(lesson)}${mark}`, String(k + 1), worldPicture(lesson.world));
     }));
     this.#choice.value = String(this.#number);
   }
@@ -230,13 +230,13 @@ export class Lessons {
     this.#hint.hidden = !this.#steps[step]?.hint;
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
       const isTask = k === this.#steps.length - 1;
-      const tile = button('', () => {
+      const tile = makeButton('', () => {
         this.#go(k);
         element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
       }, isTask ? '★' : String(k + 1));
       tile.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
       if (k === step) tile.setAttribute('aria-current', 'step');
-      return made('li', '', tile);
+      return makeElement('li', '', tile);
     }));
     this.#lay();
   }
@@ -303,7 +303,7 @@ export class Lessons {
   /** Whether the program in the editor is right on its robot and wrong on a lesson's. @param {Lesson} lesson */
   async #isForOther(lesson) {
     const now = pageState.programText.value, robot = pageState.robotName.value;
-    if (robot === lesson.robot || pageState.isRobotNamed.value || pageState.group.value || !now.trim()) return false;
+    if (robot === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !now.trim()) return false;
     const program = new TextEncoder().encode(now), language = currentLanguage();
     /** @param {string} each */
     const isRight = async (each) => Boolean((await this.#page.python.ask({ do: 'check', robot: each, language }, program)).image);
@@ -327,7 +327,7 @@ export class Lessons {
   leave() {
     const own = this.#isOfLesson ? this.#own : null;
     this.#own = null;
-    if (!own || pageState.group.value) return;
+    if (!own || pageState.groupName.value) return;
     this.#page.exchange(own);
     this.#page.driving.leaveLesson();
   }
@@ -388,7 +388,7 @@ export class Lessons {
   #fail(why) {
     this.#forget();
     this.#choice.value = String(this.#number); // so that another one can be chosen again
-    this.#said.textContent = bugSaid(why);
+    this.#said.textContent = bugSentence(why);
   }
 
   /** @param {Answer & {verdict: keyof typeof SAID}} answer */

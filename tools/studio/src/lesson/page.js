@@ -1,6 +1,6 @@
 // A step of a lesson: its paragraphs and programs become elements. Knows no lesson.
 
-import { button, made } from '../page/made.js';
+import { makeButton, makeElement } from '../page/made.js';
 
 const PIXELS = 2.6; // of a picture of blocks, for one of the page
 
@@ -28,12 +28,12 @@ export function elementOf({ kind, rows }, reader) {
  * @param {Reader} reader
  */
 function programOf(program, { use, draw }) {
-  const written = made('pre', '', program);
-  const place = made('div', '', written, button('lesson_use', () => use(`${program}\n`)));
+  const written = makeElement('pre', '', program);
+  const place = makeElement('div', '', written, makeButton('lesson_use', () => use(`${program}\n`)));
   place.className = 'program';
   draw?.(program, (address) => {
     if (!address) return;
-    const picture = made('img');
+    const picture = makeElement('img');
     picture.alt = ''; // its text is read
     picture.addEventListener('load', () => {
       picture.width = picture.naturalWidth / PIXELS;
@@ -52,11 +52,11 @@ function programOf(program, { use, draw }) {
  * @param {Reader} reader
  */
 export function filled(kind, line, { say }) {
-  return made(kind, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
+  return makeElement(kind, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
     const mark = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
     if (!mark || part.length <= 2 * mark) return part;
     const inside = part.slice(mark, -mark), label = mark === 1 ? say(inside) : null;
-    const place = made(mark === 2 ? 'strong' : label ? 'span' : 'code', '', label?.said ?? inside);
+    const place = makeElement(mark === 2 ? 'strong' : label ? 'span' : 'code', '', label?.said ?? inside);
     if (label) {
       place.className = 'on_block';
       place.style.setProperty('--colour', label.colour);

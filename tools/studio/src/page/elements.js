@@ -7,17 +7,17 @@
  * @returns {T}
  */
 export function element(id, kind) {
-  const found = document.getElementById(id);
-  if (!(found instanceof kind)) throw new Error(`no element ${id}`);
-  return found;
+  const node = document.getElementById(id);
+  if (!(node instanceof kind)) throw new Error(`no element ${id}`);
+  return node;
 }
 
-/** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} place @param {string} said */
-export function say(place, said) {
-  if (place.textContent !== said) place.textContent = said;
+/** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} target @param {string} text */
+export function say(target, text) {
+  if (target.textContent !== text) target.textContent = text;
 }
 
-/** Hides it or shows it, unless it is so. @param {HTMLElement} place @param {boolean} isHidden */
-export function hide(place, isHidden) {
-  if (place.hidden !== isHidden) place.hidden = isHidden;
+/** Hides it or shows it, unless it is so. @param {HTMLElement} target @param {boolean} isHidden */
+export function hide(target, isHidden) {
+  if (target.hidden !== isHidden) target.hidden = isHidden;
 }

@@ -1,8 +1,8 @@
 // Escape stops the robot. In front of a window it closes that window, and nothing else.
 
-/** @param {() => void} act what the key does while no window is open */
-export function whenEscaped(act) {
+/** @param {() => void} onEscape what the key does while no window is open */
+export function onEscapeKey(onEscape) {
   addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && !document.querySelectorAll('dialog[open]').length) act();
+    if (event.key === 'Escape' && !document.querySelectorAll('dialog[open]').length) onEscape();
   }, { capture: true });
 }

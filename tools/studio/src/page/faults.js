@@ -1,16 +1,16 @@
 // What is said of a fault of a program, on the virtual robot and on a real one, and of a mistake of ours.
 
-import { shown } from '../robot/plain_text.js';
+import { plainText } from '../robot/plain_text.js';
 import { hasText, text } from './texts.js';
 
 /** @param {unknown} fault its name @returns {string} a sentence that stands after its line */
-export function faultSaid(fault) {
-  const name = shown(String(fault));
+export function faultSentence(fault) {
+  const name = plainText(String(fault));
   const key = `fault_${name}`;
   return text(hasText(key) ? key : 'fault_other', { name });
 }
 
-/** @param {unknown} why a mistake of ours: the last line of it is said */
-export function bugSaid(why) {
-  return text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+/** @param {unknown} error a mistake of ours: the last line of it is said */
+export function bugSentence(error) {
+  return text('bug', { why: String(error).split('\n').filter(Boolean).at(-1) ?? '' });
 }

@@ -5,13 +5,13 @@ import { element } from './elements.js';
 // One more than the compiler reads: it says that the file is too large.
 const MOST_BYTES = 1_000_001;
 
-/** @param {string} id of the input @param {(file: File) => void} act with each file that a person chooses there */
-export function whenChosen(id, act) {
+/** @param {string} id of the input @param {(file: File) => void} onFile with each file that a person chooses there */
+export function onFileChosen(id, onFile) {
   const input = element(id, HTMLInputElement);
   input.addEventListener('change', () => {
-    const chosen = input.files?.[0];
+    const file = input.files?.[0];
     input.value = ''; // the same one can be chosen again
-    if (chosen) act(chosen);
+    if (file) onFile(file);
   });
 }
 
@@ -36,10 +36,10 @@ export function download(name, text) {
  * @param {Blob} file
  */
 export function downloadFile(name, file) {
-  const address = URL.createObjectURL(file);
+  const url = URL.createObjectURL(file);
   const link = document.createElement('a');
-  link.href = address;
+  link.href = url;
   link.download = name;
   link.click();
-  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

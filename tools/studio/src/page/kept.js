@@ -1,39 +1,39 @@
 // What this page keeps on this device, for a tab or for all of them. What is kept may be missing, damaged, or
 // of another tab: who reads it checks it.
 
-/** @typedef {'localStorage' | 'sessionStorage'} Store of all tabs, or of this one */
+/** @typedef {'localStorage' | 'sessionStorage'} StoreName of all tabs, or of this one */
 
-const OURS = 'tiniscript.'; // all places of this page begin with it
+const KEY_PREFIX = 'tiniscript.'; // all places of this page begin with it
 
-let isForgotten = false;
+let isForgetting = false;
 /** @type {Map<string, string>} what is kept from then on, until the page is closed */
-const remembered = new Map();
+const memoryStore = new Map();
 
-/** What is kept at a place; empty for nothing. @param {string} place @param {Store} [store] @returns {string} */
-export function kept(place, store = 'localStorage') {
-  if (isForgotten) return remembered.get(store + place) ?? '';
+/** What is kept at a place; empty for nothing. @param {string} key @param {StoreName} [storeName] @returns {string} */
+export function storedText(key, storeName = 'localStorage') {
+  if (isForgetting) return memoryStore.get(storeName + key) ?? '';
   try {
-    return window[store].getItem(place) ?? '';
+    return window[storeName].getItem(key) ?? '';
   } catch {
     return ''; // no storage here
   }
 }
 
-/** What is kept at a place as JSON; null for nothing. @param {string} place @param {Store} [store] @returns {any} */
-export function keptForm(place, store) {
+/** What is kept at a place as JSON; null for nothing. @param {string} key @param {StoreName} [storeName] @returns {any} */
+export function storedJson(key, storeName) {
   try {
-    return JSON.parse(kept(place, store) || 'null');
+    return JSON.parse(storedText(key, storeName) || 'null');
   } catch {
     return null; // not what we have put there
   }
 }
 
-/** Keeps it at a place, empty for nothing; returns whether that was possible. @param {string} place @param {string} whole @param {Store} [store] */
-export function keepAt(place, whole, store = 'localStorage') {
-  if (isForgotten) return Boolean(remembered.set(store + place, whole));
+/** Keeps it at a place, empty for nothing; returns whether that was possible. @param {string} key @param {string} text @param {StoreName} [storeName] */
+export function storeText(key, text, storeName = 'localStorage') {
+  if (isForgetting) return Boolean(memoryStore.set(storeName + key, text));
   try {
-    if (whole) window[store].setItem(place, whole);
-    else window[store].removeItem(place);
+    if (text) window[storeName].setItem(key, text);
+    else window[storeName].removeItem(key);
     return true;
   } catch {
     return false; // full, or forbidden
@@ -42,10 +42,10 @@ export function keepAt(place, whole, store = 'localStorage') {
 
 /** Deletes all that this page has kept on this device; it keeps nothing there from then on. */
 export function forgetAll() {
-  isForgotten = true;
-  for (const store of /** @type {const} */ (['sessionStorage', 'localStorage'])) {
+  isForgetting = true;
+  for (const storeName of /** @type {const} */ (['sessionStorage', 'localStorage'])) {
     try {
-      for (const place of Object.keys(window[store])) if (place.startsWith(OURS)) window[store].removeItem(place);
+      for (const key of Object.keys(window[storeName])) if (key.startsWith(KEY_PREFIX)) window[storeName].removeItem(key);
     } catch {
       // no storage here
     }

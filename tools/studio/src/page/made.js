@@ -4,38 +4,38 @@ import { text } from './texts.js';
 
 /**
  * @template {keyof HTMLElementTagNameMap} K
- * @param {K} kind
+ * @param {K} tag
  * @param {import('./texts.js').Key | ''} key of its text
- * @param {(Node | string)[]} inside
+ * @param {(Node | string)[]} children
  * @returns {HTMLElementTagNameMap[K]}
  */
-export function made(kind, key = '', ...inside) {
-  const element = document.createElement(kind);
+export function makeElement(tag, key = '', ...children) {
+  const element = document.createElement(tag);
   if (key) {
     element.dataset['text'] = key;
     element.textContent = text(key);
   }
-  element.append(...inside);
+  element.append(...children);
   return element;
 }
 
-/** @param {import('./texts.js').Key | ''} key @param {(event: MouseEvent) => void} pressed @param {(Node | string)[]} inside */
-export function button(key, pressed, ...inside) {
-  const found = made('button', key, ...inside);
-  found.type = 'button';
-  found.addEventListener('click', pressed);
-  return found;
+/** @param {import('./texts.js').Key | ''} key @param {(event: MouseEvent) => void} onPress @param {(Node | string)[]} children */
+export function makeButton(key, onPress, ...children) {
+  const element = makeElement('button', key, ...children);
+  element.type = 'button';
+  element.addEventListener('click', onPress);
+  return element;
 }
 
 /** @param {import('./texts.js').Key} key @param {HTMLElement} field */
-export function labelled(key, field) {
-  return made('label', '', made('span', key), ' ', field);
+export function makeLabel(key, field) {
+  return makeElement('label', '', makeElement('span', key), ' ', field);
 }
 
-/** A drawing, or a part of one. @param {string} name @param {Record<string, string | number>} values @param {Node[]} inside */
-export function drawn(name, values, ...inside) {
-  const element = /** @type {SVGElement} */ (document.createElementNS('http://www.w3.org/2000/svg', name));
-  for (const [key, value] of Object.entries(values)) element.setAttribute(key, String(value));
-  element.append(...inside);
+/** A drawing, or a part of one. @param {string} tag @param {Record<string, string | number>} attributes @param {Node[]} children */
+export function makeSvg(tag, attributes, ...children) {
+  const element = /** @type {SVGElement} */ (document.createElementNS('http://www.w3.org/2000/svg', tag));
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  element.append(...children);
   return element;
 }

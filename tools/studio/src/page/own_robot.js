@@ -1,13 +1,13 @@
 // The colour and the name that somebody has given the virtual robot, kept on this device. What is kept may be damaged, or
 // somebody else's: all of it is checked.
 
-import { keepAt, keptForm } from './kept.js';
+import { storeText, storedJson } from './kept.js';
 import { pageState } from './page_state.js';
 
 /** @typedef {{name: string, colour: number}} OwnRobot `colour` is a number of COLOURS */
 
-const PLACE = 'tiniscript.own_robot';
-export const NAME_LENGTH = 16;
+const STORAGE_KEY = 'tiniscript.own_robot';
+export const MOST_NAME_CHARACTERS = 16;
 /** Of its body and of its edge, with the text of the name of each: white is seen on all, and all on every floor. No red: that is a robot with a fault. */
 export const COLOURS = /** @type {const} */ ([
   ['#2a9d6f', '#0d4f38', 'colour_green'], ['#2f74c0', '#123b63', 'colour_blue'], ['#8a4fc4', '#46217a', 'colour_purple'],
@@ -15,27 +15,27 @@ export const COLOURS = /** @type {const} */ ([
   ['#138a94', '#074a50', 'colour_teal'], ['#66727e', '#2c343c', 'colour_grey'],
 ]);
 
-/** @param {unknown} found from elsewhere @returns {OwnRobot} what of it is one */
-export function ownRobotOf(found) {
-  const { name, colour } = /** @type {Partial<Record<string, unknown>>} */ (found && typeof found === 'object' ? found : {});
+/** @param {unknown} value from elsewhere @returns {OwnRobot} what of it is one */
+export function ownRobotOf(value) {
+  const { name, colour } = /** @type {Partial<Record<string, unknown>>} */ (value && typeof value === 'object' ? value : {});
   return {
-    name: typeof name === 'string' ? name.replace(/\p{C}/gu, '').trim().slice(0, NAME_LENGTH) : '',
+    name: typeof name === 'string' ? name.replace(/\p{C}/gu, '').trim().slice(0, MOST_NAME_CHARACTERS) : '',
     colour: Number.isInteger(colour) && Number(colour) >= 0 && Number(colour) < COLOURS.length ? Number(colour) : 0,
   };
 }
 
 /** Shows it in every drawing of a robot, from now on. */
-export function beginOwnRobot() {
+export function showOwnRobot() {
   pageState.ownRobot.subscribe(({ colour }) => {
     const [body, edge] = COLOURS[colour] ?? COLOURS[0];
     document.documentElement.style.setProperty('--robot', body);
     document.documentElement.style.setProperty('--robot-edge', edge);
   });
-  pageState.ownRobot.set(ownRobotOf(keptForm(PLACE)));
+  pageState.ownRobot.set(ownRobotOf(storedJson(STORAGE_KEY)));
 }
 
-/** @param {OwnRobot} own @returns {boolean} whether it could be kept */
-export function chooseOwnRobot(own) {
-  pageState.ownRobot.set(ownRobotOf(own));
-  return keepAt(PLACE, JSON.stringify(pageState.ownRobot.value));
+/** @param {OwnRobot} ownRobot @returns {boolean} whether it could be kept */
+export function chooseOwnRobot(ownRobot) {
+  pageState.ownRobot.set(ownRobotOf(ownRobot));
+  return storeText(STORAGE_KEY, JSON.stringify(pageState.ownRobot.value));
 }

@@ -5,7 +5,7 @@
 /** @typedef {{line: number, column: number, point: object}} Breakpoint */
 
 /**
- * @typedef {object} Taught blocks of the open lesson
+ * @typedef {object} TaughtBlocks blocks of the open lesson
  * @property {string[]} offered kinds that it speaks of, or a lesson before it
  * @property {string[]} needed kinds in its programs, or by its task
  * @property {string[]} fresh its newest, as `pieceOf` has them
@@ -29,30 +29,30 @@ class Observable {
   /** @param {T} value from now on */
   set(value) {
     this.#value = value;
-    for (const each of this.#subscribers) each(value);
+    for (const subscriber of this.#subscribers) subscriber(value);
   }
 
-  /** @param {(value: T) => unknown} act whenever it is set, in the order of those who subscribed */
-  subscribe(act) {
-    this.#subscribers.push(act);
+  /** @param {(value: T) => unknown} subscriber whenever it is set, in the order of those who subscribed */
+  subscribe(subscriber) {
+    this.#subscribers.push(subscriber);
   }
 }
 
 export const pageState = {
   screen: new Observable(/** @type {'' | 'start' | 'program'} */ ('')), // that is seen
-  side: new Observable(''), // that is seen beside the program, by its button
+  sideId: new Observable(''), // that is seen beside the program, by its button
   language: new Observable(''),
   ownRobot: new Observable({ name: '', colour: 0 }), // what somebody has made of the virtual robot
   areWordsShown: new Observable(false), // of the text, on blocks and at readings
   robotName: new Observable(''),
   view: new Observable(/** @type {'blocks' | 'text'} */ ('blocks')), // of the program
-  taughtBlocks: new Observable(/** @type {Taught} */ ({ offered: [], needed: [], fresh: [] })),
+  taughtBlocks: new Observable(/** @type {TaughtBlocks} */ ({ offered: [], needed: [], fresh: [] })),
   isRobotNamed: new Observable(false), // by the text: `// robot: liner`
   programText: new Observable(''),
-  group: new Observable(''), // of pupils who edit this program together
+  groupName: new Observable(''), // of pupils who edit this program together
   /** What the compiler says of the newest text; null while it is at work. */
-  checked: new Observable(/** @type {import('../python.js').Checked | null} */ (null)),
-  offeredFinding: new Observable(-1), // the number of one of its findings, which has a button from now on
+  checkResult: new Observable(/** @type {import('../python.js').Checked | null} */ (null)),
+  offeredFindingIndex: new Observable(-1), // the number of one of its findings, which has a button from now on
   note: new Observable(''), // a sentence about what has just been done
   /** Where the program is to stop; a point stays the same while its text moves. */
   breakpoints: new Observable(/** @type {Breakpoint[]} */ ([])),
@@ -60,5 +60,5 @@ export const pageState = {
   virtualRun: new Observable({ ranges: /** @type {Range[]} */ ([]), isHeld: false }),
   /** What runs on a real one; where it is halted somebody wants to see it. */
   robotRun: new Observable({ range: /** @type {Range | null} */ (null), isHeld: false }),
-  fault: new Observable({ range: /** @type {Range | null} */ (null), said: '' }), // of a run
+  fault: new Observable({ range: /** @type {Range | null} */ (null), sentence: '' }), // of a run
 };

@@ -1,38 +1,38 @@
 // Watches what is fetched: what still comes goes on. Where nothing comes, somebody is told after a while, and it ends
 // later. Knows no page: the worker has it, too.
 
-const WAITS_MS = 3000;
-const HELD_MS = 20_000;
+const NOTICE_MS = 3000;
+const TIMEOUT_MS = 20_000;
 
-/** @typedef {{waits?: (() => void) | undefined, cancelled?: AbortSignal | undefined, came?: (() => void) | undefined, fails?: ((why: unknown) => void) | undefined}} Watching `waits`: nothing has come for a while, told once; `came`: something has; `fails`: not all will come */
+/** @typedef {{onWait?: (() => void) | undefined, cancelSignal?: AbortSignal | undefined, onProgress?: (() => void) | undefined, onFail?: ((why: unknown) => void) | undefined}} WatchOptions `waits`: nothing has come for a while, told once; `came`: something has; `fails`: not all will come */
 
 export class Progress {
-  #end = new AbortController();
-  #waits;
+  #controller = new AbortController();
+  #onWait;
   #isOver = false;
   /** @type {ReturnType<typeof setTimeout>[]} */
   #timers = [];
 
-  /** @param {Watching} watching */
-  constructor({ waits = () => {}, cancelled }) {
-    this.#waits = waits;
-    if (cancelled?.aborted) this.#end.abort();
-    cancelled?.addEventListener('abort', () => this.#end.abort(), { signal: this.#end.signal });
-    this.came();
+  /** @param {WatchOptions} watching */
+  constructor({ onWait = () => {}, cancelSignal }) {
+    this.#onWait = onWait;
+    if (cancelSignal?.aborted) this.#controller.abort();
+    cancelSignal?.addEventListener('abort', () => this.#controller.abort(), { signal: this.#controller.signal });
+    this.advance();
   }
 
   /** Aborted when it is cancelled, or by a TimeoutError. */
-  get signal() { return this.#end.signal; }
+  get signal() { return this.#controller.signal; }
 
-  came() {
+  advance() {
     this.#clear();
     if (this.#isOver) return;
     this.#timers = [
       setTimeout(() => {
-        this.#waits();
-        this.#waits = () => {};
-      }, WAITS_MS),
-      setTimeout(() => this.#end.abort(new DOMException('nothing comes', 'TimeoutError')), HELD_MS),
+        this.#onWait();
+        this.#onWait = () => {};
+      }, NOTICE_MS),
+      setTimeout(() => this.#controller.abort(new DOMException('nothing comes', 'TimeoutError')), TIMEOUT_MS),
     ];
   }
 
@@ -42,7 +42,7 @@ export class Progress {
   }
 
   #clear() {
-    for (const each of this.#timers) clearTimeout(each);
+    for (const timer of this.#timers) clearTimeout(timer);
   }
 
   /**
@@ -51,45 +51,45 @@ export class Progress {
    * @param {Promise<T>} promise
    * @returns {Promise<T>}
    */
-  until(promise) {
+  watch(promise) {
     /** @type {Promise<never>} */
-    const ended = new Promise((_, reject) => {
-      const end = () => reject(this.signal.reason);
-      if (this.signal.aborted) end();
-      this.signal.addEventListener('abort', end);
+    const aborted = new Promise((_, reject) => {
+      const rejectAborted = () => reject(this.signal.reason);
+      if (this.signal.aborted) rejectAborted();
+      this.signal.addEventListener('abort', rejectAborted);
     });
-    return Promise.race([promise, ended]).finally(() => this.end());
+    return Promise.race([promise, aborted]).finally(() => this.end());
   }
 }
 
 /**
  * Fetches, and rejects with a TimeoutError when nothing comes any more.
- * @param {RequestInfo | URL} what
- * @param {RequestInit & Watching} options
- * @param {typeof fetch} by
+ * @param {RequestInfo | URL} resource
+ * @param {RequestInit & WatchOptions} options
+ * @param {typeof fetch} fetcher
  */
-export async function watchedFetch(what, { waits, cancelled, came = () => {}, fails = () => {}, ...options } = {}, by = fetch) {
-  const progress = new Progress({ waits, cancelled });
+export async function watchedFetch(resource, { onWait, cancelSignal, onProgress = () => {}, onFail = () => {}, ...options } = {}, fetcher = fetch) {
+  const progress = new Progress({ onWait, cancelSignal });
   progress.signal.addEventListener('abort', () => progress.end());
   try {
-    const answer = await by(what, { ...options, signal: progress.signal });
+    const answer = await fetcher(resource, { ...options, signal: progress.signal });
     if (!answer.ok || !answer.body) {
       progress.end();
       return answer;
     }
     const { readable, writable } = new TransformStream({
-      transform(part, to) {
-        progress.came();
-        came();
-        to.enqueue(part);
+      transform(chunk, controller) {
+        progress.advance();
+        onProgress();
+        controller.enqueue(chunk);
       },
       flush: () => progress.end(),
     });
-    answer.body.pipeTo(writable).catch(fails);
+    answer.body.pipeTo(writable).catch(onFail);
     return new Response(readable, { status: answer.status, headers: answer.headers });
   } catch (why) {
     progress.end();
-    fails(why);
+    onFail(why);
     throw why;
   }
 }
@@ -98,9 +98,9 @@ export async function watchedFetch(what, { waits, cancelled, came = () => {}, fa
  * Waits for what tells of no progress at all.
  * @template T
  * @param {Promise<T>} promise
- * @param {Watching} watching
+ * @param {WatchOptions} options
  * @returns {Promise<T>}
  */
-export function watched(promise, watching) {
-  return new Progress(watching).until(promise);
+export function watchPromise(promise, options) {
+  return new Progress(options).watch(promise);
 }

@@ -1,24 +1,24 @@
 // Names and their values, in rows.
 
 import { say } from './elements.js';
-import { made } from './made.js';
+import { makeElement } from './made.js';
 
-const SHORT = 12; // characters of a name whose value stands beside another one
+const SHORT_NAME_CHARACTERS = 12; // characters of a name whose value stands beside another one
 
 /**
- * @param {HTMLElement} place
+ * @param {HTMLElement} container
  * @param {string[][]} rows name, value, and how much of its range that is
  */
-export function showRows(place, rows) {
-  while (place.children.length > rows.length) place.lastElementChild?.remove();
-  rows.forEach(([name = '', value = '', part = ''], k) => {
-    const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(made('div', '', made('dt'), made('dd'))));
-    row.classList.toggle('wide', name.length > SHORT || part !== '');
-    if (part) row.style.setProperty('--part', part);
+export function showRows(container, rows) {
+  while (container.children.length > rows.length) container.lastElementChild?.remove();
+  rows.forEach(([name = '', value = '', barWidth = ''], index) => {
+    const row = /** @type {HTMLElement} */ (container.children[index] ?? container.appendChild(makeElement('div', '', makeElement('dt'), makeElement('dd'))));
+    row.classList.toggle('wide', name.length > SHORT_NAME_CHARACTERS || barWidth !== '');
+    if (barWidth) row.style.setProperty('--part', barWidth);
     else row.removeAttribute('style');
-    [name, value].forEach((said, at) => {
-      const cell = row.children[at];
-      if (cell) say(cell, said);
+    [name, value].forEach((cellText, column) => {
+      const cell = row.children[column];
+      if (cell) say(cell, cellText);
     });
   });
 }
@@ -28,7 +28,7 @@ export function showRows(place, rows) {
  * @param {number | undefined} value
  * @param {boolean} isYesNo
  */
-export function written(value, isYesNo) {
+export function variableText(value, isYesNo) {
   if (value === undefined) return '–';
   return isYesNo ? (value ? 'TRUE' : 'FALSE') : String(value);
 }

@@ -9,7 +9,7 @@
  * @param {number} width
  * @param {string} [fill] the colour inside of a closed one
  */
-export function path(pen, points, color, width, fill = '') {
+export function drawPath(pen, points, color, width, fill = '') {
   pen.beginPath();
   points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   if (fill) pen.closePath();
@@ -28,7 +28,7 @@ export function path(pen, points, color, width, fill = '') {
  * @param {number} radius
  * @param {string} color
  */
-export function dot(pen, x, y, radius, color) {
+export function drawDot(pen, x, y, radius, color) {
   pen.beginPath();
   pen.arc(x, y, radius, 0, 2 * Math.PI);
   pen.fillStyle = color;

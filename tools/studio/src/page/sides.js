@@ -11,7 +11,7 @@ const SIDES = [
   { button: element('side_lessons', HTMLButtonElement), section: element('lessons', HTMLElement) },
 ];
 
-export function chooseSide() {
+export function listenToSideButtons() {
   for (const { button } of SIDES) button.addEventListener('click', () => showSide(button.id));
 }
 
@@ -23,5 +23,5 @@ export function showSide(id) {
   }
   element('driving', HTMLElement).hidden = id !== 'side_virtual' && id !== 'side_lessons';
   document.documentElement.dataset['side'] = id;
-  pageState.side.set(id);
+  pageState.sideId.set(id);
 }

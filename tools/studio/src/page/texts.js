@@ -3,7 +3,7 @@
 // from the compiler.
 
 import languages from '../../made/languages.json';
-import { needLanguage } from './offline.js';
+import { storeLanguage } from './offline.js';
 import { pageState } from './page_state.js';
 import { watchedFetch } from './progress.js';
 
@@ -12,9 +12,9 @@ import { watchedFetch } from './progress.js';
 /** Code and name of each language. @type {[string, string][]} */
 export const LANGUAGES = /** @type {any} */ (languages);
 
-const SOURCE = LANGUAGES[0]?.[0] ?? ''; // what others fall back to
+const SOURCE_LANGUAGE = LANGUAGES[0]?.[0] ?? ''; // what others fall back to
 
-let wanted = '';
+let wantedLanguage = '';
 /** A text, or its forms for numbers; which form is for which number has no key. @type {Record<string, string | string[]>} */
 let texts = {};
 
@@ -26,28 +26,28 @@ export function currentLanguage() {
 /** @param {unknown} locale such as `pt-BR` @returns {string} the language to begin with */
 export function languageOf(locale) {
   const code = String(locale).toLowerCase().split('-')[0];
-  return (LANGUAGES.find(([each]) => each === code) ?? [SOURCE])[0];
+  return (LANGUAGES.find(([candidate]) => candidate === code) ?? [SOURCE_LANGUAGE])[0];
 }
 
-/** @param {string} chosen @returns {Promise<string>} the language that is seen now: without a connection it may be the one before */
-export async function setLanguage(chosen) {
+/** @param {string} chosenLanguage @returns {Promise<string>} the language that is seen now: without a connection it may be the one before */
+export async function setLanguage(chosenLanguage) {
   let language = currentLanguage();
-  wanted = chosen;
-  for (const code of [chosen, ...(language ? [] : LANGUAGES.map(([each]) => each))]) {
-    const found = await watchedFetch(`./texts.${code}.json`).then((answer) => (answer.ok ? answer.json() : null)).catch(() => null);
-    if (chosen !== wanted) return currentLanguage(); // another one was chosen meanwhile
-    if (!found) continue;
-    texts = found;
+  wantedLanguage = chosenLanguage;
+  for (const code of [chosenLanguage, ...(language ? [] : LANGUAGES.map(([languageCode]) => languageCode))]) {
+    const catalogue = await watchedFetch(`./texts.${code}.json`).then((response) => (response.ok ? response.json() : null)).catch(() => null);
+    if (chosenLanguage !== wantedLanguage) return currentLanguage(); // another one was chosen meanwhile
+    if (!catalogue) continue;
+    texts = catalogue;
     language = code;
     break;
   }
-  needLanguage(language);
+  storeLanguage(language);
   document.documentElement.lang = language;
   for (const element of document.querySelectorAll('[data-text]')) {
-    element.textContent = text(known(element.getAttribute('data-text')));
+    element.textContent = text(textKey(element.getAttribute('data-text')));
   }
   for (const element of document.querySelectorAll('[data-label]')) {
-    const label = text(known(element.getAttribute('data-label')));
+    const label = text(textKey(element.getAttribute('data-label')));
     element.setAttribute('aria-label', label);
     if (element instanceof HTMLButtonElement) element.title = label;
   }
@@ -61,7 +61,7 @@ export function hasText(key) {
 }
 
 /** @param {unknown} key which is made of parts @returns {Key} */
-export function known(key) {
+export function textKey(key) {
   if (!hasText(String(key))) throw new Error(`no text ${key}`);
   return /** @type {Key} */ (key);
 }
@@ -72,23 +72,23 @@ export function known(key) {
  * @returns {string}
  */
 export function text(key, values = {}) {
-  const entry = texts[known(key)] ?? '';
-  const sentence = typeof entry === 'string' ? entry : entry[formOf(Number(values['count']))] ?? '';
-  return sentence.replace(/\{(\w+)\}/g, (gap, name) => (name in values ? String(values[name]) : gap));
+  const entry = texts[textKey(key)] ?? '';
+  const sentence = typeof entry === 'string' ? entry : entry[pluralFormOf(Number(values['count']))] ?? '';
+  return sentence.replace(/\{(\w+)\}/g, (placeholder, name) => (name in values ? String(values[name]) : placeholder));
 }
 
 /** @param {number} count @returns {number} which form of a text is for it: rules repeat after a hundred */
-function formOf(count) {
+function pluralFormOf(count) {
   return Number(texts['']?.[count < 100 ? count : 100 + (count % 100)]);
 }
 
 /** @param {string} group of keys @returns {Record<string, string>} its texts as they are, by what follows in their keys */
 export function textsOf(group) {
   const entries = Object.entries(texts).filter(([key]) => key.startsWith(`${group}/`));
-  return Object.fromEntries(entries.map(([key, said]) => [key.slice(group.length + 1), String(said)]));
+  return Object.fromEntries(entries.map(([key, entry]) => [key.slice(group.length + 1), String(entry)]));
 }
 
 /** @param {Record<string, string>} labels of a world, a robot or a device by language, or none @returns {string} what it is called */
-export function called(labels) {
-  return labels[currentLanguage()] ?? labels[SOURCE] ?? '';
+export function labelOf(labels) {
+  return labels[currentLanguage()] ?? labels[SOURCE_LANGUAGE] ?? '';
 }

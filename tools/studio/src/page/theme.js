@@ -1,28 +1,28 @@
 // Light or dark: as the system has it, until somebody chooses, which this device keeps.
 
 import { element } from './elements.js';
-import { keepAt, kept } from './kept.js';
+import { storeText, storedText } from './kept.js';
 
-const PLACE = 'tiniscript.theme';
-const SYSTEM = matchMedia('(prefers-color-scheme: dark)');
-const button = element('theme', HTMLButtonElement);
+const STORAGE_KEY = 'tiniscript.theme';
+const DARK_QUERY = matchMedia('(prefers-color-scheme: dark)');
+const themeButton = element('theme', HTMLButtonElement);
 
-export function beginTheme() {
-  SYSTEM.addEventListener('change', show);
-  addEventListener('storage', show); // another tab has chosen
-  button.addEventListener('click', () => {
-    keepAt(PLACE, isDark() ? 'light' : 'dark');
-    show();
+export function startTheme() {
+  DARK_QUERY.addEventListener('change', showTheme);
+  addEventListener('storage', showTheme); // another tab has chosen
+  themeButton.addEventListener('click', () => {
+    storeText(STORAGE_KEY, isDark() ? 'light' : 'dark');
+    showTheme();
   });
-  show();
+  showTheme();
 }
 
 function isDark() {
-  const chosen = kept(PLACE);
-  return chosen === 'dark' || (chosen !== 'light' && SYSTEM.matches);
+  const chosenTheme = storedText(STORAGE_KEY);
+  return chosenTheme === 'dark' || (chosenTheme !== 'light' && DARK_QUERY.matches);
 }
 
-function show() {
+function showTheme() {
   document.documentElement.toggleAttribute('data-dark', isDark());
-  button.setAttribute('aria-pressed', String(isDark()));
+  themeButton.setAttribute('aria-pressed', String(isDark()));
 }

@@ -4,7 +4,7 @@
 import blocks from '../../made/blocks.json';
 import description from '../../made/description.json';
 import { pageState } from './page_state.js';
-import { called, hasText, known, text } from './texts.js';
+import { labelOf, hasText, textKey, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, example: string}} Word */
 
@@ -12,19 +12,19 @@ export const ROBOTS = description.robots;
 export const MOST_PARAMETERS = description.most_parameters;
 
 /** Letters that are no words of the language. */
-export const LETTERS = [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].filter((each) => !description.words.some((word) => word.text === each));
+export const FREE_LETTERS = [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].filter((letter) => !description.words.some((word) => word.text === letter));
 
 /** @param {string} name */
 export function robotOf(name) {
-  return ROBOTS.find((each) => each.name === name);
+  return ROBOTS.find((robot) => robot.name === name);
 }
 
 /** What a remote control says to every robot: read as sensors are. */
 export const REMOTE = description.remote;
 
-/** @param {string} robot @param {string} role `sensor` or `actuator` */
-export function devicesOf(robot, role) {
-  return robotOf(robot)?.devices.filter((device) => device.role === role) ?? [];
+/** @param {string} robotName @param {string} role `sensor` or `actuator` */
+export function devicesOf(robotName, role) {
+  return robotOf(robotName)?.devices.filter((device) => device.role === role) ?? [];
 }
 
 export const CLASS = description.class;
@@ -43,23 +43,23 @@ const WORDS = new Map(
 );
 
 /** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
-export function labelled(label) {
+export function blockText(label) {
   return pageState.areWordsShown.value ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
 }
 
 /** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */
-export function nameOf(device) {
-  return labelled(`{${device.text}} ${called(device.labels)}`);
+export function deviceName(device) {
+  return blockText(`{${device.text}} ${labelOf(device.labels)}`);
 }
 
-/** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, is_hat: boolean, gives: '' | Place, part: string, is_each_word: boolean, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
+/** @typedef {'number' | 'truth' | 'any'} ValueKind what a value there is */
+/** @typedef {{colour: string, words: string[], values: ValueKind[], units: Record<string, string>, bodies: number, is_hat: boolean, gives: '' | ValueKind, part: string, is_each_word: boolean, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} BlockKind */
 
-export const KINDS = /** @type {Record<string, Kind>} */ (blocks.kinds);
+export const KINDS = /** @type {Record<string, BlockKind>} */ (blocks.kinds);
 /** @type {Record<string, string>} */
-const SAYS = blocks.says;
+const CHOICE_LABELS = blocks.says;
 
-const SETS = new Map(REMOTE.map(({ text: name }) => [name, name.split('_')[0] ?? '']));
+const KEY_SETS = new Map(REMOTE.map(({ text: name }) => [name, name.split('_')[0] ?? '']));
 
 /**
  * What a block is to who looks for it: its kind, and its word if each has its own. A set of keys is one; `block_kinds.py`
@@ -68,23 +68,23 @@ const SETS = new Map(REMOTE.map(({ text: name }) => [name, name.split('_')[0] ??
  */
 export function pieceOf(kind, word) {
   const name = word.split(' ')[0] ?? '';
-  return KINDS[kind]?.is_each_word ? `${kind} ${SETS.get(name) ?? name}` : kind;
+  return KINDS[kind]?.is_each_word ? `${kind} ${KEY_SETS.get(name) ?? name}` : kind;
 }
 
 /** @param {number} count of values @returns {string} the kind of the words that have none of their own, as `block_kinds.py` calls it */
 export const plainKind = (count) => (count ? `plain_${count}` : 'plain');
-export const PLAIN = description.words.filter(({ text: word, arguments: values }) => KINDS[plainKind(values.length)]?.words.includes(word));
+export const PLAIN_WORDS = description.words.filter(({ text: word, arguments: values }) => KINDS[plainKind(values.length)]?.words.includes(word));
 
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
-export function onBlock(name) {
+export function blockLabel(name) {
   const key = `block/${name}`;
-  return labelled(hasText(key) ? text(key) : SAYS[name] ?? '');
+  return blockText(hasText(key) ? text(key) : CHOICE_LABELS[name] ?? '');
 }
 
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string[]} the words of the text that stand on it */
-export function writtenOn(name) {
+export function wordsOnBlock(name) {
   const key = `block/${name}`;
-  return [...(hasText(key) ? text(known(key)) : SAYS[name] ?? '').matchAll(/\{(\S+?)\}/g)].map(([, word]) => word ?? '');
+  return [...(hasText(key) ? text(textKey(key)) : CHOICE_LABELS[name] ?? '').matchAll(/\{(\S+?)\}/g)].map(([, word]) => word ?? '');
 }
 
 /** @param {string} name of a kind of block @returns {string} what it does, said when a pointer rests on it, or nothing */
@@ -94,17 +94,17 @@ export function tipOf(name) {
 }
 
 /**
- * @param {string} robot
+ * @param {string} robotName
  * @returns {Map<string, Word>}
  */
-export function wordsOf(robot) {
-  return WORDS.get(robot) ?? new Map();
+export function wordsOf(robotName) {
+  return WORDS.get(robotName) ?? new Map();
 }
 
 /**
- * @param {string} robot
+ * @param {string} robotName
  * @returns {boolean}
  */
-export function isRobot(robot) {
-  return WORDS.has(robot);
+export function isRobot(robotName) {
+  return WORDS.has(robotName);
 }

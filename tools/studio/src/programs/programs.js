@@ -4,16 +4,16 @@
 
 import { correction, generate } from 'lean-qr';
 import { element } from '../page/elements.js';
-import { bugSaid } from '../page/faults.js';
+import { bugSentence } from '../page/faults.js';
 import { downloadFile } from '../page/files.js';
-import { keepAt, kept } from '../page/kept.js';
-import { button, made } from '../page/made.js';
+import { storeText, storedText } from '../page/kept.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { linkOf, sharedIn } from './links.js';
 import { isAddress, reachOf } from './reach.js';
 import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
-import { called, currentLanguage, text } from '../page/texts.js';
+import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { keepVersion, MOST_CHARACTERS, titleOf, versions } from './versions.js';
 import { thumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
@@ -70,7 +70,7 @@ export class Programs {
     element('share_picture', HTMLButtonElement).addEventListener('click', () => this.#savePicture());
     this.#name.addEventListener('input', () => this.#rename());
     this.#public.addEventListener('change', () => {
-      keepAt(PUBLIC, this.#public.value.trim());
+      storeText(PUBLIC, this.#public.value.trim());
       this.#share('link');
     });
     this.#copy.addEventListener('click', () => this.#copyIt());
@@ -95,7 +95,7 @@ export class Programs {
    * @returns {boolean} whether it is there
    */
   replace(program) {
-    if (pageState.group.value && !confirm(text('group_replace'))) return false;
+    if (pageState.groupName.value && !confirm(text('group_replace'))) return false;
     this.keep();
     this.#page.put(program);
     return true;
@@ -145,7 +145,7 @@ export class Programs {
     try {
       given = how === 'link' ? await this.#asLink() : await this.#asLine();
     } catch (why) {
-      given = { wrong: bugSaid(why) };
+      given = { wrong: bugSentence(why) };
     }
     const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(this.#address)];
     const isForOthers = how === 'line' || reachOf(this.#address) !== 'here';
@@ -222,16 +222,16 @@ export class Programs {
     const rows = versions().map((version, k, all) => {
       const at = new Date(version.at_ms);
       const said = time.format(at);
-      const when = made('time', '', said);
+      const when = makeElement('time', '', said);
       when.dateTime = at.toISOString();
-      const title = titleOf(version, all.length - k), robot = called(robotOf(version.robot)?.labels ?? {}) || version.robot;
-      const open = button('', () => {
+      const title = titleOf(version, all.length - k), robot = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
+      const open = makeButton('', () => {
         this.replace(version);
         this.#window.close();
         pageState.note.set(text('opened_again', { time: said }));
-      }, thumbnail(version.text, version.robot), made('strong', '', title), when);
+      }, thumbnail(version.text, version.robot), makeElement('strong', '', title), when);
       open.title = `${title}, ${robot}`;
-      return made('li', '', open);
+      return makeElement('li', '', open);
     });
     const place = element('versions', HTMLElement);
     place.replaceChildren(...[...place.children].slice(0, 1), ...rows);
@@ -240,5 +240,5 @@ export class Programs {
 
 /** Where others find this page, as somebody has told it; empty for nothing. */
 function publicAddress() {
-  return kept(PUBLIC).slice(0, 200);
+  return storedText(PUBLIC).slice(0, 200);
 }

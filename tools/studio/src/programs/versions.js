@@ -6,7 +6,7 @@ import { labelOfLine } from '../blocks/said.js';
 import { pageState } from '../page/page_state.js';
 import { text as said } from '../page/texts.js';
 import { isRobot } from '../page/words.js';
-import { keepAt, keptForm } from '../page/kept.js';
+import { storeText, storedJson } from '../page/kept.js';
 
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
@@ -16,7 +16,7 @@ export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five mi
 
 /** @returns {Version[]} */
 export function versions() {
-  const kept = keptForm(PLACE);
+  const kept = storedJson(PLACE);
   return Array.isArray(kept) ? kept.filter(isVersion).slice(0, MOST) : [];
 }
 
@@ -33,7 +33,7 @@ export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
   const others = versions().filter((each) => each.text !== text || each.robot !== robot);
   const all = [{ text, robot, name, at_ms }, ...others].slice(0, MOST);
   while (all.length > 1 && all.reduce((sum, each) => sum + each.text.length, 0) > MOST_CHARACTERS) all.pop();
-  while (all.length && !keepAt(PLACE, JSON.stringify(all))) all.pop();
+  while (all.length && !storeText(PLACE, JSON.stringify(all))) all.pop();
   return all.length > 0;
 }
 

@@ -2,7 +2,7 @@
 //
 // What is kept may be damaged, or from somebody else on this device: all of it is checked.
 
-import { keepAt, kept, keptForm } from '../page/kept.js';
+import { storeText, storedText, storedJson } from '../page/kept.js';
 import { languageOf } from '../page/texts.js';
 import { isRobot, WORLDS } from '../page/words.js';
 
@@ -21,20 +21,20 @@ let ownWorlds = new Set();
 
 /** @returns {Work | null} */
 export function keptWork() {
-  return checked(keptForm(PLACE, 'sessionStorage')) ?? checked(keptForm(PLACE));
+  return checked(storedJson(PLACE, 'sessionStorage')) ?? checked(storedJson(PLACE));
 }
 
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
 export function keptWorlds() {
-  const newest = kept(WORLD_PLACE, 'sessionStorage') || kept(WORLD_PLACE);
+  const newest = storedText(WORLD_PLACE, 'sessionStorage') || storedText(WORLD_PLACE);
   const before = worldsBefore('sessionStorage') ?? worldsBefore() ?? [];
   ownWorlds = new Set([newest, ...before]);
   return { newest, before };
 }
 
-/** @param {import('../page/kept.js').Store} [store] @returns {string[] | null} */
+/** @param {import('../page/kept.js').StoreName} [store] @returns {string[] | null} */
 function worldsBefore(store) {
-  const texts = keptForm(BEFORE_PLACE, store);
+  const texts = storedJson(BEFORE_PLACE, store);
   return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
 }
 
@@ -69,13 +69,13 @@ export function keepWorlds(newest, before) {
 
 /** Those that the next tab would find. @returns {string[]} */
 function lastingWorlds() {
-  return [kept(WORLD_PLACE), ...(worldsBefore() ?? [])].filter(Boolean);
+  return [storedText(WORLD_PLACE), ...(worldsBefore() ?? [])].filter(Boolean);
 }
 
 /** @param {string} place @param {string} whole @param {string} [lasting] for the next tab @returns {boolean} whether that is kept, too */
 function put(place, whole, lasting = whole) {
-  keepAt(place, whole, 'sessionStorage');
-  return keepAt(place, lasting);
+  storeText(place, whole, 'sessionStorage');
+  return storeText(place, lasting);
 }
 
 /**

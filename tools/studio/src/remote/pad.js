@@ -5,9 +5,9 @@
 // is not seen any more, and for another robot: then a hand has to press anew.
 
 import { element, say } from '../page/elements.js';
-import { made } from '../page/made.js';
+import { makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
-import { called, text } from '../page/texts.js';
+import { labelOf, text } from '../page/texts.js';
 import { LINK, REMOTE } from '../page/words.js';
 import { gamepadsHeld } from './gamepads.js';
 import { Holding, isSame, moved, NOTHING } from './held.js';
@@ -53,7 +53,7 @@ export class Pad {
 
   constructor() {
     this.#parts = KEYS.map((device, key) => {
-      const part = made('button', '', device.labels.en.split(' ').at(-1) ?? '');
+      const part = makeElement('button', '', device.labels.en.split(' ').at(-1) ?? '');
       part.type = 'button';
       part.dataset['key'] = device.text;
       this.#heed(part, () => ({ ...NOTHING, keys: 1 << key }));
@@ -74,7 +74,7 @@ export class Pad {
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') this.letGo();
     }, { capture: true });
-    pageState.side.subscribe(() => this.#choose());
+    pageState.sideId.subscribe(() => this.#choose());
     pageState.language.subscribe(() => this.#name());
   }
 
@@ -98,7 +98,7 @@ export class Pad {
 
   /** Which robot is driven follows from what is seen. */
   #choose() {
-    const side = pageState.side.value === 'side_real' ? 'link' : 'driving';
+    const side = pageState.sideId.value === 'side_real' ? 'link' : 'driving';
     const driven = this.#offered.get(side);
     if (driven === this.#driven) return;
     this.letGo(); // it goes to the robot before
@@ -122,7 +122,7 @@ export class Pad {
   }
 
   #name() {
-    this.#parts.forEach((part, k) => part.setAttribute('aria-label', called(KEYS[k]?.labels ?? {})));
+    this.#parts.forEach((part, k) => part.setAttribute('aria-label', labelOf(KEYS[k]?.labels ?? {})));
     if (this.#driven) say(element('pad_said', HTMLElement), this.#driven.isDeaf ? text('pad_deaf') : '');
   }
 

@@ -1,28 +1,28 @@
 // A robot that the browser reaches by Bluetooth LE: the Nordic UART service, or an HM-10's.
 
-import { Failed, pause } from './transport.js';
+import { ConnectionFailure, pause } from './transport.js';
 
 const BLUETOOTH = /** @type {any} */ (navigator).bluetooth;
-const NORDIC = '6e400001-b5a3-f393-e0a9-e50e24dcca9e';
-const NORDIC_IN = '6e400002-b5a3-f393-e0a9-e50e24dcca9e';
-const NORDIC_OUT = '6e400003-b5a3-f393-e0a9-e50e24dcca9e';
-const HM10 = 0xffe0;
-const HM10_BOTH = 0xffe1;
-const MOST = 20; // bytes in a write
+const NORDIC_SERVICE = '6e400001-b5a3-f393-e0a9-e50e24dcca9e';
+const NORDIC_WRITE = '6e400002-b5a3-f393-e0a9-e50e24dcca9e';
+const NORDIC_NOTIFY = '6e400003-b5a3-f393-e0a9-e50e24dcca9e';
+const HM10_SERVICE = 0xffe0;
+const HM10_CHARACTERISTIC = 0xffe1;
+const MOST_WRITE_BYTES = 20; // bytes in a write
 
 export const hasBluetooth = BLUETOOTH !== undefined;
 
-/** Lets a person choose a robot; rejects with a Failed. */
-export async function chosenDevice() {
+/** Lets a person choose a robot; rejects with a ConnectionFailure. */
+export async function chooseDevice() {
   try {
     return await BLUETOOTH.requestDevice({
-      filters: [{ services: [NORDIC] }, { services: [HM10] }],
-      optionalServices: [NORDIC, HM10],
+      filters: [{ services: [NORDIC_SERVICE] }, { services: [HM10_SERVICE] }],
+      optionalServices: [NORDIC_SERVICE, HM10_SERVICE],
     });
   } catch (why) {
     const { name, message } = /** @type {Error} */ (why);
-    if (name === 'SecurityError') throw new Failed('port_forbidden');
-    throw new Failed(/adapter|disabled|unavailable/i.test(message) ? 'radio_off' : 'not_chosen');
+    if (name === 'SecurityError') throw new ConnectionFailure('port_forbidden');
+    throw new ConnectionFailure(/adapter|disabled|unavailable/i.test(message) ? 'radio_off' : 'not_chosen');
   }
 }
 
@@ -32,9 +32,9 @@ export class BluetoothPort {
   #device;
   #baud;
   /** @type {any} */
-  #in = null;
-  #pauseMs = 0; // after a write
-  #writing = Promise.resolve();
+  #input = null;
+  #pause_ms = 0; // after a write
+  #lastWrite = Promise.resolve();
   #isClosing = false;
 
   /** @param {any} device @param {number} baud of the module's UART */
@@ -43,71 +43,71 @@ export class BluetoothPort {
     this.#baud = baud;
   }
 
-  /** @param {(data: Uint8Array) => void} heard @param {() => void} gone */
-  async open(heard, gone) {
+  /** @param {(data: Uint8Array) => void} onData @param {() => void} onGone */
+  async open(onData, onGone) {
     this.#device.addEventListener('gattserverdisconnected', () => {
-      if (!this.#isClosing) gone();
+      if (!this.#isClosing) onGone();
     });
-    let out;
+    let notifier;
     try {
       const server = await this.#device.gatt.connect();
-      const service = await this.#service(server);
-      this.#in = service.in;
-      out = service.out;
+      const service = await this.#findService(server);
+      this.#input = service.in;
+      notifier = service.out;
       // An HM-10 loses bytes that come faster than its UART passes them on.
-      if (service.isSlow) this.#pauseMs = Math.ceil((MOST * 10_000) / this.#baud);
-      out.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
+      if (service.isSlow) this.#pause_ms = Math.ceil((MOST_WRITE_BYTES * 10_000) / this.#baud);
+      notifier.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
         const { value } = event.target;
-        heard(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
+        onData(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
       });
-      await out.startNotifications();
+      await notifier.startNotifications();
     } catch (why) {
-      if (why instanceof Failed) throw why;
-      throw new Failed(/** @type {Error} */ (why).name === 'NetworkError' ? 'link_silent' : 'radio_broken');
+      if (why instanceof ConnectionFailure) throw why;
+      throw new ConnectionFailure(/** @type {Error} */ (why).name === 'NetworkError' ? 'link_silent' : 'radio_broken');
     }
   }
 
   /** @param {any} server */
-  async #service(server) {
+  async #findService(server) {
     try {
-      const service = await server.getPrimaryService(NORDIC);
+      const service = await server.getPrimaryService(NORDIC_SERVICE);
       return {
-        in: await service.getCharacteristic(NORDIC_IN),
-        out: await service.getCharacteristic(NORDIC_OUT),
+        in: await service.getCharacteristic(NORDIC_WRITE),
+        out: await service.getCharacteristic(NORDIC_NOTIFY),
         isSlow: false,
       };
     } catch (why) {
       if (/** @type {Error} */ (why).name !== 'NotFoundError') throw why;
     }
     try {
-      const both = await (await server.getPrimaryService(HM10)).getCharacteristic(HM10_BOTH);
-      return { in: both, out: both, isSlow: true };
+      const characteristic = await (await server.getPrimaryService(HM10_SERVICE)).getCharacteristic(HM10_CHARACTERISTIC);
+      return { in: characteristic, out: characteristic, isSlow: true };
     } catch (why) {
-      if (/** @type {Error} */ (why).name === 'NotFoundError') throw new Failed('no_robot');
+      if (/** @type {Error} */ (why).name === 'NotFoundError') throw new ConnectionFailure('no_robot');
       throw why;
     }
   }
 
   /** Writes after what is being written. @param {Uint8Array} data @returns {Promise<void>} */
   write(data) {
-    const done = this.#writing.then(() => this.#write(data));
-    this.#writing = done.catch(() => {});
-    return done;
+    const write = this.#lastWrite.then(() => this.#write(data));
+    this.#lastWrite = write.catch(() => {});
+    return write;
   }
 
   /** @param {Uint8Array} data */
   async #write(data) {
-    for (let at = 0; at < data.length; at += MOST) {
-      const piece = data.slice(at, at + MOST);
-      if (this.#in.properties.writeWithoutResponse) await this.#in.writeValueWithoutResponse(piece);
-      else await this.#in.writeValueWithResponse(piece);
-      if (this.#pauseMs) await pause(this.#pauseMs);
+    for (let offset = 0; offset < data.length; offset += MOST_WRITE_BYTES) {
+      const chunk = data.slice(offset, offset + MOST_WRITE_BYTES);
+      if (this.#input.properties.writeWithoutResponse) await this.#input.writeValueWithoutResponse(chunk);
+      else await this.#input.writeValueWithResponse(chunk);
+      if (this.#pause_ms) await pause(this.#pause_ms);
     }
   }
 
   async close() {
     this.#isClosing = true;
-    await this.#writing;
+    await this.#lastWrite;
     this.#device.gatt.disconnect();
   }
 }

@@ -2,8 +2,8 @@
 
 import { element, hide } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
-import { showRows, written } from '../page/rows.js';
-import { known, text } from '../page/texts.js';
+import { showRows, variableText } from '../page/rows.js';
+import { textKey, text } from '../page/texts.js';
 import { LINK } from '../page/words.js';
 import { Stops } from '../writing/parts.js';
 
@@ -12,16 +12,16 @@ import { Stops } from '../writing/parts.js';
 
 /**
  * @typedef {object} Page
- * @property {(request: Record<string, unknown>, done?: () => void, isQuiet?: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
+ * @property {(request: Record<string, unknown>, onDone?: () => void, isQuiet?: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
  * @property {() => void} uploadPaused sends the program, and has it halt before its first instruction
  * @property {(key: import('../page/texts.js').Key, values?: Record<string, number>) => void} say
  * @property {() => Promise<boolean>} canGetHalting whether there is a firmware with breakpoints for such a robot
  * @property {() => void} getHalting
- * @property {import('./place.js').RobotPlace} place
+ * @property {import('./place.js').RunningPlace} place
  * @property {import('./recorder.js').Recorder} recorder
  */
 
-const ENDS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
+const END_EVENTS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
 export class Debugging {
   #page;
@@ -32,26 +32,26 @@ export class Debugging {
   /** Its places; none once the text is another one. @type {Checked['places']} */
   #places = [];
   #stops = new Stops();
-  #put = ''; // the places that the robot has
+  #sentPlaces = ''; // the places that the robot has
   #isRunning = false;
   #isStepping = false;
-  #isFirst = false; // it is to halt before its first instruction
-  #asked = 0; // starts and stops
+  #isHaltingFirst = false; // it is to halt before its first instruction
+  #requestCount = 0; // starts and stops
   /** Where it is halted. @type {object | null} */
   #halt = null;
-  #isRead = false; // what it is like there
+  #isHaltRead = false; // what it is like there
   /** @type {number[]} */
   #variables = [];
   /** The others. @type {[string, number][]} */
-  #tasks = [];
-  #step = element('link_step', HTMLButtonElement);
-  #goOn = element('link_go_on', HTMLButtonElement);
+  #otherTasks = [];
+  #stepButton = element('link_step', HTMLButtonElement);
+  #continueButton = element('link_go_on', HTMLButtonElement);
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
-    this.#step.addEventListener('click', () => this.#onStep());
-    this.#goOn.addEventListener('click', () => this.#resume(false));
+    this.#stepButton.addEventListener('click', () => this.#onStep());
+    this.#continueButton.addEventListener('click', () => this.#resume(false));
     element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHalting());
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { this.#places = []; });
@@ -62,9 +62,9 @@ export class Debugging {
   meet(about) {
     this.#about = about;
     this.#program = null;
-    this.#put = '';
+    this.#sentPlaces = '';
     this.#isRunning = about?.is_running ?? false;
-    this.#end();
+    this.#endHalt();
   }
 
   /**
@@ -74,89 +74,89 @@ export class Debugging {
    * @param {boolean} isPaused before its first instruction
    * @returns {((starts: boolean) => Promise<void>) | null}
    */
-  sends(program, isPaused) {
-    const asked = ++this.#asked;
+  onUpload(program, isPaused) {
+    const requestNumber = ++this.#requestCount;
     this.#program = program;
     this.#places = program.places;
-    this.#find();
-    this.#isFirst = isPaused;
-    this.#put = '';
+    this.#findPlaces();
+    this.#isHaltingFirst = isPaused;
+    this.#sentPlaces = '';
     this.#show();
-    if (!this.#can || !(isPaused || this.#wanted.length)) return null;
-    return async (starts) => {
-      if (asked === this.#asked && await this.#send() && asked === this.#asked && starts) await this.#page.ask({ do: 'start' });
+    if (!this.#canHalt || !(isPaused || this.#haltOffsets.length)) return null;
+    return async (isStarted) => {
+      if (requestNumber === this.#requestCount && await this.#sendPlaces() && requestNumber === this.#requestCount && isStarted) await this.#page.ask({ do: 'start' });
     };
   }
 
   /** What the robot has is to start: with the places, if it is the program from here. */
   async startAgain() {
-    this.#isFirst = false;
-    if (this.#put) this.#put = '?'; // a line that ran meanwhile may have taken them away
-    const asked = ++this.#asked;
-    if (this.#program && this.#can && !await this.#send()) return;
-    if (asked === this.#asked) await this.#page.ask({ do: 'start' }, () => this.#page.say('say_started'));
+    this.#isHaltingFirst = false;
+    if (this.#sentPlaces) this.#sentPlaces = '?'; // a line that ran meanwhile may have taken them away
+    const requestNumber = ++this.#requestCount;
+    if (this.#program && this.#canHalt && !await this.#sendPlaces()) return;
+    if (requestNumber === this.#requestCount) await this.#page.ask({ do: 'start' }, () => this.#page.say('say_started'));
   }
 
   /** Somebody has pressed STOP. */
   stop() {
-    this.#asked += 1;
+    this.#requestCount += 1;
   }
 
   /** @param {RobotEvent} event */
   onEvent(event) {
     if (event.event === 'HALTED' && event.is_program) this.#onHalt(Number(event.at), Number(event.task));
-    else if (event.event === 'STARTED' || ENDS.includes(event.event)) {
+    else if (event.event === 'STARTED' || END_EVENTS.includes(event.event)) {
       this.#isRunning = event.event === 'STARTED';
-      this.#isFirst &&= this.#isRunning;
-      this.#end();
+      this.#isHaltingFirst &&= this.#isRunning;
+      this.#endHalt();
     }
   }
 
-  #end() {
+  #endHalt() {
     this.#halt = null;
-    this.#isRead = false;
+    this.#isHaltRead = false;
     this.#isStepping = false;
     this.#variables = [];
-    this.#tasks = [];
+    this.#otherTasks = [];
     this.#show();
   }
 
-  get #can() {
+  get #canHalt() {
     return this.#about?.has_breakpoints ?? false;
   }
 
   // -- places -------------------------------------------------------------------------------------
 
-  #find() {
+  #findPlaces() {
     this.#stops.find(pageState.breakpoints.value, this.#places);
   }
 
   /** Where a robot halts that is to stop at the breakpoints: before a statement of its code. */
-  get #wanted() {
+  get #haltOffsets() {
     const { places, halts } = this.#program ?? { places: [], halts: [] };
-    const found = this.#stops.offsets.map((offset) => halts[places.findIndex(([at]) => at === offset)] ?? offset);
-    return [...new Set(found)];
+    const haltOffsets = this.#stops.offsets.map((offset) => halts[places.findIndex(([placeOffset]) => placeOffset === offset)] ?? offset);
+    return [...new Set(haltOffsets)];
   }
 
   #breakpointsChanged() {
-    this.#find();
-    if (this.#program && this.#can && !this.#isFirst) this.#send();
+    this.#findPlaces();
+    if (this.#program && this.#canHalt && !this.#isHaltingFirst) this.#sendPlaces();
     this.#show();
   }
 
   /** Tells the robot where to halt, if that is new. Returns whether it knows. */
-  async #send() {
-    const wanted = this.#wanted;
-    const places = (this.#isFirst ? [0, ...wanted.filter((at) => at !== 0)] : wanted).slice(0, LINK.most_breakpoints);
-    if (places.join() === this.#put) return true;
-    this.#put = places.join();
+  async #sendPlaces() {
+    const haltOffsets = this.#haltOffsets;
+    const places = (this.#isHaltingFirst ? [0, ...haltOffsets.filter((offset) => offset !== 0)] : haltOffsets).slice(0, LINK.most_breakpoints);
+    if (places.join() === this.#sentPlaces) return true;
+    this.#sentPlaces = places.join();
     return await this.#page.ask({ do: 'break', places }) !== null;
   }
 
   // -- a halt -------------------------------------------------------------------------------------
 
   #onStep() {
-    if (!this.#can) this.#page.say('say_no_breakpoints');
+    if (!this.#canHalt) this.#page.say('say_no_breakpoints');
     else if (this.#halt) this.#resume(true);
     else if (!this.#isRunning) this.#page.uploadPaused();
   }
@@ -165,7 +165,7 @@ export class Debugging {
   #resume(isStep) {
     if (!this.#halt) return;
     this.#halt = null;
-    this.#isRead = false;
+    this.#isHaltRead = false;
     this.#isStepping = isStep;
     this.#page.place.goOn();
     this.#page.recorder.goOn();
@@ -174,27 +174,27 @@ export class Debugging {
     this.#page.ask({ do: 'resume', is_step: isStep });
   }
 
-  /** @param {number} at @param {number} task */
-  #onHalt(at, task) {
+  /** @param {number} offset @param {number} task */
+  #onHalt(offset, task) {
     if (!this.#program) return;
     const { places, halts, program } = this.#program;
-    const place = places[halts.lastIndexOf(at)];
+    const place = places[halts.lastIndexOf(offset)];
     this.#page.recorder.halt();
-    if (!place && (this.#isStepping || this.#isFirst)) { // within one instruction of the text
+    if (!place && (this.#isStepping || this.#isHaltingFirst)) { // within one instruction of the text
       this.#page.ask({ do: 'resume', is_step: true });
       return;
     }
     const halt = this.#halt = {};
-    this.#isFirst = false;
-    this.#send();
-    this.#page.place.hold(place?.[0] ?? at, program);
+    this.#isHaltingFirst = false;
+    this.#sendPlaces();
+    this.#page.place.hold(place?.[0] ?? offset, program);
     if (place) this.#page.say('robot_held', { line: place[1] });
     this.#show();
-    this.#read(halt, task);
+    this.#readValues(halt, task);
   }
 
   /** @param {object} halt @param {number} task */
-  async #read(halt, task) {
+  async #readValues(halt, task) {
     /** @type {number[]} */
     const variables = [];
     while (variables.length < (this.#program?.variables.length ?? 0)) {
@@ -205,40 +205,40 @@ export class Debugging {
     const answer = await this.#page.ask({ do: 'tasks' }, undefined, true);
     if (halt !== this.#halt || !answer?.tasks) return;
     this.#variables = variables;
-    this.#tasks = answer.tasks.filter(([state], k) => k !== task && state !== 'ENDED');
-    this.#isRead = true;
+    this.#otherTasks = answer.tasks.filter(([state], index) => index !== task && state !== 'ENDED');
+    this.#isHaltRead = true;
     this.#show();
   }
 
   /** @param {boolean} isDeaf there are breakpoints, and the robot cannot halt at them */
   async #offerHalting(isDeaf) {
     const about = this.#about;
-    const can = isDeaf && await this.#page.canGetHalting();
-    if (about === this.#about) hide(element('link_halting', HTMLElement), !can || !pageState.breakpoints.value.length);
+    const isAvailable = isDeaf && await this.#page.canGetHalting();
+    if (about === this.#about) hide(element('link_halting', HTMLElement), !isAvailable || !pageState.breakpoints.value.length);
   }
 
   #show() {
-    this.#step.disabled = this.#isRunning && !this.#halt;
-    this.#goOn.disabled = !this.#halt;
-    hide(this.#step, !this.#can && !pageState.breakpoints.value.length); // it says why the robot cannot
-    hide(this.#goOn, !this.#can);
-    const many = this.#wanted.length > LINK.most_breakpoints;
-    const said = element('link_breakpoints', HTMLElement);
-    const isDeaf = this.#about !== null && !this.#can && pageState.breakpoints.value.length > 0;
-    said.textContent = isDeaf ? text('say_no_breakpoints') : many ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
-    hide(said, !isDeaf && !many);
+    this.#stepButton.disabled = this.#isRunning && !this.#halt;
+    this.#continueButton.disabled = !this.#halt;
+    hide(this.#stepButton, !this.#canHalt && !pageState.breakpoints.value.length); // it says why the robot cannot
+    hide(this.#continueButton, !this.#canHalt);
+    const isTooMany = this.#haltOffsets.length > LINK.most_breakpoints;
+    const notice = element('link_breakpoints', HTMLElement);
+    const isDeaf = this.#about !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
+    notice.textContent = isDeaf ? text('say_no_breakpoints') : isTooMany ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
+    hide(notice, !isDeaf && !isTooMany);
     this.#offerHalting(isDeaf);
-    const place = element('link_values', HTMLElement);
+    const valueList = element('link_values', HTMLElement);
     const { places = [], variables = [] } = this.#program ?? {};
-    const rows = this.#variables.length || this.#tasks.length ? [
-      ...variables.map(({ name, is_yes_no }, k) => [name, written(this.#variables[k], is_yes_no)]),
-      ...this.#tasks.map(([state, at]) => [
-        text('task_at', { line: places.findLast(([offset]) => offset <= at)?.[1] ?? 0 }), text(known(`task_${state}`)),
+    const rows = this.#variables.length || this.#otherTasks.length ? [
+      ...variables.map(({ name, is_yes_no }, index) => [name, variableText(this.#variables[index], is_yes_no)]),
+      ...this.#otherTasks.map(([state, taskOffset]) => [
+        text('task_at', { line: places.findLast(([offset]) => offset <= taskOffset)?.[1] ?? 0 }), text(textKey(`task_${state}`)),
       ]),
     ] : [];
-    showRows(place, rows);
-    place.classList.toggle('past', !this.#isRead);
-    hide(place, !rows.length);
-    document.documentElement.dataset['halt'] = this.#isRead ? 'read' : this.#halt ? 'halted' : this.#isRunning ? 'running' : 'none';
+    showRows(valueList, rows);
+    valueList.classList.toggle('past', !this.#isHaltRead);
+    hide(valueList, !rows.length);
+    document.documentElement.dataset['halt'] = this.#isHaltRead ? 'read' : this.#halt ? 'halted' : this.#isRunning ? 'running' : 'none';
   }
 }

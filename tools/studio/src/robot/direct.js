@@ -4,109 +4,109 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Asking, Failed, pause, within } from './transport.js';
+import { RequestQueue, ConnectionFailure, pause, withTimeout } from './transport.js';
 import { LINK, robotOf } from '../page/words.js';
 
-/** @import { Heard, About } from './transport.js' */
+/** @import { RobotListener, About } from './transport.js' */
 
 /**
  * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.
  * @typedef {object} Port
  * @property {boolean} isRadio
  * @property {string} goneBy why the connection is over when the port is
- * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a Failed
+ * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close
  */
 
-const OPEN_MS = 20_000; // a radio that looks for its robot
-const LOOK_MS = 100; // between two looks at the latest
-const CLOSE_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
-const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
-const LOCK = 'tiniscript-robot';
+const OPEN_LIMIT_MS = 20_000; // a radio that looks for its robot
+const LONGEST_WAIT_MS = 100; // between two looks at the latest
+const CLOSE_LIMIT_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
+const STOP_BYTES = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
+const LOCK_NAME = 'tiniscript-robot';
 /** What is said of bytes that are no robot's yet: it may answer late. */
-const LATE = new Set(['link_other', 'link_foreign']);
+const LATE_FAILURES = new Set(['link_other', 'link_foreign']);
 
 /** The connections before, until their ports are closed. @type {Promise<unknown>} */
-let parting = Promise.resolve();
+let closingPorts = Promise.resolve();
 
-export class DirectRobot extends Asking {
+export class DirectRobot extends RequestQueue {
   #python;
   #port;
   #isOpen = false;
-  #isGoing = false;
-  #isAgain = false;
-  #bytes = 0;
+  #isExchanging = false;
+  #isNewDue = false;
+  #byteCount = 0;
   /** @type {number[]} */
-  #came = [];
+  #receivedBytes = [];
   #unlock = () => {};
   /** @type {(why: Error) => void} */
-  #fails = () => {};
+  #rejectConnect = () => {};
   #keepKeys;
 
   /**
    * @param {import('../python.js').Python} python
    * @param {Port} port
-   * @param {Heard} heard
+   * @param {RobotListener} listener
    * @param {(keys: string) => unknown} keepKeys
    */
-  constructor(python, port, heard, keepKeys) {
-    super(heard);
+  constructor(python, port, listener, keepKeys) {
+    super(listener);
     this.#python = python;
     this.#port = port;
     this.#keepKeys = keepKeys;
   }
 
   /**
-   * Connects; rejects with a Failed.
-   * @param {string} robot
+   * Connects; rejects with a ConnectionFailure.
+   * @param {string} robotName
    * @param {string} language
    * @param {string} keys
    * @returns {Promise<About>}
    */
-  async connect(robot, language, keys) {
+  async connect(robotName, language, keys) {
     /** @type {Promise<never>} */
     const disconnected = new Promise((_, reject) => {
-      this.#fails = reject;
+      this.#rejectConnect = reject;
     });
-    return Promise.race([this.#open(robot, language, keys), disconnected]);
+    return Promise.race([this.#open(robotName, language, keys), disconnected]);
   }
 
-  /** @param {string} robot @param {string} language @param {string} keys */
-  async #open(robot, language, keys) {
+  /** @param {string} robotName @param {string} language @param {string} keys */
+  async #open(robotName, language, keys) {
     try {
-      await parting;
-      await this.#lock();
-      await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
-      if (this.isOver) throw new Failed('left'); // nothing of it is in the way of the next one
-      const opening = this.#port.open(
+      await closingPorts;
+      await this.#acquireLock();
+      await this.#python.ask({ do: 'connect', robot: robotName, language }, new TextEncoder().encode(keys));
+      if (this.isOver) throw new ConnectionFailure('left'); // nothing of it is in the way of the next one
+      const opened = this.#port.open(
         (data) => {
-          this.#bytes += data.length;
-          for (const byte of data) this.#came.push(byte);
-          this.go();
+          this.#byteCount += data.length;
+          for (const byte of data) this.#receivedBytes.push(byte);
+          this.send();
         },
-        () => this.end(new Failed(this.#port.goneBy)),
+        () => this.end(new ConnectionFailure(this.#port.goneBy)),
       );
-      opening.then(async () => {
+      opened.then(async () => {
         if (this.isOver) await this.#port.close(); // it was left meanwhile
       }).catch(() => {});
-      await within(OPEN_MS, opening, 'link_silent');
+      await withTimeout(OPEN_LIMIT_MS, opened, 'link_silent');
       this.#isOpen = true;
-      return await this.#meet(robot);
+      return await this.#sayHello(robotName);
     } catch (why) {
-      const failed = why instanceof Failed ? why : new Failed('bug', String(why));
-      this.end(failed);
-      throw failed;
+      const failure = why instanceof ConnectionFailure ? why : new ConnectionFailure('bug', String(why));
+      this.end(failure);
+      throw failure;
     }
   }
 
   /** Another tab that drives a robot of its own keeps it. */
-  #lock() {
+  #acquireLock() {
     if (!navigator.locks) return Promise.resolve();
     return new Promise((resolve, reject) => {
-      navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
+      navigator.locks.request(LOCK_NAME, { ifAvailable: true }, (lock) => {
         if (!lock || this.isOver) {
-          reject(new Failed('other_tab'));
+          reject(new ConnectionFailure('other_tab'));
           return undefined;
         }
         resolve(undefined);
@@ -117,85 +117,85 @@ export class DirectRobot extends Asking {
     });
   }
 
-  /** @param {string} robot @returns {Promise<About>} */
-  async #meet(robot) {
+  /** @param {string} robotName @returns {Promise<About>} */
+  async #sayHello(robotName) {
     let answer;
     if (this.#port.isRadio) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
     else {
       // Bytes that come too early keep a board in its bootloader.
-      await pause(robotOf(robot)?.quiet_ms ?? 0);
+      await pause(robotOf(robotName)?.quiet_ms ?? 0);
       answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
-      if (!answer.ok && !this.#bytes) {
+      if (!answer.ok && !this.#byteCount) {
         await pause(LINK.long_quiet_ms);
         answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
       }
       // What is heard may be a robot that answers late.
-      if (LATE.has(answer.failure ?? '')) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
+      if (LATE_FAILURES.has(answer.failure ?? '')) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
     }
-    if (!answer.robot) throw new Failed(answer.failure ?? 'bug', [answer.said, answer.advice].join(' ').trim());
+    if (!answer.robot) throw new ConnectionFailure(answer.failure ?? 'bug', [answer.said, answer.advice].join(' ').trim());
     return answer.robot;
   }
 
   /** Stops the robot: at once, and again until it confirms. What waits is not done. */
   stop() {
     if (this.isOver) return;
-    this.#port.write(STOP).catch(() => {});
-    for (const { id } of this.asked.splice(0)) this.take({ id, failure: 'stopped_elsewhere' });
+    this.#port.write(STOP_BYTES).catch(() => {});
+    for (const { id } of this.requests.splice(0)) this.take({ id, failure: 'stopped_elsewhere' });
     this.ask({ do: 'stop' }).catch(() => {});
   }
 
   /** Stops the robot and closes the port. */
   leave() {
     if (this.isOver) return;
-    const last = this.#port.write(STOP).catch(() => {});
-    this.end(new Failed('left'), last);
+    const lastWrite = this.#port.write(STOP_BYTES).catch(() => {});
+    this.end(new ConnectionFailure('left'), lastWrite);
   }
 
-  async go() {
+  async send() {
     if (this.isOver || !this.#isOpen) return;
-    if (this.#isGoing) {
-      this.#isAgain = true;
+    if (this.#isExchanging) {
+      this.#isNewDue = true;
       return;
     }
-    this.#isGoing = true;
+    this.#isExchanging = true;
     clearTimeout(this.timer);
-    let wakes = LOOK_MS;
+    let wait_ms = LONGEST_WAIT_MS;
     try {
       do {
-        this.#isAgain = false;
+        this.#isNewDue = false;
         const now_ms = Math.floor(performance.now());
-        const data = new Uint8Array(this.#came.splice(0));
-        const asked = this.asked.splice(0);
-        const answer = await this.#python.ask({ do: 'link', now_ms, asked }, data);
+        const data = new Uint8Array(this.#receivedBytes.splice(0));
+        const requests = this.requests.splice(0);
+        const answer = await this.#python.ask({ do: 'link', now_ms, asked: requests }, data);
         if (this.isOver) return;
         if (answer.send) await this.#port.write(bytesOf(answer.send));
         if (answer.keys) this.#keepKeys(answer.keys);
-        for (const each of answer.news) {
-          this.take(each);
+        for (const news of answer.news) {
+          this.take(news);
           await undefined; // who has asked hears its answer before what comes next
         }
-        if (answer.wakes_ms !== null) wakes = Math.max(0, Math.min(LOOK_MS, answer.wakes_ms - performance.now()));
-      } while (this.#isAgain && !this.isOver);
+        if (answer.wakes_ms !== null) wait_ms = Math.max(0, Math.min(LONGEST_WAIT_MS, answer.wakes_ms - performance.now()));
+      } while (this.#isNewDue && !this.isOver);
     } catch (why) {
-      this.end(why instanceof Failed ? why : new Failed(this.#port.goneBy, ''));
+      this.end(why instanceof ConnectionFailure ? why : new ConnectionFailure(this.#port.goneBy, ''));
     } finally {
-      this.#isGoing = false;
+      this.#isExchanging = false;
     }
-    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), wakes);
+    if (!this.isOver) this.timer = window.setTimeout(() => this.send(), wait_ms);
   }
 
-  /** @param {Failed} why @param {Promise<unknown>} [before] */
-  end(why, before = Promise.resolve()) {
+  /** @param {ConnectionFailure} failure @param {Promise<unknown>} [lastWrite] */
+  end(failure, lastWrite = Promise.resolve()) {
     if (this.isOver) return;
-    parting = Promise.all([parting, within(CLOSE_MS, before.then(() => this.#port.close()), 'port_stuck')
+    closingPorts = Promise.all([closingPorts, withTimeout(CLOSE_LIMIT_MS, lastWrite.then(() => this.#port.close()), 'port_stuck')
       .catch(() => {})
       .finally(() => this.#unlock())]);
-    this.#fails(why);
-    super.end(why);
+    this.#rejectConnect(failure);
+    super.end(failure);
   }
 }
 
-/** @param {string} digits */
-function bytesOf(digits) {
-  return new Uint8Array(digits.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? []);
+/** @param {string} hexDigits */
+function bytesOf(hexDigits) {
+  return new Uint8Array(hexDigits.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? []);
 }

@@ -2,16 +2,16 @@
 
 import { element, hide, say } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
-import { known, text } from '../page/texts.js';
+import { textKey, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
-/** @typedef {'still' | 'own' | 'other' | 'line' | 'waits' | 'halted' | 'done' | 'fault' | 'stopped' | 'lost'} Does */
+/** @typedef {'still' | 'own' | 'other' | 'line' | 'waits' | 'halted' | 'done' | 'fault' | 'stopped' | 'lost'} Activity */
 
-const ENDS = /** @type {Record<string, Does>} */ ({ DONE: 'done', FAULT: 'fault', STOPPED: 'stopped', RESTARTED: 'still', LOST: 'lost', HALTED: 'halted' });
+const END_ACTIVITIES = /** @type {Record<string, Activity>} */ ({ DONE: 'done', FAULT: 'fault', STOPPED: 'stopped', RESTARTED: 'still', LOST: 'lost', HALTED: 'halted' });
 
-export class Doing {
-  /** @type {Does | ''} */
-  #does = '';
+export class ActivityLine {
+  /** @type {Activity | ''} */
+  #activity = '';
   #isWatched = false;
 
   constructor() {
@@ -20,46 +20,46 @@ export class Doing {
 
   /** A robot is connected, or none any more. @param {import('./transport.js').About | null} about */
   meet(about) {
-    this.#does = !about ? '' : about.is_running ? 'other' : 'still';
+    this.#activity = !about ? '' : about.is_running ? 'other' : 'still';
     this.#isWatched = false;
     this.#show();
   }
 
   /** It has a program that begins with its button. */
-  waits() {
-    this.#does = 'waits';
+  showWaiting() {
+    this.#activity = 'waits';
     this.#show();
   }
 
   /** A halted program goes on. */
-  goesOn() {
-    this.#does = 'own';
+  showResumed() {
+    this.#activity = 'own';
     this.#show();
   }
 
   /** Its sensors are read. @param {boolean} isWatched */
-  watch(isWatched) {
+  showWatching(isWatched) {
     this.#isWatched = isWatched;
-    if (isWatched && this.#does) this.#does = 'still';
+    if (isWatched && this.#activity) this.#activity = 'still';
     this.#show();
   }
 
-  /** @param {RobotEvent} event @param {boolean} isLine what begins is one that was typed @param {boolean} isOwn it is of this page */
-  onEvent({ event, at = -1 }, isLine, isOwn) {
-    if (event === 'PLACE' && this.#does === 'halted') return;
-    const begins = event === 'STARTED' || (event === 'PLACE' && at >= 0); // by the robot's button
-    const does = begins ? (isLine ? 'line' : isOwn ? 'own' : 'other') : ENDS[event];
-    if (!does || !this.#does || (event === 'DONE' && this.#does === 'waits')) return; // that program has replaced what ran
-    this.#does = does;
+  /** @param {RobotEvent} event @param {boolean} isTyped what begins is one that was typed @param {boolean} isOwn it is of this page */
+  onEvent({ event, at = -1 }, isTyped, isOwn) {
+    if (event === 'PLACE' && this.#activity === 'halted') return;
+    const isBeginning = event === 'STARTED' || (event === 'PLACE' && at >= 0); // by the robot's button
+    const activity = isBeginning ? (isTyped ? 'line' : isOwn ? 'own' : 'other') : END_ACTIVITIES[event];
+    if (!activity || !this.#activity || (event === 'DONE' && this.#activity === 'waits')) return; // that program has replaced what ran
+    this.#activity = activity;
     this.#show();
   }
 
   #show() {
-    const place = element('link_doing', HTMLElement);
-    hide(place, !this.#does);
-    if (!this.#does || !pageState.language.value) return;
-    const does = this.#isWatched ? 'senses' : this.#does;
-    say(place, text(known(`doing_${does}`)));
-    place.dataset['does'] = does;
+    const line = element('link_doing', HTMLElement);
+    hide(line, !this.#activity);
+    if (!this.#activity || !pageState.language.value) return;
+    const activityKey = this.#isWatched ? 'senses' : this.#activity;
+    say(line, text(textKey(`doing_${activityKey}`)));
+    line.dataset['does'] = activityKey;
   }
 }

@@ -5,60 +5,60 @@
 import { watchedFetch } from '../page/progress.js';
 import { BadHex, readHex } from './intel_hex.js';
 import { SerialPort } from './serial.js';
-import { Failed } from './transport.js';
+import { ConnectionFailure } from './transport.js';
 import { BOARDS, flash } from './stk500.js';
 
 /** @typedef {{title: string, board: string, file: string}} Firmware */
-/** @typedef {{robot: string, language: string, halts: boolean}} Wanted of which robot; one that halts answers no text */
+/** @typedef {{robot: string, language: string, halts: boolean}} WantedFirmware of which robot; one that halts answers no text */
 
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
 const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
-/** @typedef {import('../page/progress.js').Watching} Watching */
+/** @typedef {import('../page/progress.js').WatchOptions} Watching */
 
 /**
- * Returns the firmware of a robot, or that of a file; rejects with a Failed.
- * @param {Wanted | File} which
+ * Returns the firmware of a robot, or that of a file; rejects with a ConnectionFailure.
+ * @param {WantedFirmware | File} wanted
  * @param {string} board
- * @param {Watching} watching
+ * @param {Watching} watchOptions
  */
-export async function firmwareOf(which, board, watching) {
-  const data = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board, watching);
+export async function firmwareOf(wanted, board, watchOptions) {
+  const data = wanted instanceof File ? await wanted.slice(0, MOST_BYTES).arrayBuffer() : await fetchFirmware(wanted, board, watchOptions);
   return new Uint8Array(data);
 }
 
 /** Has what writes onto a board fetched. @param {string} board @returns {Promise<unknown>} */
-export async function writerOf(board) {
+export async function loadWriter(board) {
   return BOARDS[board] ? null : import('./esp32.js');
 }
 
 /**
- * Writes a firmware; rejects with a Failed.
+ * Writes a firmware; rejects with a ConnectionFailure.
  * @param {any} port of the browser
  * @param {string} board
  * @param {Uint8Array} data
- * @param {(part: number) => void} progress
- * @param {AbortSignal} cancelled
+ * @param {(part: number) => void} onProgress
+ * @param {AbortSignal} cancelSignal
  */
-export async function flashBoard(port, board, data, progress, cancelled) {
+export async function flashBoard(port, board, data, onProgress, cancelSignal) {
   if (!BOARDS[board]) {
     const { flashEsp32 } = await import('./esp32.js');
-    await flashEsp32(port, board, data, progress, cancelled);
+    await flashEsp32(port, board, data, onProgress, cancelSignal);
     return;
   }
   let firmware;
   try {
     firmware = readHex(new TextDecoder().decode(data), FLASH_BYTES);
   } catch (why) {
-    if (why instanceof BadHex) throw new Failed('flash_bad_file');
+    if (why instanceof BadHex) throw new ConnectionFailure('flash_bad_file');
     throw why;
   }
-  await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, progress, cancelled);
+  await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, onProgress, cancelSignal);
 }
 
-/** What there is beside this page. @param {Watching} [watching] @returns {Promise<Firmware[]>} */
-export async function firmwares(watching) {
-  return JSON.parse(new TextDecoder().decode(await fetchedBytes('firmware.json', watching)));
+/** What there is beside this page. @param {Watching} [watchOptions] @returns {Promise<Firmware[]>} */
+export async function firmwares(watchOptions) {
+  return JSON.parse(new TextDecoder().decode(await fetchBytes('firmware.json', watchOptions)));
 }
 
 /** @param {string} robot @returns {string} the title of its firmware with breakpoints */
@@ -66,24 +66,24 @@ export function haltingTitle(robot) {
   return `${robot}_breakpoints`;
 }
 
-/** @param {Wanted} which @param {string} board @param {Watching} watching */
-async function fetched({ robot, language, halts }, board, watching) {
-  const list = await firmwares(watching);
+/** @param {WantedFirmware} which @param {string} board @param {Watching} watchOptions */
+async function fetchFirmware({ robot, language, halts }, board, watchOptions) {
+  const firmwareList = await firmwares(watchOptions);
   const titles = halts ? [haltingTitle(robot)] : [`${robot}_${language}`, robot];
-  const firmware = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
-  if (!firmware) throw new Failed('flash_none');
-  return fetchedBytes(firmware.file, watching);
+  const firmware = titles.map((title) => firmwareList.find((candidate) => candidate.title === title && candidate.board === board)).find(Boolean);
+  if (!firmware) throw new ConnectionFailure('flash_none');
+  return fetchBytes(firmware.file, watchOptions);
 }
 
-/** @param {string} name @param {Watching} [watching] */
-async function fetchedBytes(name, watching) {
+/** @param {string} fileName @param {Watching} [watchOptions] */
+async function fetchBytes(fileName, watchOptions) {
   try {
-    const answer = await watchedFetch(`./${encodeURIComponent(name)}`, watching);
-    if (answer.ok) return await answer.arrayBuffer();
+    const response = await watchedFetch(`./${encodeURIComponent(fileName)}`, watchOptions);
+    if (response.ok) return await response.arrayBuffer();
   } catch (why) {
-    if (watching?.cancelled?.aborted) throw new Failed('flash_not_begun');
-    if (/** @type {Error} */ (why).name === 'TimeoutError') throw new Failed('flash_held');
+    if (watchOptions?.cancelSignal?.aborted) throw new ConnectionFailure('flash_not_begun');
+    if (/** @type {Error} */ (why).name === 'TimeoutError') throw new ConnectionFailure('flash_held');
     // no network, or a service worker without it
   }
-  throw new Failed('flash_none');
+  throw new ConnectionFailure('flash_none');
 }

@@ -7,25 +7,25 @@
 
 /** @import { Answer, About } from './transport.js' */
 
-import { Asking, Failed, pause } from './transport.js';
-import { keepAt, kept } from '../page/kept.js';
-import { leaveForeignWorkers } from '../page/offline.js';
+import { RequestQueue, ConnectionFailure, pause } from './transport.js';
+import { storeText, storedText } from '../page/kept.js';
+import { removeForeignWorkers } from '../page/offline.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
 
-const PLACE = 'tiniscript.token';
-const LOADED_PLACE = 'tiniscript.loaded'; // the code for which the page was loaded again
+const TOKEN_KEY = 'tiniscript.token';
+const LOADED_CODE_KEY = 'tiniscript.loaded'; // the code for which the page was loaded again
 const BEAT_MS = 100;
-const GAP_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
-const SILENT_MS = 3000; // without an answer
-const ASK_MS = 2000;
+const LEAST_BEAT_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
+const SILENCE_LIMIT_MS = 3000; // without an answer
+const REQUEST_LIMIT_MS = 2000;
 const CONNECT_TRIES = 3;
 /** What this page calls itself. */
-const TAB = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+const TAB_ID = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 
-let token = kept(PLACE, 'sessionStorage');
+let token = storedText(TOKEN_KEY, 'sessionStorage');
 /** Why the code of the address has given no token, or nothing. */
-export const whyOutside = await enter();
+export const entryFailure = await exchangeCode();
 
 /** Whether this page comes from a `tsc studio`, and may ask it for all that it has. */
 export const hasHost = token !== '';
@@ -34,21 +34,21 @@ export const isTeacher = 'class' in dataset && hasHost;
 export const isPupil = 'class' in dataset && !hasHost;
 if (isPupil) dataset['class'] = 'pupil';
 
-/** From now on this page asks as a pupil. @param {string} own */
-export function askAs(own) {
-  token = own;
+/** From now on this page asks as a pupil. @param {string} pupilToken */
+export function askAs(pupilToken) {
+  token = pupilToken;
 }
 
 /** Takes the code out of the address, and gets the token for it, unless somebody else's worker would read it. @returns {Promise<string>} */
-async function enter() {
+async function exchangeCode() {
   const code = /^#code=([0-9a-f]{32})$/.exec(location.hash)?.[1];
   if (!code) return '';
-  if (await leaveForeignWorkers()) {
-    if (kept(LOADED_PLACE, 'sessionStorage') === code || !keepAt(LOADED_PLACE, code, 'sessionStorage')) return 'host_worker';
+  if (await removeForeignWorkers()) {
+    if (storedText(LOADED_CODE_KEY, 'sessionStorage') === code || !storeText(LOADED_CODE_KEY, code, 'sessionStorage')) return 'host_worker';
     location.reload();
     await new Promise(() => {}); // this page does nothing more
   }
-  keepAt(LOADED_PLACE, '', 'sessionStorage');
+  storeText(LOADED_CODE_KEY, '', 'sessionStorage');
   history.replaceState(null, '', location.pathname + location.search);
   token = '';
   try {
@@ -58,28 +58,28 @@ async function enter() {
   } catch {
     return 'host_gone';
   }
-  keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload needs a new address
+  storeText(TOKEN_KEY, token, 'sessionStorage'); // without a storage, a reload needs a new address
   return '';
 }
 
 /**
  * @param {Record<string, unknown>} request
  * @param {RequestInit} [options]
- * @param {string} [where]
+ * @param {string} [path]
  * @returns {Promise<any>}
  */
-export async function post(request, options = {}, where = './robots') {
-  const answer = await fetch(where, {
+export async function post(request, options = {}, path = './robots') {
+  const response = await fetch(path, {
     method: 'POST',
     headers: { 'X-TiniScript-Token': token, 'Content-Type': 'application/json' },
     body: JSON.stringify(request),
-    signal: AbortSignal.timeout(ASK_MS),
+    signal: AbortSignal.timeout(REQUEST_LIMIT_MS),
     ...options,
   });
-  if (answer.status === 403) throw new Failed('host_other');
-  if (answer.status === 400) throw new Failed('bad_request');
-  if (!answer.ok) throw new Error(`${answer.status}`); // that says no `tsc studio`: it is as good as lost
-  return answer.json();
+  if (response.status === 403) throw new ConnectionFailure('host_other');
+  if (response.status === 400) throw new ConnectionFailure('bad_request');
+  if (!response.ok) throw new Error(`${response.status}`); // that says no `tsc studio`: it is as good as lost
+  return response.json();
 }
 
 /** @returns {Promise<Port[]>} */
@@ -87,82 +87,82 @@ export async function hostPorts() {
   try {
     return (await post({ do: 'ports' })).ports;
   } catch (why) {
-    throw why instanceof Failed ? why : new Failed('host_gone');
+    throw why instanceof ConnectionFailure ? why : new ConnectionFailure('host_gone');
   }
 }
 
-let sawStops = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
+let seenStops = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
 
 /** @param {number} stops */
 export function hearStops(stops) {
-  sawStops = Math.max(sawStops, stops); // an answer may be late
+  seenStops = Math.max(seenStops, stops); // an answer may be late
 }
 
-let connections = 0; // of this page
-let presses = 0; // of STOP
+let connectionCount = 0; // of this page
+let pressCount = 0; // of STOP
 
-export class HostRobot extends Asking {
-  #connection = ++connections;
-  #isThere = false;
-  #seen = 0;
+export class HostRobot extends RequestQueue {
+  #connectionNumber = ++connectionCount;
+  #isConnected = false;
+  #lastNewsNumber = 0;
   #isAsking = false;
-  #heardAt = 0;
-  #beganAt = -GAP_MS; // the newest beat
+  #heard_ms = 0;
+  #beatBegan_ms = -LEAST_BEAT_MS; // the newest beat
   /** @type {(about: About) => void} */
-  #met = () => {};
+  #resolveConnect = () => {};
   /** @type {(why: Error) => void} */
-  #fails = () => {};
-  #stops = 0; // the newest press of this connection
+  #rejectConnect = () => {};
+  #newestPress = 0; // the newest press of this connection
 
   /**
-   * Connects; rejects with a Failed.
+   * Connects; rejects with a ConnectionFailure.
    * @param {string} port
-   * @param {string} robot
+   * @param {string} robotName
    * @param {string} language
    * @returns {Promise<About>}
    */
-  connect(port, robot, language) {
+  connect(port, robotName, language) {
     /** @type {Promise<About>} */
-    const met = new Promise((resolve, reject) => {
-      this.#met = resolve;
-      this.#fails = reject;
+    const connected = new Promise((resolve, reject) => {
+      this.#resolveConnect = resolve;
+      this.#rejectConnect = reject;
     });
-    this.#open({ port, robot, language, saw_stops: sawStops });
-    return met;
+    this.#open({ port, robot: robotName, language, saw_stops: seenStops });
+    return connected;
   }
 
   /** The same connect is done once, however often it comes. @param {Record<string, string | number>} request */
   async #open(request) {
-    for (let tries = 1; !this.isOver && !this.#isThere; tries += 1) {
+    for (let tryNumber = 1; !this.isOver && !this.#isConnected; tryNumber += 1) {
       try {
         const answer = await this.#post('connect', request);
-        if (answer.failure) this.end(new Failed(answer.failure));
-        this.#isThere = true;
+        if (answer.failure) this.end(new ConnectionFailure(answer.failure));
+        this.#isConnected = true;
       } catch (why) {
-        if (why instanceof Failed) this.end(why);
-        else if (tries === CONNECT_TRIES) this.end(new Failed('host_gone'));
+        if (why instanceof ConnectionFailure) this.end(why);
+        else if (tryNumber === CONNECT_TRIES) this.end(new ConnectionFailure('host_gone'));
         else await pause(BEAT_MS);
       }
     }
     if (this.isOver) return;
-    this.#heardAt = performance.now();
-    this.go();
+    this.#heard_ms = performance.now();
+    this.send();
   }
 
-  /** @param {string} what @param {Record<string, unknown>} [more] @param {RequestInit} [options] */
-  #post(what, more = {}, options = {}) {
-    return post({ do: what, page: TAB, connection: this.#connection, seen: this.#seen, stops: this.#stops, ...more }, options);
+  /** @param {string} action @param {Record<string, unknown>} [fields] @param {RequestInit} [options] */
+  #post(action, fields = {}, options = {}) {
+    return post({ do: action, page: TAB_ID, connection: this.#connectionNumber, seen: this.#lastNewsNumber, stops: this.#newestPress, ...fields }, options);
   }
 
   /** One that was made before a stop, or before this page knew of it, is void. @param {Record<string, unknown>} request @returns {Promise<Answer>} */
   ask(request) {
-    return super.ask({ ...request, stops: presses, seen: this.#seen });
+    return super.ask({ ...request, stops: pressCount, seen: this.#lastNewsNumber });
   }
 
   /** Stops the robot; that waits for nothing. */
   stop() {
     if (this.isOver) return;
-    this.#stops = ++presses;
+    this.#newestPress = ++pressCount;
     this.#post('stop', {}, { keepalive: true }).catch(() => {}); // each beat says so, too
   }
 
@@ -170,54 +170,54 @@ export class HostRobot extends Asking {
   leave() {
     if (this.isOver) return;
     this.#post('leave', {}, { keepalive: true }).catch(() => {});
-    this.end(new Failed('left'));
+    this.end(new ConnectionFailure('left'));
   }
 
-  async go() {
-    if (this.isOver || this.#isAsking || !this.#isThere) return;
+  async send() {
+    if (this.isOver || this.#isAsking || !this.#isConnected) return;
     clearTimeout(this.timer);
-    const early_ms = this.#beganAt + GAP_MS - performance.now();
+    const early_ms = this.#beatBegan_ms + LEAST_BEAT_MS - performance.now();
     if (early_ms > 0) {
-      this.timer = window.setTimeout(() => this.go(), early_ms);
+      this.timer = window.setTimeout(() => this.send(), early_ms);
       return;
     }
     this.#isAsking = true;
-    this.#beganAt = performance.now();
-    const asked = this.asked.splice(0, 8);
+    this.#beatBegan_ms = performance.now();
+    const requests = this.requests.splice(0, 8);
     let isLost = false;
     try {
-      const answer = await this.#post('beat', { asked });
-      this.#heardAt = performance.now();
-      for (const each of answer.news) {
-        this.take(each);
+      const answer = await this.#post('beat', { asked: requests });
+      this.#heard_ms = performance.now();
+      for (const news of answer.news) {
+        this.take(news);
         await undefined; // who has asked hears its answer before what comes next
       }
     } catch (why) {
-      if (why instanceof Failed) this.end(why);
+      if (why instanceof ConnectionFailure) this.end(why);
       else {
         isLost = true;
-        this.asked.unshift(...this.withoutKeys(asked)); // it has not arrived, or has: an id is answered once
-        if (performance.now() - this.#heardAt > SILENT_MS) this.end(new Failed('host_gone'));
+        this.requests.unshift(...this.withoutKeys(requests)); // it has not arrived, or has: an id is answered once
+        if (performance.now() - this.#heard_ms > SILENCE_LIMIT_MS) this.end(new ConnectionFailure('host_gone'));
       }
     } finally {
       this.#isAsking = false;
     }
-    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), this.asked.length && !isLost ? 0 : BEAT_MS);
+    if (!this.isOver) this.timer = window.setTimeout(() => this.send(), this.requests.length && !isLost ? 0 : BEAT_MS);
   }
 
   /** @param {any} news */
   take(news) {
-    if (this.isOver || (news.number && news.number <= this.#seen)) return;
-    this.#seen = Math.max(this.#seen, news.number ?? 0);
-    if (news.over) this.end(new Failed(news.over, news.said));
-    else if (news.connected) this.#met(news.connected);
+    if (this.isOver || (news.number && news.number <= this.#lastNewsNumber)) return;
+    this.#lastNewsNumber = Math.max(this.#lastNewsNumber, news.number ?? 0);
+    if (news.over) this.end(new ConnectionFailure(news.over, news.said));
+    else if (news.connected) this.#resolveConnect(news.connected);
     else super.take(news);
   }
 
-  /** @param {Failed} why */
-  end(why) {
+  /** @param {ConnectionFailure} failure */
+  end(failure) {
     if (this.isOver) return;
-    this.#fails(why);
-    super.end(why);
+    this.#rejectConnect(failure);
+    super.end(failure);
   }
 }

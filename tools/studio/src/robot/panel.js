@@ -2,91 +2,91 @@
 // Everything that a robot says is put there as text, never as markup.
 
 import { element } from '../page/elements.js';
-import { whenEscaped } from '../page/escape.js';
-import { faultSaid } from '../page/faults.js';
-import { bytesOf, whenChosen } from '../page/files.js';
-import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
+import { onEscapeKey } from '../page/escape.js';
+import { faultSentence } from '../page/faults.js';
+import { bytesOf, onFileChosen } from '../page/files.js';
+import { chooseDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { Debugging } from './debugging.js';
-import { Doing } from './doing.js';
+import { ActivityLine } from './doing.js';
 import { DirectRobot } from './direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
 import { Flashing } from './flashing.js';
 import { readTrim, showTrim } from './trim.js';
-import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
-import { refusal, shown } from './plain_text.js';
+import { choosePort, hasSerial, knownPorts, SerialPort } from './serial.js';
+import { refusal, plainText } from './plain_text.js';
 import { stopAll } from './stops.js';
-import { Stopping } from './stopping.js';
+import { StopNotice } from './stopping.js';
 import { Speech } from './speech.js';
-import { Failed } from './transport.js';
-import { Watching } from './watching.js';
-import { keepAt, kept } from '../page/kept.js';
-import { drawnPicture, offer, pictured } from '../page/pictures.js';
+import { ConnectionFailure } from './transport.js';
+import { SensorWatch } from './watching.js';
+import { storeText, storedText } from '../page/kept.js';
+import { symbolPicture, replaceOptions, pictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
-import { called, currentLanguage, text } from '../page/texts.js';
+import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 import { nameOfShow, showAt } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 /** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
-/** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} Witnessed of the group's robot: the number among all news, and that of a value in its run */
-/** @typedef {{label: string, drawn: string, connect: () => Promise<void>, serial?: any}} Choice */
+/** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} GroupRobotEvent of the group's robot: the number among all news, and that of a value in its run */
+/** @typedef {{label: string, symbolId: string, connect: () => Promise<void>, serial?: any}} ConnectionChoice */
 
 /**
  * @typedef {object} Page what the panel uses of the page
  * @property {import('../python.js').Python} python
  * @property {(place: import('../writing/editor.js').Range) => void} goTo
  * @property {import('./recorder.js').Recorder} recorder of what the robot tells
- * @property {import('./place.js').RobotPlace} place where its program is
+ * @property {import('./place.js').RunningPlace} place where its program is
  * @property {import('../remote/pad.js').Pad} pad
  */
 
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc set owner --list` writes it. Who uses
 // this browser uses them; the page gives them to no one but the robot's session.
-const KEYS = 'tiniscript.link.keys';
-const KNOWN = 20;
-const PORT_MS = 2500; // after which it is said that nothing answers at a port yet
-const WORD_MS = 2000; // after which it is said that the robot has not answered yet
+const KEYS_STORAGE_KEY = 'tiniscript.link.keys';
+const MOST_KNOWN_PROGRAMS = 20;
+const PORT_NOTICE_MS = 2500; // after which it is said that nothing answers at a port yet
+const ANSWER_NOTICE_MS = 2000; // after which it is said that the robot has not answered yet
 
 export class RobotPanel {
   #page;
   /** @type {Transport | null} */
-  #way = null;
+  #transport = null;
   /** @type {About | null} */
   #about = null;
   #isBusy = false;
-  #stops = 0; // that were pressed
-  /** @type {Choice[]} */
+  #stopCount = 0; // that were pressed
+  /** @type {ConnectionChoice[]} */
   #choices = [];
   /** Words of a remote control that the newest program reads. @type {string[]} */
-  #reads = [];
+  #remoteWords = [];
   /** @type {Checked | null} */
-  #sent = null;
+  #sentProgram = null;
   /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
-  #known = new Map();
+  #knownPrograms = new Map();
   /** The text of what runs, as it was when that began: another one may have the same code. @type {Checked | undefined} */
-  #running;
+  #runningProgram;
   #speech = new Speech();
-  #stopping = new Stopping(this.#speech);
+  #stopping = new StopNotice(this.#speech);
   #debugging;
-  #doing = new Doing();
+  #activityLine = new ActivityLine();
   #watching;
   /** @type {Flashing} */
   #flashing;
-  #whenLeft = () => {};
-  #line = ''; // the checksum of the newest line
+  #onLeft = () => {};
+  #lineChecksum = ''; // the checksum of the newest line
   #isWitness = false; // of a run on the robot of the group, which another page drives
-  #values = 0; // of that run, until now
-  #list = element('link_port', HTMLSelectElement);
-  #typed = element('link_line', HTMLInputElement);
+  #valueCount = 0; // of that run, until now
+  #portSelect = element('link_port', HTMLSelectElement);
+  #lineInput = element('link_line', HTMLInputElement);
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
     this.#debugging = new Debugging({
-      ask: (request, done, isQuiet) => {
-        if (request['do'] === 'resume') this.#doing.goesOn();
-        return this.#ask(request, done, isQuiet);
+      ask: (request, onDone, isQuiet) => {
+        if (request['do'] === 'resume') this.#activityLine.showResumed();
+        return this.#ask(request, onDone, isQuiet);
       },
       uploadPaused: () => this.#upload(true, true),
       say: (key, values) => this.#speech.say(key, values),
@@ -95,19 +95,19 @@ export class RobotPanel {
       canGetHalting: () => this.#flashing.canHalt(),
       getHalting: () => this.#getHalting(),
     });
-    this.#watching = new Watching({
+    this.#watching = new SensorWatch({
       python: page.python,
       ask: (request, isQuiet) => this.#askNow(request, () => {}, isQuiet),
       say: (key) => this.#speech.say(key),
-      tell: (isOn) => this.#doing.watch(isOn),
+      tell: (isOn) => this.#activityLine.showWatching(isOn),
     });
-    for (const [id, act] of /** @type {[string, () => void][]} */ ([
-      ['link_look', () => this.#look()],
-      ['link_connect', () => this.#choices[this.#list.selectedIndex]?.connect()],
-      ['link_serial', () => this.#bySerial(chosenPort())],
-      ['link_bluetooth', () => this.#byBluetooth()],
-      ['link_leave', () => this.#way?.leave()],
-      ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#name }))],
+    for (const [id, onClick] of /** @type {[string, () => void][]} */ ([
+      ['link_look', () => this.#listChoices()],
+      ['link_connect', () => this.#choices[this.#portSelect.selectedIndex]?.connect()],
+      ['link_serial', () => this.#connectBySerial(choosePort())],
+      ['link_bluetooth', () => this.#connectByBluetooth()],
+      ['link_leave', () => this.#transport?.leave()],
+      ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#robotName }))],
       ['link_upload', () => this.#upload(true)],
       ['link_send', () => this.#upload(false)],
       ['link_start', () => this.#debugging.startAgain()],
@@ -116,69 +116,69 @@ export class RobotPanel {
       ['trim_try', () => this.#live('F(2, 60)')],
       ['keys_claim', () => this.#claim()],
       ['keys_import', () => element('keys_file', HTMLInputElement).click()],
-    ])) element(id, HTMLButtonElement).addEventListener('click', act);
+    ])) element(id, HTMLButtonElement).addEventListener('click', onClick);
     element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#live(this.#typed.value);
+      this.#live(this.#lineInput.value);
     });
-    whenChosen('keys_file', (file) => this.#import(file));
+    onFileChosen('keys_file', (file) => this.#importKeys(file));
     this.#flashing = new Flashing({
       speech: this.#speech,
-      port: () => this.#choices[this.#list.selectedIndex]?.serial,
+      port: () => this.#choices[this.#portSelect.selectedIndex]?.serial,
       isFree: () => this.isFree,
       setBusy: (isBusy) => {
         this.#isBusy = isBusy;
         this.#show();
       },
-      meet: (port) => this.#bySerial(Promise.resolve(port)),
+      meet: (port) => this.#connectBySerial(Promise.resolve(port)),
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
-    whenEscaped(() => this.stop());
+    onEscapeKey(() => this.stop());
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') this.#hide();
     });
-    for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
+    for (const eventName of ['pagehide', 'freeze']) addEventListener(eventName, () => this.#transport?.leave());
     pageState.language.subscribe(() => this.#show());
-    pageState.checked.subscribe((checked) => {
-      if (pageState.group.value && checked?.image) this.#expect(checked); // whoever of the group runs it
-      this.#offer();
+    pageState.checkResult.subscribe((checkResult) => {
+      if (pageState.groupName.value && checkResult?.image) this.#expectProgram(checkResult); // whoever of the group runs it
+      this.#offerRemote();
     });
     this.#show();
-    this.#look();
+    this.#listChoices();
   }
 
-  get #name() {
+  get #robotName() {
     const about = this.#about;
     if (!about) return '';
-    return shown(about.name) || called(robotOf(about.robot ?? '')?.labels ?? {}) || about.id;
+    return plainText(about.name) || labelOf(robotOf(about.robot ?? '')?.labels ?? {}) || about.id;
   }
 
   /** Sends the program and runs it, or says that no robot is there. */
   run() {
-    if (this.#way) this.#upload(true);
+    if (this.#transport) this.#upload(true);
     else if (!this.#isBusy) this.#speech.say('say_no_robot');
   }
 
-  get isFree() { return !this.#isBusy && !this.#way; }
+  get isFree() { return !this.#isBusy && !this.#transport; }
 
   /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */
   stop() {
-    if (hasHost && (isTeacher || !this.#way)) stopAll();
+    if (hasHost && (isTeacher || !this.#transport)) stopAll();
     this.#stop();
   }
 
   /** @param {string} [confirmed] a text, once it is */
   #stop(confirmed = '') {
-    if (!this.#way) return;
-    this.#stops += 1;
+    if (!this.#transport) return;
+    this.#stopCount += 1;
     this.#debugging.stop();
     this.#watching.stop();
-    this.#way.stop();
+    this.#transport.stop();
     this.#stopping.begin(confirmed);
   }
 
   #hide() {
-    if (!this.#way) return;
+    if (!this.#transport) return;
     this.stop();
     this.#stopping.begin('say_hidden');
   }
@@ -186,228 +186,228 @@ export class RobotPanel {
   // -- connecting ---------------------------------------------------------------------------------
 
   /** Lists what can be reached, and opens nothing. */
-  async #look() {
+  async #listChoices() {
     if (isPupil) return; // whose robot is the one of the turn
-    /** @type {Choice[]} */
-    const found = [];
-    let failed = null;
+    /** @type {ConnectionChoice[]} */
+    const choices = [];
+    let failure = null;
     if (hasHost) {
       try {
         for (const { port, name, description, virtual } of await hostPorts()) {
-          const about = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
-          const label = shown([name, about, port].filter(Boolean).join(' · '));
-          found.push({ label, drawn: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.byHost(port) });
+          const details = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
+          const label = plainText([name, details, port].filter(Boolean).join(' · '));
+          choices.push({ label, symbolId: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.connectByHost(port) });
         }
       } catch (why) {
-        failed = why;
+        failure = why;
       }
     }
-    for (const [k, port] of (await knownPorts()).entries()) {
-      found.push({ label: text('serial_known', { number: k + 1 }), drawn: 'drawn_plug', connect: () => this.#bySerial(Promise.resolve(port)), serial: port });
+    for (const [index, port] of (await knownPorts()).entries()) {
+      choices.push({ label: text('serial_known', { number: index + 1 }), symbolId: 'drawn_plug', connect: () => this.#connectBySerial(Promise.resolve(port)), serial: port });
     }
-    this.#choices = found;
-    offer(this.#list, found.map(({ label, drawn }) => pictured(label, label, drawnPicture(drawn))));
+    this.#choices = choices;
+    replaceOptions(this.#portSelect, choices.map(({ label, symbolId: drawn }) => pictureOption(label, label, symbolPicture(drawn))));
     this.#show();
-    if (this.#way) return;
-    if (failed instanceof Failed) this.#speech.fail(failed);
-    else if (found.length) this.#speech.say('say_choose');
+    if (this.#transport) return;
+    if (failure instanceof ConnectionFailure) this.#speech.fail(failure);
+    else if (choices.length) this.#speech.say('say_choose');
     else if (hasHost) this.#speech.say('say_none');
     else this.#speech.say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
   }
 
   /** Connects through `tsc studio`; a pupil's port is that of the turn. @param {string} port */
-  byHost(port = 'turn') {
-    return this.#connect(async (heard) => {
-      const way = new HostRobot(heard);
-      return { way, met: way.connect(port, pageState.robotName.value, currentLanguage()) };
+  connectByHost(port = 'turn') {
+    return this.#connect(async (listener) => {
+      const transport = new HostRobot(listener);
+      return { transport, connected: transport.connect(port, pageState.robotName.value, currentLanguage()) };
     });
   }
 
-  /** @param {Promise<any>} chosen */
-  #bySerial(chosen) {
-    return this.#connect(async (heard) => this.#direct(new SerialPort(await chosen, this.#baud), heard));
+  /** @param {Promise<any>} choosingPort */
+  #connectBySerial(choosingPort) {
+    return this.#connect(async (listener) => this.#openDirect(new SerialPort(await choosingPort, this.#baud), listener));
   }
 
-  #byBluetooth() {
-    const chosen = chosenDevice();
-    return this.#connect(async (heard) => this.#direct(new BluetoothPort(await chosen, this.#baud), heard));
+  #connectByBluetooth() {
+    const choosingDevice = chooseDevice();
+    return this.#connect(async (listener) => this.#openDirect(new BluetoothPort(await choosingDevice, this.#baud), listener));
   }
 
   get #baud() {
     return robotOf(pageState.robotName.value)?.baud ?? 9600;
   }
 
-  /** @param {import('./direct.js').Port} port @param {import('./transport.js').Heard} heard */
-  #direct(port, heard) {
-    const way = new DirectRobot(this.#page.python, port, heard, (keys) => keepAt(KEYS, keys));
-    return { way, met: way.connect(pageState.robotName.value, currentLanguage(), kept(KEYS)) };
+  /** @param {import('./direct.js').Port} port @param {import('./transport.js').RobotListener} listener */
+  #openDirect(port, listener) {
+    const transport = new DirectRobot(this.#page.python, port, listener, (keys) => storeText(KEYS_STORAGE_KEY, keys));
+    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage(), storedText(KEYS_STORAGE_KEY)) };
   }
 
-  /** @param {(heard: import('./transport.js').Heard) => Promise<{way: Transport, met: Promise<About>}>} open */
-  async #connect(open) {
-    if (this.#isBusy || this.#way) return;
+  /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connected: Promise<About>}>} openTransport */
+  async #connect(openTransport) {
+    if (this.#isBusy || this.#transport) return;
     this.#isBusy = true;
-    this.seeNothing();
+    this.endWitness();
     this.#speech.say('say_connecting');
     this.#show();
-    const word = setTimeout(() => this.#speech.say('say_nothing_yet'), PORT_MS);
+    const noticeTimer = setTimeout(() => this.#speech.say('say_nothing_yet'), PORT_NOTICE_MS);
     /** @type {Transport | null} */
-    let way = null;
-    const heard = {
-      event: (/** @type {RobotEvent} */ event) => this.#hear(event),
-      over: (/** @type {Failed} */ why) => {
-        if (this.#way && this.#way === way) this.#end(why);
+    let transport = null;
+    const listener = {
+      onEvent: (/** @type {RobotEvent} */ event) => this.#onRobotEvent(event),
+      onEnd: (/** @type {ConnectionFailure} */ failure) => {
+        if (this.#transport && this.#transport === transport) this.#onDisconnected(failure);
       },
     };
     try {
-      const opened = await open(heard);
-      way = this.#way = opened.way; // STOP reaches it from now on
+      const opened = await openTransport(listener);
+      transport = this.#transport = opened.transport; // STOP reaches it from now on
       this.#show();
-      const about = await opened.met;
-      clearTimeout(word);
+      const about = await opened.connected;
+      clearTimeout(noticeTimer);
       this.#about = about;
-      this.#begin(about);
+      this.#onConnected(about);
     } catch (why) {
-      if (this.#way === way) this.#end(why instanceof Failed ? why : new Failed('bug', String(why))); // else it was told
+      if (this.#transport === transport) this.#onDisconnected(why instanceof ConnectionFailure ? why : new ConnectionFailure('bug', String(why))); // else it was told
     } finally {
-      clearTimeout(word);
+      clearTimeout(noticeTimer);
       this.#isBusy = false;
       this.#show();
     }
   }
 
   /** @param {About} about */
-  #begin(about) {
+  #onConnected(about) {
     this.#speech.clear();
     this.#debugging.meet(about);
-    this.#doing.meet(about);
-    const isOther = about.robot !== null && about.robot !== pageState.robotName.value;
-    if (about.robot !== null && isOther) pageState.robotName.set(about.robot);
-    if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
-    else if (isOther) this.#speech.say('say_other_kit', { name: this.#name, robot: String(about.robot) });
-    else this.#speech.say('say_connected', { name: this.#name });
-    element('link_rename_to', HTMLInputElement).value = shown(about.name);
+    this.#activityLine.meet(about);
+    const isOtherRobot = about.robot !== null && about.robot !== pageState.robotName.value;
+    if (about.robot !== null && isOtherRobot) pageState.robotName.set(about.robot);
+    if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#robotName });
+    else if (isOtherRobot) this.#speech.say('say_other_kit', { name: this.#robotName, robot: String(about.robot) });
+    else this.#speech.say('say_connected', { name: this.#robotName });
+    element('link_rename_to', HTMLInputElement).value = plainText(about.name);
     this.#watching.meet(about);
     this.#page.recorder.meet(about);
-    this.#way?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
+    this.#transport?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
 
-  /** @param {Failed} why */
-  #end(why) {
-    this.#way = null;
+  /** @param {ConnectionFailure} failure */
+  #onDisconnected(failure) {
+    this.#transport = null;
     this.#about = null;
-    this.#sent = null;
-    this.#running = undefined;
+    this.#sentProgram = null;
+    this.#runningProgram = undefined;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
     this.#debugging.meet(null);
-    this.#doing.meet(null);
+    this.#activityLine.meet(null);
     this.#watching.meet(null);
-    const unconfirmed = this.#stopping.end();
-    this.#speech.fail(why, unconfirmed);
+    const stopSentence = this.#stopping.end();
+    this.#speech.fail(failure, stopSentence);
     this.#show();
-    this.#whenLeft();
+    this.#onLeft();
   }
 
   // -- what the robot is told ---------------------------------------------------------------------
 
   /**
    * @param {Record<string, unknown>} request
-   * @param {(answer: Answer) => void} [done]
+   * @param {(answer: Answer) => void} [onDone]
    * @param {boolean} [isQuiet] about how it fails
    * @returns {Promise<Answer | null>} null if it failed
    */
-  async #ask(request, done = () => {}, isQuiet = false) {
-    const makesWay = this.#about && this.#watching.before(request);
-    if (makesWay) await makesWay;
-    const answer = await this.#askNow(request, done, isQuiet);
-    this.#watching.after(request);
+  async #ask(request, onDone = () => {}, isQuiet = false) {
+    const pausing = this.#about && this.#watching.pauseFor(request);
+    if (pausing) await pausing;
+    const answer = await this.#askNow(request, onDone, isQuiet);
+    this.#watching.resumeAfter(request);
     return answer;
   }
 
   /**
    * @param {Record<string, unknown>} request
-   * @param {(answer: Answer) => void} done
+   * @param {(answer: Answer) => void} onDone
    * @param {boolean} isQuiet
    * @returns {Promise<Answer | null>}
    */
-  async #askNow(request, done, isQuiet) {
-    if (!this.#way || !this.#about) return null;
-    const isSaid = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
-    const word = isSaid ? 0 : setTimeout(() => this.#speech.say('say_waits'), WORD_MS);
+  async #askNow(request, onDone, isQuiet) {
+    if (!this.#transport || !this.#about) return null;
+    const isUnannounced = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
+    const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
-      const answer = await this.#way.ask(request);
-      clearTimeout(word);
-      if (answer.ok) done(answer);
-      else if (!isQuiet) this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+      const answer = await this.#transport.ask(request);
+      clearTimeout(noticeTimer);
+      if (answer.ok) onDone(answer);
+      else if (!isQuiet) this.#speech.fail(new ConnectionFailure(answer.failure ?? 'bug', refusal(answer)));
       return answer.ok ? answer : null;
     } catch {
       return null; // it is over, and that was said
     } finally {
-      clearTimeout(word);
+      clearTimeout(noticeTimer);
     }
   }
 
-  /** @param {boolean} runs @param {boolean} isPaused before its first instruction */
-  #upload(runs, isPaused = false) {
-    const program = pageState.checked.value;
+  /** @param {boolean} isStarted @param {boolean} isPaused before its first instruction */
+  #upload(isStarted, isPaused = false) {
+    const program = pageState.checkResult.value;
     if (!program?.image) {
       this.#page.python.again(currentLanguage());
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
-      if (runs && program) this.#stop('say_broken'); // what runs is not what is seen
+      if (isStarted && program) this.#stop('say_broken'); // what runs is not what is seen
       return;
     }
     this.#speech.begin('say_sending');
-    this.#expect(program);
-    const start = this.#debugging.sends(program, isPaused);
-    this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs: runs && !start }, (answer) => {
-      const { program: sum = '', saved = 'MEMORY' } = answer;
-      this.#sent = program;
-      this.#offer();
-      if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
-      if (program.start === 'SB') this.#doing.waits();
+    this.#expectProgram(program);
+    const startHalting = this.#debugging.onUpload(program, isPaused);
+    this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs: isStarted && !startHalting }, (answer) => {
+      const { program: checksum = '', saved = 'MEMORY' } = answer;
+      this.#sentProgram = program;
+      this.#offerRemote();
+      if (isStarted && program.start === 'SB') this.#page.recorder.awaitButton(checksum);
+      if (program.start === 'SB') this.#activityLine.showWaiting();
       this.#speech.say('say_receipt', {}, `saved_${saved}`);
-      start?.(runs && program.start === 'SI');
+      startHalting?.(isStarted && program.start === 'SI');
     });
   }
 
   /** A robot is driven by hand where the program that it has from here, or that is seen, reads a remote control. */
-  #offer() {
-    const reads = this.#sent?.remote.length ? this.#sent.remote : pageState.checked.value?.remote ?? this.#reads;
-    this.#reads = reads;
+  #offerRemote() {
+    const remoteWords = this.#sentProgram?.remote.length ? this.#sentProgram.remote : pageState.checkResult.value?.remote ?? this.#remoteWords;
+    this.#remoteWords = remoteWords;
     const about = this.#about;
-    this.#page.pad.offer('link', about && reads.length ? {
-      reads,
+    this.#page.pad.offer('link', about && remoteWords.length ? {
+      reads: remoteWords,
       isDeaf: !about.has_remote,
-      tell: (held) => this.#press(held),
+      tell: (held) => this.#sendHeldKeys(held),
     } : null);
   }
 
   /** @param {import('../remote/held.js').Held} held */
-  async #press(held) {
-    const answer = await this.#way?.press(held).catch(() => null); // it is over, and that was said
+  async #sendHeldKeys(held) {
+    const answer = await this.#transport?.press(held).catch(() => null); // it is over, and that was said
     if (!answer?.said) return; // it has heard it, or the next word
     this.#page.pad.letGo(); // it is not asked again and again
-    this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+    this.#speech.fail(new ConnectionFailure(answer.failure ?? 'bug', refusal(answer)));
   }
 
   /** Runs a line now. @param {string} line */
   async #live(line) {
     if (!line.trim() || !this.#about) return;
-    const stops = this.#stops;
-    const robot = pageState.robotName.value;
+    const stopCount = this.#stopCount;
+    const robotName = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
     /** @type {Checked} */
-    const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
-    if (stops !== this.#stops) return; // STOP was pressed since
-    const mistake = found.findings.find((each) => each.severity === 'mistake');
+    const checkResult = await this.#page.python.ask({ do: 'check', robot: robotName, language: currentLanguage() }, data);
+    if (stopCount !== this.#stopCount) return; // STOP was pressed since
+    const mistake = checkResult.findings.find((finding) => finding.severity === 'mistake');
     if (mistake) {
       this.#speech.tell(whole(mistake));
       return;
     }
-    this.#know(found);
-    this.#line = found.program;
-    await this.#ask({ do: 'live', image: found.image, robot }, () => this.#speech.say('say_line'));
+    this.#rememberProgram(checkResult);
+    this.#lineChecksum = checkResult.program;
+    await this.#ask({ do: 'live', image: checkResult.image, robot: robotName }, () => this.#speech.say('say_line'));
   }
 
   #rename() {
@@ -415,7 +415,7 @@ export class RobotPanel {
     if (!name || new TextEncoder().encode(name).length > LINK.name_bytes) return;
     this.#ask({ do: 'name', name }, () => {
       if (this.#about) this.#about = { ...this.#about, name };
-      this.#speech.say('say_named', { name: shown(name) });
+      this.#speech.say('say_named', { name: plainText(name) });
       this.#show();
     });
   }
@@ -429,29 +429,29 @@ export class RobotPanel {
 
   /** Its firmware is to be one with breakpoints: the port has to be free. */
   async #getHalting() {
-    const left = new Promise((resolve) => { this.#whenLeft = () => resolve(null); });
-    this.#way?.leave();
-    if (this.#way) await left;
+    const disconnected = new Promise((resolve) => { this.#onLeft = () => resolve(null); });
+    this.#transport?.leave();
+    if (this.#transport) await disconnected;
     await this.#flashing.offerHalting();
     this.#speech.say('say_halting_firmware');
   }
 
   #claim() {
     this.#speech.say('say_claiming');
-    const isHost = this.#way instanceof HostRobot;
+    const isHost = this.#transport instanceof HostRobot;
     this.#ask({ do: 'claim' }, () => this.#speech.say(isHost ? 'say_claimed_here' : 'say_claimed'));
   }
 
   /** @param {File} file with keys */
-  async #import(file) {
-    if (this.#way instanceof HostRobot) {
+  async #importKeys(file) {
+    if (this.#transport instanceof HostRobot) {
       this.#speech.say('say_keys_host');
       return;
     }
     try {
-      const found = await this.#page.python.ask({ do: 'import_keys', kept: kept(KEYS) }, await bytesOf(file));
-      if (found.count) keepAt(KEYS, found.keys);
-      this.#speech.say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
+      const imported = await this.#page.python.ask({ do: 'import_keys', kept: storedText(KEYS_STORAGE_KEY) }, await bytesOf(file));
+      if (imported.count) storeText(KEYS_STORAGE_KEY, imported.keys);
+      this.#speech.say(imported.count ? 'say_keys' : 'say_no_keys', { count: imported.count });
     } catch {
       this.#speech.say('say_no_keys');
     }
@@ -460,27 +460,27 @@ export class RobotPanel {
   // -- what the robot says ------------------------------------------------------------------------
 
   /** @param {RobotEvent} event */
-  #hear(event) {
-    const isTyped = event.program === this.#line;
+  #onRobotEvent(event) {
+    const isTyped = event.program === this.#lineChecksum;
     if (this.#watching.onEvent(event, isTyped)) return;
     this.#page.recorder.onEvent(event);
     this.#page.place.onEvent(event);
-    this.#doing.onEvent(event, isTyped, this.#textOf(event.program) !== undefined);
-    this.#onEvent(event);
+    this.#activityLine.onEvent(event, isTyped, this.#programOf(event.program) !== undefined);
+    this.#showEvent(event);
     this.#debugging.onEvent(event);
   }
 
   /** @param {RobotEvent} event */
-  #onEvent(event) {
-    if (event.event === 'SHOW') this.#speech.add([this.#nameOf(event), event.value].filter(Boolean).join(' '));
-    else if (event.event === 'TEXT') this.#speech.add(text('say_text', { said: shown(String(event.text)) }));
-    else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));
+  #showEvent(event) {
+    if (event.event === 'SHOW') this.#speech.addLine([this.#shownValueName(event), event.value].filter(Boolean).join(' '));
+    else if (event.event === 'TEXT') this.#speech.addLine(text('say_text', { said: plainText(String(event.text)) }));
+    else if (event.event === 'MISSED') this.#speech.addLine(text('say_missed', { count: Number(event.count) }));
     else if (event.event === 'DONE') this.#speech.say('say_done');
-    else if (event.event === 'FAULT') this.#fault(event, this.#sent, true);
-    else if (event.event === 'LOST') this.#lose();
+    else if (event.event === 'FAULT') this.#showFault(event, this.#sentProgram, true);
+    else if (event.event === 'LOST') this.#onLinkLost();
     else if (event.event === 'STARTED') {
       this.#stopping.forget();
-      this.#running = this.#textOf(event.program);
+      this.#runningProgram = this.#programOf(event.program);
     } else if (event.event === 'STOPPING') this.#stopping.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
@@ -492,42 +492,42 @@ export class RobotPanel {
 
   // -- what the robot of the group says -----------------------------------------------------------
 
-  /** The robot of the group, which another page drives, has told this. @param {Witnessed} event */
+  /** The robot of the group, which another page drives, has told this. @param {GroupRobotEvent} event */
   witness(event) {
-    if (this.#way || this.#isBusy) return;
-    const { event: what, program, robot = '', nth } = event;
-    if (what === 'ROBOT') {
-      if (isRobot(robot) && robot !== pageState.robotName.value) pageState.robotName.set(robot);
+    if (this.#transport || this.#isBusy) return;
+    const { event: eventName, program, robot: robotName = '', nth: valueNumber } = event;
+    if (eventName === 'ROBOT') {
+      if (isRobot(robotName) && robotName !== pageState.robotName.value) pageState.robotName.set(robotName);
       return;
     }
-    if (what === 'STARTED') {
-      const seen = pageState.checked.value;
-      if (seen?.image && seen.program === program) this.#expect(seen);
+    if (eventName === 'STARTED') {
+      const checkResult = pageState.checkResult.value;
+      if (checkResult?.image && checkResult.program === program) this.#expectProgram(checkResult);
       this.#isWitness = true;
-      this.#values = 0;
+      this.#valueCount = 0;
       this.#speech.begin('group_runs');
       this.#show();
     }
-    if (nth) {
-      const count = nth - this.#values - 1;
-      this.#values = nth;
-      if (count > 0) this.#see({ event: 'MISSED', count });
+    if (valueNumber) {
+      const missedCount = valueNumber - this.#valueCount - 1;
+      this.#valueCount = valueNumber;
+      if (missedCount > 0) this.#showGroupEvent({ event: 'MISSED', count: missedCount });
     }
-    this.#see(event);
+    this.#showGroupEvent(event);
   }
 
   /** @param {RobotEvent} event */
-  #see(event) {
+  #showGroupEvent(event) {
     this.#page.recorder.onEvent(event);
     this.#page.place.onEvent(event);
     if (event.event === 'OVER') this.#speech.say('group_run_over');
     else if (event.event === 'STOPPED') this.#stopping.confirm(String(event.cause));
-    else if (event.event === 'FAULT') this.#fault(event, this.#textOf(event.program), false);
-    else this.#onEvent(event);
+    else if (event.event === 'FAULT') this.#showFault(event, this.#programOf(event.program), false);
+    else this.#showEvent(event);
   }
 
   /** Nobody tells this page of the group's robot any more. */
-  seeNothing() {
+  endWitness() {
     if (!this.#isWitness) return;
     this.#isWitness = false;
     this.#page.recorder.end('LOST');
@@ -536,67 +536,67 @@ export class RobotPanel {
   }
 
   /** @param {Checked} program that the robot may run as the page's own */
-  #expect(program) {
-    this.#know(program);
-    this.#page.recorder.sends(program);
+  #expectProgram(program) {
+    this.#rememberProgram(program);
+    this.#page.recorder.addProgram(program);
   }
 
   /** @param {Checked} program before its robot may show anything */
-  #know(program) {
-    this.#known.delete(program.program);
-    this.#known.set(program.program, program);
-    for (const [oldest] of this.#known) if (this.#known.size > KNOWN) this.#known.delete(oldest);
+  #rememberProgram(program) {
+    this.#knownPrograms.delete(program.program);
+    this.#knownPrograms.set(program.program, program);
+    for (const [oldest] of this.#knownPrograms) if (this.#knownPrograms.size > MOST_KNOWN_PROGRAMS) this.#knownPrograms.delete(oldest);
   }
 
-  /** The text of a program, if it is one of this page. @param {string} [program] */
-  #textOf(program = '') {
-    const seen = pageState.checked.value;
-    return this.#known.get(program) ?? (program && seen?.program === program ? seen : undefined);
+  /** The text of a program, if it is one of this page. @param {string} [checksum] */
+  #programOf(checksum = '') {
+    const checkResult = pageState.checkResult.value;
+    return this.#knownPrograms.get(checksum) ?? (checksum && checkResult?.program === checksum ? checkResult : undefined);
   }
 
   /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
-  #nameOf({ program, at }) {
+  #shownValueName({ program, at }) {
     if (!program) return '';
-    if (this.#running?.program !== program) this.#running = this.#textOf(program);
-    const show = this.#running && showAt(this.#running, at);
+    if (this.#runningProgram?.program !== program) this.#runningProgram = this.#programOf(program);
+    const show = this.#runningProgram && showAt(this.#runningProgram, at);
     return show ? nameOfShow(show, show[1], false) : '';
   }
 
   /** The robot is silent. */
-  #lose() {
-    if (this.#stopping.isOpen) this.#stopping.giveUp();
+  #onLinkLost() {
+    if (this.#stopping.isOpen) this.#stopping.showUnconfirmed();
     else this.#speech.say('why_link_lost');
   }
 
-  /** @param {RobotEvent} event @param {Checked | null | undefined} of a program @param {boolean} goes whether the caret goes there */
-  #fault(event, of, goes) {
-    const what = faultSaid(event.fault);
-    const place = of?.program === event.program ? of?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
+  /** @param {RobotEvent} event @param {Checked | null | undefined} source a program @param {boolean} movesCaret whether the caret goes there */
+  #showFault(event, source, movesCaret) {
+    const sentence = faultSentence(event.fault);
+    const place = source?.program === event.program ? source?.places.findLast(([offset]) => offset <= Number(event.at)) : undefined;
     if (!place) {
-      this.#speech.tell(what);
+      this.#speech.tell(sentence);
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#speech.tell(text('say_fault', { line, what }));
+    this.#speech.tell(text('say_fault', { line, what: sentence }));
     // else the places are those of another text
-    if (goes && pageState.checked.value === of) this.#page.goTo({ line, column, end_line, end_column });
+    if (movesCaret && pageState.checkResult.value === source) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {
-    const isThere = this.#about !== null;
-    element('link_ways', HTMLElement).hidden = this.#way !== null;
-    element('link_drive', HTMLElement).hidden = !isThere && !this.#isWitness;
-    element('link_drive', HTMLElement).classList.toggle('witness', !isThere);
-    element('link_connected', HTMLElement).hidden = this.#way === null;
-    element('link_name', HTMLElement).textContent = this.#name;
+    const isConnected = this.#about !== null;
+    element('link_ways', HTMLElement).hidden = this.#transport !== null;
+    element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
+    element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);
+    element('link_connected', HTMLElement).hidden = this.#transport === null;
+    element('link_name', HTMLElement).textContent = this.#robotName;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;
     element('link_ports', HTMLElement).hidden = !hasHost && !this.#choices.length;
-    element('link_identify', HTMLButtonElement).hidden = !isThere;
-    element('link_settings', HTMLElement).hidden = !isThere;
-    element('flash', HTMLElement).classList.toggle('away', this.#way !== null);
+    element('link_identify', HTMLButtonElement).hidden = !isConnected;
+    element('link_settings', HTMLElement).hidden = !isConnected;
+    element('flash', HTMLElement).classList.toggle('away', this.#transport !== null);
     for (const id of ['link_connect', 'link_serial', 'link_bluetooth', 'flash_write', 'flash_open']) element(id, HTMLButtonElement).disabled = this.#isBusy;
-    this.#offer();
-    document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
+    this.#offerRemote();
+    document.documentElement.dataset['robot'] = isConnected ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }
 }

@@ -5,29 +5,29 @@ import { rangeAt } from '../writing/parts.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 
-const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST', 'OVER'];
+const END_EVENTS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST', 'OVER'];
 
-export class RobotPlace {
+export class RunningPlace {
   /** What the robot has told last. @type {RobotEvent | null} */
-  #told = null;
+  #lastEvent = null;
   #isHeld = false;
 
   constructor() {
-    pageState.checked.subscribe(() => {
-      if (this.#told) this.#show();
+    pageState.checkResult.subscribe(() => {
+      if (this.#lastEvent) this.#show();
     });
   }
 
   /** @param {RobotEvent} event */
   onEvent(event) {
-    if (ENDS.includes(event.event)) this.end();
-    else if (event.event === 'PLACE' && !this.#isHeld) this.#tell(event);
+    if (END_EVENTS.includes(event.event)) this.end();
+    else if (event.event === 'PLACE' && !this.#isHeld) this.#setEvent(event);
   }
 
-  /** It is halted there. @param {number} at @param {string} program */
-  hold(at, program) {
+  /** It is halted there. @param {number} offset @param {string} program */
+  hold(offset, program) {
     this.#isHeld = true;
-    this.#tell({ event: 'HALTED', at, program });
+    this.#setEvent({ event: 'HALTED', at: offset, program });
   }
 
   /** It goes on from there. */
@@ -39,20 +39,20 @@ export class RobotPlace {
   /** Nobody tells any more. */
   end() {
     this.#isHeld = false;
-    this.#tell(null);
+    this.#setEvent(null);
   }
 
-  /** @param {RobotEvent | null} told */
-  #tell(told) {
-    const isSame = this.#told === told;
-    this.#told = told;
+  /** @param {RobotEvent | null} event */
+  #setEvent(event) {
+    const isSame = this.#lastEvent === event;
+    this.#lastEvent = event;
     if (!isSame) this.#show();
   }
 
   #show() {
-    const program = pageState.checked.value;
-    const at = Number(this.#told?.at ?? -1);
-    const isHere = program?.image && program.program === this.#told?.program && at >= 0 && at < program.bytes;
-    pageState.robotRun.set({ range: isHere ? rangeAt(program.places, at) : null, isHeld: this.#isHeld });
+    const program = pageState.checkResult.value;
+    const offset = Number(this.#lastEvent?.at ?? -1);
+    const isOfPage = program?.image && program.program === this.#lastEvent?.program && offset >= 0 && offset < program.bytes;
+    pageState.robotRun.set({ range: isOfPage ? rangeAt(program.places, offset) : null, isHeld: this.#isHeld });
   }
 }

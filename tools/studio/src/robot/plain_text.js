@@ -4,16 +4,16 @@ import { hasText, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').Answer} Answer */
 
-const SHOWN_CHARACTERS = 200; // of a name or a text
+const MOST_CHARACTERS = 200; // of a name or a text
 
 /** @param {Answer} answer */
 export function refusal({ failure = '', said = '', advice = '' }) {
-  const own = `try_${failure}`;
-  return [said, hasText(own) ? text(own) : advice].join(' ').trim();
+  const adviceKey = `try_${failure}`;
+  return [said, hasText(adviceKey) ? text(adviceKey) : advice].join(' ').trim();
 }
 
-/** What somebody else has written, without what moves or hides text. @param {string} found */
-export function shown(found, most = SHOWN_CHARACTERS) {
-  const plain = found.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
-  return plain.length > most ? `${plain.slice(0, most)}…` : plain;
+/** What somebody else has written, without what moves or hides text. @param {string} text */
+export function plainText(text, mostCharacters = MOST_CHARACTERS) {
+  const plain = text.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
+  return plain.length > mostCharacters ? `${plain.slice(0, mostCharacters)}…` : plain;
 }

@@ -1,13 +1,13 @@
 // A serial port that the browser opens: a cable, or Bluetooth with a serial port.
 
-import { Failed, pause, within } from './transport.js';
+import { ConnectionFailure, pause, withTimeout } from './transport.js';
 
 const SERIAL = /** @type {any} */ (navigator).serial;
-const LOW_MS = 250; // so long a board's reset is held
-const AFTER_MS = 50;
-const WRITE_MS = 3000; // the longest write takes a tenth of it
-const CLOSE_MS = 2000;
-const SPP = '00001101-0000-1000-8000-00805f9b34fb';
+const RESET_PULSE_MS = 250; // so long a board's reset is held
+const BOOT_PAUSE_MS = 50;
+const WRITE_LIMIT_MS = 3000; // the longest write takes a tenth of it
+const CLOSE_LIMIT_MS = 2000;
+const SPP_UUID = '00001101-0000-1000-8000-00805f9b34fb';
 
 export const hasSerial = SERIAL !== undefined;
 
@@ -20,12 +20,12 @@ export async function knownPorts() {
   }
 }
 
-/** Lets a person choose a port; rejects with a Failed. */
-export async function chosenPort() {
+/** Lets a person choose a port; rejects with a ConnectionFailure. */
+export async function choosePort() {
   try {
-    return await SERIAL.requestPort({ allowedBluetoothServiceClassIds: [SPP] });
+    return await SERIAL.requestPort({ allowedBluetoothServiceClassIds: [SPP_UUID] });
   } catch (why) {
-    throw new Failed(/** @type {Error} */ (why).name === 'SecurityError' ? 'port_forbidden' : 'not_chosen');
+    throw new ConnectionFailure(/** @type {Error} */ (why).name === 'SecurityError' ? 'port_forbidden' : 'not_chosen');
   }
 }
 
@@ -40,7 +40,7 @@ export class SerialPort {
   #isClosing = false;
   #isStuck = false; // it takes no bytes any more
   /** @type {Promise<void>} */
-  #reading = Promise.resolve();
+  #readLoop = Promise.resolve();
 
   /** @param {any} port @param {number} baud */
   constructor(port, baud) {
@@ -52,30 +52,30 @@ export class SerialPort {
     return this.#port.getInfo().bluetoothServiceClassId !== undefined;
   }
 
-  /** @param {(data: Uint8Array) => void} heard @param {() => void} gone */
-  async open(heard, gone) {
+  /** @param {(data: Uint8Array) => void} onData @param {() => void} onGone */
+  async open(onData, onGone) {
     try {
       await this.#port.open({ baudRate: this.#baud, bufferSize: 4096 });
     } catch (why) {
       const { name } = /** @type {Error} */ (why);
-      throw new Failed(name === 'InvalidStateError' ? 'port_busy' : name === 'NetworkError' ? 'port_broken' : 'port_forbidden');
+      throw new ConnectionFailure(name === 'InvalidStateError' ? 'port_busy' : name === 'NetworkError' ? 'port_broken' : 'port_forbidden');
     }
     this.#writer = this.#port.writable.getWriter();
-    this.#reading = this.#read(heard).then(() => {
-      if (!this.#isClosing) gone();
+    this.#readLoop = this.#readUntilClosed(onData).then(() => {
+      if (!this.#isClosing) onGone();
     });
   }
 
   /** Restarts a board, as the wires of a cable can, and waits until its bootloader listens. */
   async reset() {
-    await this.#wires(false);
-    await pause(LOW_MS);
-    await this.#wires(true);
-    await pause(AFTER_MS);
+    await this.#setControlLines(false);
+    await pause(RESET_PULSE_MS);
+    await this.#setControlLines(true);
+    await pause(BOOT_PAUSE_MS);
   }
 
   /** @param {boolean} isOn */
-  async #wires(isOn) {
+  async #setControlLines(isOn) {
     try {
       await this.#port.setSignals({ dataTerminalReady: isOn, requestToSend: isOn });
     } catch {
@@ -83,15 +83,15 @@ export class SerialPort {
     }
   }
 
-  /** Reads until the port is closed or gone. @param {(data: Uint8Array) => void} heard */
-  async #read(heard) {
+  /** Reads until the port is closed or gone. @param {(data: Uint8Array) => void} onData */
+  async #readUntilClosed(onData) {
     while (this.#port.readable && !this.#isClosing) {
       this.#reader = this.#port.readable.getReader();
       try {
         for (;;) {
           const { value, done } = await this.#reader.read();
           if (done) break;
-          heard(value);
+          onData(value);
         }
       } catch {
         // A framing error: there is a new reader after it. After the end there is none.
@@ -104,9 +104,9 @@ export class SerialPort {
   /** @param {Uint8Array} data */
   async write(data) {
     try {
-      await within(WRITE_MS, this.#writer.write(data), 'port_stuck');
+      await withTimeout(WRITE_LIMIT_MS, this.#writer.write(data), 'port_stuck');
     } catch (why) {
-      this.#isStuck ||= why instanceof Failed;
+      this.#isStuck ||= why instanceof ConnectionFailure;
       throw why;
     }
   }
@@ -114,15 +114,15 @@ export class SerialPort {
   async close() {
     this.#isClosing = true;
     try {
-      await within(CLOSE_MS, Promise.all([this.#reader?.cancel(), this.#reading]), 'port_stuck');
+      await withTimeout(CLOSE_LIMIT_MS, Promise.all([this.#reader?.cancel(), this.#readLoop]), 'port_stuck');
     } catch {
       // it has gone
     }
     try {
-      await within(CLOSE_MS, this.#isStuck ? this.#writer?.abort() : this.#writer?.close(), 'port_stuck');
+      await withTimeout(CLOSE_LIMIT_MS, this.#isStuck ? this.#writer?.abort() : this.#writer?.close(), 'port_stuck');
     } catch {
       this.#writer?.releaseLock();
     }
-    await within(CLOSE_MS, this.#port.close(), 'port_stuck');
+    await withTimeout(CLOSE_LIMIT_MS, this.#port.close(), 'port_stuck');
   }
 }

@@ -1,80 +1,80 @@
 // What the panel of a real robot says, and what the robot shows: as text, never as markup.
 
 import { element } from '../page/elements.js';
-import { shown } from './plain_text.js';
+import { plainText } from './plain_text.js';
 import { pageState } from '../page/page_state.js';
-import { hasText, known, text } from '../page/texts.js';
+import { hasText, textKey, text } from '../page/texts.js';
 
-/** @typedef {import('./transport.js').Failed} Failed */
+/** @typedef {import('./transport.js').ConnectionFailure} Failed */
 
-const SHOWN = 200; // lines of what the robot shows
-const SAID_CHARACTERS = 1000;
+const MOST_SHOWN_LINES = 200; // lines of what the robot shows
+const MOST_SENTENCE_CHARACTERS = 1000;
 
 export class Speech {
   /** What is said, so that it can be said in another language. @type {() => string} */
-  #said = () => '';
-  #name = ''; // of it
-  isHeld = false; // by a stop, which alone says what becomes of it
+  #sentence = () => '';
+  #sentenceName = ''; // of it
+  isHeldByStop = false; // by a stop, which alone says what becomes of it
   /** @type {string[]} */
-  #shown = [];
-  #line = element('link_said', HTMLElement);
-  #list = element('link_shown', HTMLElement);
+  #shownLines = [];
+  #sentenceElement = element('link_said', HTMLElement);
+  #shownElement = element('link_shown', HTMLElement);
 
   constructor() {
-    pageState.language.subscribe(() => this.#say());
+    pageState.language.subscribe(() => this.#showSentence());
   }
 
-  #say() {
-    this.#line.textContent = this.#said();
+  #showSentence() {
+    this.#sentenceElement.textContent = this.#sentence();
   }
 
-  /** @param {Failed} why @param {() => string} [more] that is said with it */
-  fail(why, more = () => '') {
-    const key = `why_${why.reason}`;
-    const sentence = shown(why.said, SAID_CHARACTERS);
-    const isOurs = hasText(key) && (!sentence || why.reason.startsWith('link_'));
-    this.#put(() => `${isOurs ? text(key) : sentence || text('why_bug')} ${more()}`.trim(), why.reason);
+  /** @param {Failed} failure @param {() => string} [addition] that is said with it */
+  fail(failure, addition = () => '') {
+    const key = `why_${failure.reason}`;
+    const sentence = plainText(failure.details, MOST_SENTENCE_CHARACTERS);
+    const isKnown = hasText(key) && (!sentence || failure.reason.startsWith('link_'));
+    this.#setSentence(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${addition()}`.trim(), failure.reason);
   }
 
   /**
    * @param {import('../page/texts.js').Key} key
    * @param {Record<string, string | number>} values
-   * @param {string} [saved]
+   * @param {string} [placeKey]
    */
-  say(key, values = {}, saved = '') {
-    this.#put(() => text(key, saved ? { ...values, saved: text(known(saved)) } : values), key);
+  say(key, values = {}, placeKey = '') {
+    this.#setSentence(() => text(key, placeKey ? { ...values, saved: text(textKey(placeKey)) } : values), key);
   }
 
-  /** @param {string} said */
-  tell(said) {
-    if (this.isHeld) return;
-    this.#name = '';
-    this.#said = () => said;
-    this.#say();
+  /** @param {string} sentence */
+  tell(sentence) {
+    if (this.isHeldByStop) return;
+    this.#sentenceName = '';
+    this.#sentence = () => sentence;
+    this.#showSentence();
   }
 
-  /** @param {() => string} said @param {string} name for tests */
-  #put(said, name) {
-    if (this.isHeld) return;
+  /** @param {() => string} sentence @param {string} name for tests */
+  #setSentence(sentence, name) {
+    if (this.isHeldByStop) return;
     // A robot is lost once, whether a request says so or an event.
-    if (name.endsWith('link_lost') && this.#name.endsWith('link_lost') && said() === this.#said()) return;
-    this.#name = name;
-    this.#said = said;
-    this.#say();
+    if (name.endsWith('link_lost') && this.#sentenceName.endsWith('link_lost') && sentence() === this.#sentence()) return;
+    this.#sentenceName = name;
+    this.#sentence = sentence;
+    this.#showSentence();
     document.documentElement.dataset['link'] = name;
   }
 
   /** @param {string} line */
-  add(line) {
-    this.#shown.push(line);
-    if (this.#shown.length > SHOWN) this.#shown.splice(0, this.#shown.length - SHOWN);
-    this.#list.textContent = this.#shown.join('\n');
-    this.#list.scrollTop = this.#list.scrollHeight;
+  addLine(line) {
+    this.#shownLines.push(line);
+    if (this.#shownLines.length > MOST_SHOWN_LINES) this.#shownLines.splice(0, this.#shownLines.length - MOST_SHOWN_LINES);
+    this.#shownElement.textContent = this.#shownLines.join('\n');
+    this.#shownElement.scrollTop = this.#shownElement.scrollHeight;
   }
 
   clear() {
-    this.#shown = [];
-    this.#list.textContent = '';
+    this.#shownLines = [];
+    this.#shownElement.textContent = '';
   }
 
   /** Something new begins: what was shown before is gone. @param {import('../page/texts.js').Key} key */

@@ -1,23 +1,23 @@
 // Writes a firmware through a board's bootloader, reads it back and compares. Optiboot and the old
 // Nano's bootloader speak the same: STK500, version 1. Knows no page and no browser.
 
-import { Failed } from './transport.js';
+import { ConnectionFailure } from './transport.js';
 
 /**
  * The cable. `open` opens it and `reset` restarts the board, whose bootloader then listens for a second.
  * @typedef {object} Cable
- * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a Failed
+ * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {() => Promise<void>} reset
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close
  */
 
-/** @typedef {{baud: number, room: number}} Bootloader bits per second, and bytes of flash before it */
+/** @typedef {{baud: number, roomBytes: number}} Bootloader bits per second, and bytes of flash before it */
 
 /** Which a Nano has cannot be seen from outside. @type {Record<string, Bootloader[]>} */
 export const BOARDS = {
-  uno: [{ baud: 115_200, room: 0x7e00 }],
-  nano: [{ baud: 115_200, room: 0x7e00 }, { baud: 57_600, room: 0x7800 }],
+  uno: [{ baud: 115_200, roomBytes: 0x7e00 }],
+  nano: [{ baud: 115_200, roomBytes: 0x7e00 }, { baud: 57_600, roomBytes: 0x7800 }],
 };
 
 const SYNC = 0x30;
@@ -32,31 +32,31 @@ const END = 0x20;
 const IN_SYNC = 0x14;
 const OK = 0x10;
 
-const CHIP = '1e950f'; // an ATmega328P
-const PAGE = 128; // bytes
-const TRIES = 8;
-const SYNC_MS = 250;
-const ANSWER_MS = 1000;
+const CHIP_SIGNATURE = '1e950f'; // an ATmega328P
+const PAGE_BYTES = 128; // bytes
+const SYNC_TRIES = 8;
+const SYNC_LIMIT_MS = 250;
+const ANSWER_LIMIT_MS = 1000;
 
 /**
- * Writes a firmware through the first bootloader that answers; rejects with a Failed.
- * @param {(baud: number) => Cable} cable
+ * Writes a firmware through the first bootloader that answers; rejects with a ConnectionFailure.
+ * @param {(baud: number) => Cable} openCable
  * @param {Bootloader[]} bootloaders
  * @param {Uint8Array} firmware
- * @param {(part: number) => void} progress from 0 to 1
- * @param {AbortSignal} [cancelled] somebody wants it no more
+ * @param {(part: number) => void} onProgress from 0 to 1
+ * @param {AbortSignal} [cancelSignal] somebody wants it no more
  */
-export async function flash(cable, bootloaders, firmware, progress, cancelled) {
-  for (const [k, { baud, room }] of bootloaders.entries()) {
-    const board = new Board(cable(baud), cancelled);
+export async function flash(openCable, bootloaders, firmware, onProgress, cancelSignal) {
+  for (const [index, { baud, roomBytes }] of bootloaders.entries()) {
+    const board = new Board(openCable(baud), cancelSignal);
     try {
       await board.open();
-      if (!(await board.meets())) {
-        if (k + 1 < bootloaders.length) continue;
-        throw new Failed('flash_nobody');
+      if (!(await board.findBootloader())) {
+        if (index + 1 < bootloaders.length) continue;
+        throw new ConnectionFailure('flash_nobody');
       }
-      if (firmware.length > room) throw new Failed('flash_large');
-      await board.write(firmware, progress);
+      if (firmware.length > roomBytes) throw new ConnectionFailure('flash_large');
+      await board.write(firmware, onProgress);
       return;
     } finally {
       await board.close();
@@ -67,24 +67,24 @@ export async function flash(cable, bootloaders, firmware, progress, cancelled) {
 class Board {
   #cable;
   /** @type {number[]} */
-  #came = [];
+  #receivedBytes = [];
   #isGone = false;
   #isWriting = false;
   /** @type {() => void} */
   #wake = () => {};
 
-  #cancelled;
+  #cancelSignal;
 
-  /** @param {Cable} cable @param {AbortSignal} [cancelled] */
-  constructor(cable, cancelled) {
+  /** @param {Cable} cable @param {AbortSignal} [cancelSignal] */
+  constructor(cable, cancelSignal) {
     this.#cable = cable;
-    this.#cancelled = cancelled;
+    this.#cancelSignal = cancelSignal;
   }
 
   async open() {
     await this.#cable.open(
       (data) => {
-        for (const byte of data) this.#came.push(byte);
+        for (const byte of data) this.#receivedBytes.push(byte);
         this.#wake();
       },
       () => {
@@ -100,99 +100,99 @@ class Board {
   }
 
   /** Returns whether a bootloader answers; rejects if it is that of another chip. */
-  async meets() {
-    for (let k = 0; k < TRIES; k += 1) {
-      this.#came = []; // the start of a sketch, or an answer that came late
-      if (!(await this.#ask([SYNC], 0, SYNC_MS))) continue;
-      while (await this.#hears(1, SYNC_MS / 5)) this.#came = []; // those to earlier tries
-      const signature = await this.#ask([SIGNATURE], 3, ANSWER_MS);
+  async findBootloader() {
+    for (let tryNumber = 0; tryNumber < SYNC_TRIES; tryNumber += 1) {
+      this.#receivedBytes = []; // the start of a sketch, or an answer that came late
+      if (!(await this.#ask([SYNC], 0, SYNC_LIMIT_MS))) continue;
+      while (await this.#waitForBytes(1, SYNC_LIMIT_MS / 5)) this.#receivedBytes = []; // those to earlier tries
+      const signature = await this.#ask([SIGNATURE], 3, ANSWER_LIMIT_MS);
       if (!signature) continue;
-      if (hex(signature) !== CHIP) throw new Failed('flash_other_chip');
+      if (hexOf(signature) !== CHIP_SIGNATURE) throw new ConnectionFailure('flash_other_chip');
       return true;
     }
     return false;
   }
 
-  /** @param {Uint8Array} firmware @param {(part: number) => void} progress */
-  async write(firmware, progress) {
+  /** @param {Uint8Array} firmware @param {(part: number) => void} onProgress */
+  async write(firmware, onProgress) {
     this.#isWriting = true;
-    const whole = new Uint8Array(Math.ceil(firmware.length / PAGE) * PAGE).fill(0xff);
-    whole.set(firmware);
-    await this.#must([ENTER], 0);
-    for (let at = 0; at < whole.length; at += PAGE) {
-      await this.#goTo(at);
-      await this.#must([WRITE, 0, PAGE, FLASH, ...whole.subarray(at, at + PAGE)], 0);
-      progress((at + PAGE) / whole.length / 2);
+    const padded = new Uint8Array(Math.ceil(firmware.length / PAGE_BYTES) * PAGE_BYTES).fill(0xff);
+    padded.set(firmware);
+    await this.#request([ENTER], 0);
+    for (let address = 0; address < padded.length; address += PAGE_BYTES) {
+      await this.#setAddress(address);
+      await this.#request([WRITE, 0, PAGE_BYTES, FLASH, ...padded.subarray(address, address + PAGE_BYTES)], 0);
+      onProgress((address + PAGE_BYTES) / padded.length / 2);
     }
-    for (let at = 0; at < whole.length; at += PAGE) {
-      await this.#goTo(at);
-      const page = await this.#must([READ, 0, PAGE, FLASH], PAGE);
-      if (hex(page) !== hex(whole.subarray(at, at + PAGE))) throw new Failed('flash_differs');
-      progress(0.5 + (at + PAGE) / whole.length / 2);
+    for (let address = 0; address < padded.length; address += PAGE_BYTES) {
+      await this.#setAddress(address);
+      const page = await this.#request([READ, 0, PAGE_BYTES, FLASH], PAGE_BYTES);
+      if (hexOf(page) !== hexOf(padded.subarray(address, address + PAGE_BYTES))) throw new ConnectionFailure('flash_differs');
+      onProgress(0.5 + (address + PAGE_BYTES) / padded.length / 2);
     }
-    this.#cancelled = undefined; // it is written, whatever comes now
-    await this.#ask([LEAVE], 0, ANSWER_MS);
+    this.#cancelSignal = undefined; // it is written, whatever comes now
+    await this.#ask([LEAVE], 0, ANSWER_LIMIT_MS);
   }
 
-  /** @param {number} at in bytes; the bootloader counts words */
-  #goTo(at) {
-    return this.#must([ADDRESS, (at >> 1) & 0xff, at >> 9], 0);
+  /** @param {number} address in bytes; the bootloader counts words */
+  #setAddress(address) {
+    return this.#request([ADDRESS, (address >> 1) & 0xff, address >> 9], 0);
   }
 
-  /** @param {number[]} command @param {number} bytes of the answer */
-  async #must(command, bytes) {
-    const answer = await this.#ask(command, bytes, ANSWER_MS);
-    if (!answer) throw new Failed('flash_broken_off');
+  /** @param {number[]} command @param {number} byteCount of the answer */
+  async #request(command, byteCount) {
+    const answer = await this.#ask(command, byteCount, ANSWER_LIMIT_MS);
+    if (!answer) throw new ConnectionFailure('flash_broken_off');
     return answer;
   }
 
   /**
    * Returns the answer's bytes, or null where there is none in time.
    * @param {number[]} command
-   * @param {number} bytes
+   * @param {number} byteCount
    * @param {number} limit_ms
    * @returns {Promise<Uint8Array | null>}
    */
-  async #ask(command, bytes, limit_ms) {
-    this.#heed();
+  async #ask(command, byteCount, limit_ms) {
+    this.#throwIfCancelled();
     try {
       await this.#cable.write(Uint8Array.of(...command, END));
     } catch (why) {
-      this.#heed();
-      if (why instanceof Failed && !this.#isWriting) throw why;
+      this.#throwIfCancelled();
+      if (why instanceof ConnectionFailure && !this.#isWriting) throw why;
       this.#isGone = true;
     }
-    if (!(await this.#hears(bytes + 2, limit_ms))) {
-      if (this.#isGone) throw new Failed(this.#isWriting ? 'flash_broken_off' : 'port_gone');
+    if (!(await this.#waitForBytes(byteCount + 2, limit_ms))) {
+      if (this.#isGone) throw new ConnectionFailure(this.#isWriting ? 'flash_broken_off' : 'port_gone');
       return null;
     }
-    const reply = this.#came.splice(0, bytes + 2);
+    const reply = this.#receivedBytes.splice(0, byteCount + 2);
     return reply[0] === IN_SYNC && reply.at(-1) === OK ? Uint8Array.from(reply.slice(1, -1)) : null;
   }
 
-  #heed() {
-    if (this.#cancelled?.aborted) throw new Failed(this.#isWriting ? 'flash_cancelled' : 'flash_not_begun');
+  #throwIfCancelled() {
+    if (this.#cancelSignal?.aborted) throw new ConnectionFailure(this.#isWriting ? 'flash_cancelled' : 'flash_not_begun');
   }
 
   /** Waits until so many bytes are there. @param {number} count @param {number} limit_ms */
-  async #hears(count, limit_ms) {
-    const end = Date.now() + limit_ms;
-    while (this.#came.length < count && !this.#isGone) {
-      const left = end - Date.now();
-      if (left <= 0) break;
+  async #waitForBytes(count, limit_ms) {
+    const end_ms = Date.now() + limit_ms;
+    while (this.#receivedBytes.length < count && !this.#isGone) {
+      const left_ms = end_ms - Date.now();
+      if (left_ms <= 0) break;
       await new Promise((resolve) => {
-        const timer = setTimeout(resolve, left);
+        const timer = setTimeout(resolve, left_ms);
         this.#wake = () => {
           clearTimeout(timer);
           resolve(undefined);
         };
       });
     }
-    return this.#came.length >= count;
+    return this.#receivedBytes.length >= count;
   }
 }
 
 /** @param {Uint8Array} data */
-function hex(data) {
+function hexOf(data) {
   return [...data].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 }

@@ -58,9 +58,9 @@
 
 /**
  * Who hears of a robot: `over` comes once, when the connection has ended.
- * @typedef {object} Heard
- * @property {(event: RobotEvent) => void} event
- * @property {(why: Failed) => void} over
+ * @typedef {object} RobotListener
+ * @property {(event: RobotEvent) => void} onEvent
+ * @property {(why: ConnectionFailure) => void} onEnd
  */
 
 /**
@@ -72,45 +72,45 @@
  */
 
 /** Why there is no connection: a text `why_…`, and what somebody else says of it. */
-export class Failed extends Error {
+export class ConnectionFailure extends Error {
   /**
    * @param {string} reason
-   * @param {string} said
+   * @param {string} details
    */
-  constructor(reason, said = '') {
+  constructor(reason, details = '') {
     super(reason);
     this.reason = reason;
-    this.said = said;
+    this.details = details;
   }
 }
 
 /** What is asked of a robot, and who waits for it; how it is sent is each way's own. */
-export class Asking {
+export class RequestQueue {
   isOver = false;
   /** What has not been sent yet. @type {Record<string, unknown>[]} */
-  asked = [];
+  requests = [];
   timer = 0; // until it sends the next time
   /** @type {Map<unknown, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
-  #waiting = new Map();
-  #count = 0;
-  #heard;
+  #pendingRequests = new Map();
+  #requestCount = 0;
+  #listener;
 
-  /** @param {Heard} heard */
-  constructor(heard) {
-    this.#heard = heard;
+  /** @param {RobotListener} listener */
+  constructor(listener) {
+    this.#listener = listener;
   }
 
   /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
   ask(request) {
-    const id = ++this.#count;
+    const id = ++this.#requestCount;
     return new Promise((resolve, reject) => {
       if (this.isOver) {
-        reject(new Failed('left'));
+        reject(new ConnectionFailure('left'));
         return;
       }
-      this.#waiting.set(id, { resolve, reject });
-      this.asked.push({ ...request, id });
-      this.go();
+      this.#pendingRequests.set(id, { resolve, reject });
+      this.requests.push({ ...request, id });
+      this.send();
     });
   }
 
@@ -120,61 +120,61 @@ export class Asking {
    * @param {import('../remote/held.js').Held} held
    */
   press(held) {
-    this.asked = this.withoutKeys(this.asked);
+    this.requests = this.withoutKeys(this.requests);
     return this.ask({ do: 'keys', ...held });
   }
 
-  /** What is asked but for keys, whose askers hear that they were not sent. @param {Record<string, unknown>[]} asked */
-  withoutKeys(asked) {
-    return asked.filter((each) => {
-      if (each['do'] !== 'keys') return true;
-      this.#waiting.get(each['id'])?.resolve({ failure: 'replaced' });
-      this.#waiting.delete(each['id']);
+  /** What is asked but for keys, whose askers hear that they were not sent. @param {Record<string, unknown>[]} requests */
+  withoutKeys(requests) {
+    return requests.filter((request) => {
+      if (request['do'] !== 'keys') return true;
+      this.#pendingRequests.get(request['id'])?.resolve({ failure: 'replaced' });
+      this.#pendingRequests.delete(request['id']);
       return false;
     });
   }
 
   /** Sends what is asked. */
-  async go() {}
+  async send() {}
 
   /** @param {any} news an event, or an answer */
   take(news) {
-    if (news.event) this.#heard.event(news);
+    if (news.event) this.#listener.onEvent(news);
     else {
-      this.#waiting.get(news.id)?.resolve(news);
-      this.#waiting.delete(news.id);
+      this.#pendingRequests.get(news.id)?.resolve(news);
+      this.#pendingRequests.delete(news.id);
     }
   }
 
-  /** The connection has ended. @param {Failed} why */
-  end(why) {
+  /** The connection has ended. @param {ConnectionFailure} failure */
+  end(failure) {
     this.isOver = true;
     clearTimeout(this.timer);
-    for (const waiting of this.#waiting.values()) waiting.reject(why);
-    this.#waiting.clear();
-    this.#heard.over(why);
+    for (const pending of this.#pendingRequests.values()) pending.reject(failure);
+    this.#pendingRequests.clear();
+    this.#listener.onEnd(failure);
   }
 }
 
-/** @param {number} milliseconds */
-export function pause(milliseconds) {
-  return new Promise((resolve) => setTimeout(resolve, milliseconds));
+/** @param {number} duration_ms */
+export function pause(duration_ms) {
+  return new Promise((resolve) => setTimeout(resolve, duration_ms));
 }
 
 /**
- * Waits for something at most so long; rejects with a Failed then.
+ * Waits for something at most so long; rejects with a ConnectionFailure then.
  * @template T
- * @param {number} milliseconds
+ * @param {number} limit_ms
  * @param {Promise<T>} promise
- * @param {string} why
+ * @param {string} reason
  * @returns {Promise<T>}
  */
-export function within(milliseconds, promise, why) {
+export function withTimeout(limit_ms, promise, reason) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   /** @type {Promise<never>} */
-  const late = new Promise((_, reject) => {
-    timer = setTimeout(() => reject(new Failed(why)), milliseconds);
+  const timeout = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new ConnectionFailure(reason)), limit_ms);
   });
-  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+  return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
 }

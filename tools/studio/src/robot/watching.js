@@ -5,12 +5,12 @@
 // starting the program; whatever else is asked of the robot comes first. A stop ends it until somebody wants it again.
 
 import { element, hide } from '../page/elements.js';
-import { keepAt, kept } from '../page/kept.js';
-import { measured, numberOf, partOf } from '../page/readings.js';
+import { storeText, storedText } from '../page/kept.js';
+import { readingText, numberOf, percentOfRange } from '../page/readings.js';
 import { showRows } from '../page/rows.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
-import { devicesOf, nameOf, robotOf } from '../page/words.js';
+import { devicesOf, deviceName, robotOf } from '../page/words.js';
 import { Plot } from '../virtual/plot.js';
 import { showAt } from '../writing/shows.js';
 
@@ -25,16 +25,16 @@ import { showAt } from '../writing/shows.js';
  * @property {(isOn: boolean) => void} tell whether the readings come
  */
 
-const PLACE = 'tiniscript.watches'; // whether somebody has wanted it
+const STORAGE_KEY = 'tiniscript.watches'; // whether somebody has wanted it
 const SHOW_BITS = 180; // of a value on the line
-const LINE_SHARE = 3; // a third of what the line can carry, at most
-const LEAST_MS = 200; // between two readings: nobody reads more often
-const REST_MS = 1000; // after a program, before it begins again
-const REST = 'W(0)'; // a line that ends at once, in the place of the other one
+const LOAD_DIVISOR = 3; // a third of what the line can carry, at most
+const LEAST_INTERVAL_MS = 200; // between two readings: nobody reads more often
+const PAUSE_MS = 1000; // after a program, before it begins again
+const EMPTY_LINE = 'W(0)'; // a line that ends at once, in the place of the other one
 /** What does not end by itself what runs, and needs the robot for itself. */
-const ASIDE = ['identify', 'name', 'trim', 'claim'];
+const INTERRUPTING_REQUESTS = ['identify', 'name', 'trim', 'claim'];
 
-export class Watching {
+export class SensorWatch {
   #page;
   /** @type {About | null} */
   #about = null;
@@ -43,23 +43,23 @@ export class Watching {
   #isBusy = false; // something else runs
   #isOn = false;
   #isBeginning = false;
-  #isOurs = false; // what runs, or ran last
-  #waits = false; // the robot's program, for its button
-  #timer = 0;
-  #picture = 0;
+  #isOwnLine = false; // what runs, or ran last
+  #isProgramWaiting = false; // the robot's program, for its button
+  #beginTimer = 0;
+  #frameRequest = 0;
   /** The lines of this part of the page, by their checksums. @type {Map<string, Checked>} */
   #lines = new Map();
   /** By the name of the sensor, as the robot has told them. @type {Map<string, string>} */
   #readings = new Map();
   #began_ms = 0;
   #plot = new Plot(element('senses_plot', HTMLCanvasElement));
-  #button = element('link_watch', HTMLButtonElement);
+  #watchButton = element('link_watch', HTMLButtonElement);
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
-    this.#button.addEventListener('click', () => this.#press());
-    pageState.side.subscribe(() => this.#look());
+    this.#watchButton.addEventListener('click', () => this.#toggle());
+    pageState.sideId.subscribe(() => this.#followSide());
     pageState.language.subscribe(() => this.#show());
     pageState.areWordsShown.subscribe(() => this.#show());
     new ResizeObserver(() => this.#show()).observe(element('senses', HTMLElement));
@@ -70,31 +70,31 @@ export class Watching {
     this.#about = about;
     this.#isFree = about?.is_idle ?? false;
     this.#isBusy = about?.is_running ?? false;
-    this.#isWanted = kept(PLACE) !== '' && about?.owner !== 'other';
-    this.#waits = this.#isOurs = false;
+    this.#isWanted = storedText(STORAGE_KEY) !== '' && about?.owner !== 'other';
+    this.#isProgramWaiting = this.#isOwnLine = false;
     this.#readings.clear();
     this.#plot.begin();
     this.#began_ms = performance.now();
     this.#end();
-    this.#look();
+    this.#followSide();
   }
 
   /** Something is about to be asked of the robot; what is returned is waited for. @param {Record<string, unknown>} request */
-  before(request) {
-    const { do: what } = request;
-    if (what === 'upload' || what === 'live' || what === 'start') {
-      if (what === 'upload') this.#waits = true; // until it begins
+  pauseFor(request) {
+    const { do: action } = request;
+    if (action === 'upload' || action === 'live' || action === 'start') {
+      if (action === 'upload') this.#isProgramWaiting = true; // until it begins
       this.#isFree = false;
       this.#end();
       return null;
     }
-    if (!ASIDE.includes(String(what)) || !this.#isOn) return null;
-    return this.#rest();
+    if (!INTERRUPTING_REQUESTS.includes(String(action)) || !this.#isOn) return null;
+    return this.#giveWay();
   }
 
   /** That was answered. @param {Record<string, unknown>} request */
-  after(request) {
-    if (ASIDE.includes(String(request['do']))) this.#later();
+  resumeAfter(request) {
+    if (INTERRUPTING_REQUESTS.includes(String(request['do']))) this.#beginLater();
   }
 
   /** Somebody has pressed STOP. */
@@ -106,30 +106,30 @@ export class Watching {
 
   /** @param {RobotEvent} event @param {boolean} isTyped it tells of a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
   onEvent({ event, program = '', value = '', at = -1, cause }, isTyped) {
-    const isOurs = this.#lines.has(program);
-    if (event === 'STARTED') this.#isOurs = isOurs;
+    const isOwn = this.#lines.has(program);
+    if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
-      if (isOurs) this.#take(program, at, value);
-      return isOurs || (!program && this.#isOurs);
+      if (isOwn) this.#takeReading(program, at, value);
+      return isOwn || (!program && this.#isOwnLine);
     }
     if (event === 'STARTED' || event === 'PLACE') {
-      if (isOurs) return true;
+      if (isOwn) return true;
       if (event === 'PLACE' && at < 0) return false;
-      if (!isTyped) this.#waits = false; // by the robot's button, too, of which nothing tells but where the program is
-      this.#isFree = this.#isOurs = false;
+      if (!isTyped) this.#isProgramWaiting = false; // by the robot's button, too, of which nothing tells but where the program is
+      this.#isFree = this.#isOwnLine = false;
       this.#isBusy = true;
       this.#end();
     } else if (event === 'DONE') {
-      const wasOurs = this.#isOurs;
-      this.#isOurs = this.#isBusy = false;
+      const wasOwn = this.#isOwnLine;
+      this.#isOwnLine = this.#isBusy = false;
       this.#end();
-      if (wasOurs) return true;
+      if (wasOwn) return true;
       this.#isFree = true;
-      this.#later();
+      this.#beginLater();
     } else if (['STOPPED', 'FAULT', 'RESTARTED', 'LOST'].includes(event)) {
       if (this.#isOn && cause === 'BUTTON') queueMicrotask(() => this.#page.say('say_watch_button')); // after what is said of the stop
       if (this.#isOn) this.#isWanted = false;
-      this.#isFree = this.#isBusy = this.#isOurs = false;
+      this.#isFree = this.#isBusy = this.#isOwnLine = false;
       this.#end();
     }
     return false;
@@ -137,49 +137,49 @@ export class Watching {
 
   // -- its line -----------------------------------------------------------------------------------
 
-  #press() {
+  #toggle() {
     const wasOn = this.#isOn || this.#isBeginning;
     this.#isWanted = !wasOn;
-    keepAt(PLACE, wasOn ? '' : 'on');
-    if (wasOn) this.#rest();
+    storeText(STORAGE_KEY, wasOn ? '' : 'on');
+    if (wasOn) this.#giveWay();
     else if (this.#isBusy) this.#page.say('say_watch_later');
     else {
       this.#isFree = true; // also of one that stands since a stop
-      this.#waits = false;
+      this.#isProgramWaiting = false;
       this.#begin(false);
     }
     this.#show();
   }
 
   /** It is seen only beside the program, and goes on only while it is. */
-  #look() {
-    if (pageState.side.value === 'side_real') this.#begin();
-    else if (this.#isOn) this.#rest();
+  #followSide() {
+    if (pageState.sideId.value === 'side_real') this.#begin();
+    else if (this.#isOn) this.#giveWay();
   }
 
-  #later() {
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#begin(), REST_MS);
+  #beginLater() {
+    clearTimeout(this.#beginTimer);
+    this.#beginTimer = window.setTimeout(() => this.#begin(), PAUSE_MS);
   }
 
-  get #can() {
-    return this.#about !== null && this.#isWanted && this.#isFree && !this.#waits && pageState.side.value === 'side_real';
+  get #canBegin() {
+    return this.#about !== null && this.#isWanted && this.#isFree && !this.#isProgramWaiting && pageState.sideId.value === 'side_real';
   }
 
   async #begin(isQuiet = true) {
     const about = this.#about;
-    if (!this.#can || this.#isOn || this.#isBeginning) return;
+    if (!this.#canBegin || this.#isOn || this.#isBeginning) return;
     this.#isBeginning = true;
     try {
-      const line = await this.#line(this.#text);
-      if (!line.image || !this.#can || about !== this.#about) return;
-      const answer = await this.#page.ask({ do: 'live', image: line.image, robot: this.#robot }, isQuiet);
+      const line = await this.#checkLine(this.#lineText);
+      if (!line.image || !this.#canBegin || about !== this.#about) return;
+      const answer = await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, isQuiet);
       if (about !== this.#about) return;
-      if (answer) this.#isOurs = true;
+      if (answer) this.#isOwnLine = true;
       else this.#isWanted = false; // it is not asked again and again
-      this.#isOn = answer !== null && this.#can;
+      this.#isOn = answer !== null && this.#canBegin;
       if (this.#isOn) this.#page.tell(true);
-      else if (answer && this.#isFree) await this.#rest(); // nobody wants it any more
+      else if (answer && this.#isFree) await this.#giveWay(); // nobody wants it any more
     } finally {
       this.#isBeginning = false;
       this.#show();
@@ -187,65 +187,65 @@ export class Watching {
   }
 
   /** Its line makes room. */
-  async #rest() {
+  async #giveWay() {
     this.#end();
-    const line = await this.#line(REST);
-    if (this.#isOurs) await this.#page.ask({ do: 'live', image: line.image, robot: this.#robot }, true);
+    const line = await this.#checkLine(EMPTY_LINE);
+    if (this.#isOwnLine) await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, true);
   }
 
   #end() {
-    clearTimeout(this.#timer);
+    clearTimeout(this.#beginTimer);
     if (this.#isOn) this.#page.tell(false);
     this.#isOn = false;
     this.#show();
   }
 
-  get #robot() {
+  get #robotName() {
     return this.#about?.robot ?? '';
   }
 
   get #sensors() {
-    return devicesOf(this.#robot, 'sensor');
+    return devicesOf(this.#robotName, 'sensor');
   }
 
-  get #text() {
-    const shows = this.#sensors.map((device) => `SHOW(${device.text});`);
-    const every_ms = Math.max(LEAST_MS, (LINE_SHARE * SHOW_BITS * shows.length * 1000) / (robotOf(this.#robot)?.baud ?? 9600));
-    return `LOOP(FOREVER);${shows.join('')}W(${Math.ceil(every_ms / 50) / 20});END_LOOP`;
+  get #lineText() {
+    const statements = this.#sensors.map((device) => `SHOW(${device.text});`);
+    const interval_ms = Math.max(LEAST_INTERVAL_MS, (LOAD_DIVISOR * SHOW_BITS * statements.length * 1000) / (robotOf(this.#robotName)?.baud ?? 9600));
+    return `LOOP(FOREVER);${statements.join('')}W(${Math.ceil(interval_ms / 50) / 20});END_LOOP`;
   }
 
   /** @param {string} line @returns {Promise<Checked>} */
-  async #line(line) {
-    const found = await this.#page.python.ask({ do: 'check', robot: this.#robot, language: currentLanguage() }, new TextEncoder().encode(`SI|${line}`));
-    this.#lines.set(found.program, found);
-    return found;
+  async #checkLine(line) {
+    const checkResult = await this.#page.python.ask({ do: 'check', robot: this.#robotName, language: currentLanguage() }, new TextEncoder().encode(`SI|${line}`));
+    this.#lines.set(checkResult.program, checkResult);
+    return checkResult;
   }
 
   // -- what it tells ------------------------------------------------------------------------------
 
-  /** @param {string} program @param {number} at @param {string} value */
-  #take(program, at, value) {
+  /** @param {string} program @param {number} offset @param {string} value */
+  #takeReading(program, offset, value) {
     const line = this.#lines.get(program);
-    const show = line && showAt(line, at);
+    const show = line && showAt(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);
-    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: nameOf(device), value: numberOf(this.#readings.get(device.text)) })));
-    this.#picture ||= requestAnimationFrame(() => this.#show());
+    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOf(this.#readings.get(device.text)) })));
+    this.#frameRequest ||= requestAnimationFrame(() => this.#show());
   }
 
   #show() {
-    cancelAnimationFrame(this.#picture);
-    this.#picture = 0;
+    cancelAnimationFrame(this.#frameRequest);
+    this.#frameRequest = 0;
     if (!pageState.language.value) return;
-    const place = element('senses', HTMLElement);
-    hide(this.#button, !this.#sensors.length);
-    hide(place, !this.#readings.size);
-    this.#button.setAttribute('aria-pressed', String(this.#isOn || this.#isBeginning));
-    place.classList.toggle('past', !this.#isOn);
-    if (place.hidden) return;
+    const container = element('senses', HTMLElement);
+    hide(this.#watchButton, !this.#sensors.length);
+    hide(container, !this.#readings.size);
+    this.#watchButton.setAttribute('aria-pressed', String(this.#isOn || this.#isBeginning));
+    container.classList.toggle('past', !this.#isOn);
+    if (container.hidden) return;
     showRows(element('gauges', HTMLElement), this.#sensors.map((device) => {
-      const said = this.#readings.get(device.text) ?? '';
-      return [nameOf(device), said && measured(device, said), partOf(device, numberOf(said))];
+      const reading = this.#readings.get(device.text) ?? '';
+      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOf(reading))];
     }));
     this.#plot.draw();
   }

@@ -1,40 +1,40 @@
 // The window where somebody gives the virtual robot a colour and a name.
 
 import { element } from '../page/elements.js';
-import { button, drawn, labelled, made } from '../page/made.js';
-import { chooseOwnRobot, COLOURS, NAME_LENGTH } from '../page/own_robot.js';
+import { makeButton, makeSvg, makeLabel, makeElement } from '../page/made.js';
+import { chooseOwnRobot, COLOURS, MOST_NAME_CHARACTERS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
 export class OwnWindow {
-  #name = made('input');
-  #colours = made('div');
-  #dialog = made('dialog');
-  #shown = made('span');
+  #name = makeElement('input');
+  #colours = makeElement('div');
+  #dialog = makeElement('dialog');
+  #shown = makeElement('span');
 
   constructor() {
-    const heading = made('h2', 'own_robot');
+    const heading = makeElement('h2', 'own_robot');
     heading.id = 'own_title';
     this.#dialog.id = 'own';
     this.#dialog.setAttribute('aria-labelledby', heading.id);
     this.#name.id = 'own_name';
-    this.#name.maxLength = NAME_LENGTH;
+    this.#name.maxLength = MOST_NAME_CHARACTERS;
     this.#name.autocomplete = 'off';
     this.#name.addEventListener('input', () => this.#choose({ name: this.#name.value }));
     this.#colours.setAttribute('role', 'radiogroup');
     this.#colours.append(...COLOURS.map(([body, edge, key], colour) => {
-      const choice = made('input');
+      const choice = makeElement('input');
       Object.assign(choice, { type: 'radio', name: 'own_colour', value: String(colour) });
       choice.dataset['label'] = key;
       choice.addEventListener('change', () => this.#choose({ colour }));
-      const picture = drawn('svg', { viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, drawn('use', { href: '#drawn_robot' }));
+      const picture = makeSvg('svg', { viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
       picture.style.setProperty('--robot', body);
       picture.style.setProperty('--robot-edge', edge);
-      return made('label', '', choice, picture);
+      return makeElement('label', '', choice, picture);
     }));
     this.#dialog.append(
-      made('header', '', heading, button('close', () => this.#dialog.close())),
-      made('section', '', labelled('own_name', this.#name), this.#colours),
+      makeElement('header', '', heading, makeButton('close', () => this.#dialog.close())),
+      makeElement('section', '', makeLabel('own_name', this.#name), this.#colours),
     );
     document.body.append(this.#dialog);
     this.#shown.className = 'own_name';

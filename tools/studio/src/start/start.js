@@ -1,10 +1,10 @@
 // The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
 
 import { element } from '../page/elements.js';
-import { button, made } from '../page/made.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { lessonsDone, starsInAll } from '../lesson/progress.js';
 import { pageState } from '../page/page_state.js';
-import { currentLanguage, known, text } from '../page/texts.js';
+import { currentLanguage, textKey, text } from '../page/texts.js';
 import { titleOf, versions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
 import { isStart, show } from './screens.js';
@@ -56,7 +56,7 @@ export class Start {
   async #begin(name) {
     const { text: program, robot, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
     this.#isBeginning = true;
-    this.#page.put({ text: program, robot, name: `${text(known(`begin_${name}`)).toLowerCase()}.ts` });
+    this.#page.put({ text: program, robot, name: `${text(textKey(`begin_${name}`)).toLowerCase()}.ts` });
     this.#page.side('side_virtual');
     element('stop', HTMLButtonElement).focus();
     try {
@@ -71,7 +71,7 @@ export class Start {
   #showProgress() {
     const badge = element('start_badge', HTMLElement), done = lessonsDone().size, stars = starsInAll();
     badge.hidden = !stars;
-    const seen = made('span', '', `${done ? `✓ ${done}  ` : ''}★ ${stars}`), heard = made('span', '', text('lesson_progress', { done, stars }));
+    const seen = makeElement('span', '', `${done ? `✓ ${done}  ` : ''}★ ${stars}`), heard = makeElement('span', '', text('lesson_progress', { done, stars }));
     seen.ariaHidden = 'true';
     heard.className = 'heard';
     badge.replaceChildren(seen, heard);
@@ -83,8 +83,8 @@ export class Start {
     this.#showProgress();
     const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
     const rows = versions().map((version, k, all) => /** @type {const} */ ([version, all.length - k])).slice(0, MOST).map(([version, number]) => {
-      const title = made('strong', '', titleOf(version, number)), when = made('time', '', time.format(new Date(version.at_ms)));
-      return made('li', '', button('', () => this.#page.put(version), thumbnail(version.text, version.robot), title, when));
+      const title = makeElement('strong', '', titleOf(version, number)), when = makeElement('time', '', time.format(new Date(version.at_ms)));
+      return makeElement('li', '', makeButton('', () => this.#page.put(version), thumbnail(version.text, version.robot), title, when));
     });
     element('start_programs_title', HTMLElement).hidden = !rows.length;
     element('start_programs', HTMLElement).replaceChildren(...rows);

@@ -2,7 +2,7 @@
 // text alone, so that it costs nothing and shows nothing that somebody else has written.
 
 import { COLOURS } from '../blocks/colours.js';
-import { drawn } from '../page/made.js';
+import { makeSvg } from '../page/made.js';
 import { KINDS, wordsOf } from '../page/words.js';
 
 const MOST = 7; // bars
@@ -27,10 +27,10 @@ export function thumbnail(program, robot) {
       const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
       const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
       const width = Math.min(WIDEST, 14 + 3 * line.length);
-      bars.push(drawn('rect', { x: 3 + depth * STEP, y: 3 + bars.length * ROW, width, height: HIGH, rx: 2, fill: colour ?? '' }));
+      bars.push(makeSvg('rect', { x: 3 + depth * STEP, y: 3 + bars.length * ROW, width, height: HIGH, rx: 2, fill: colour ?? '' }));
     }
     if (OPENS.test(line) || TURNS.test(line)) depth = Math.min(3, depth + 1);
     if (bars.length === MOST) break;
   }
-  return drawn('svg', { viewBox: `0 0 96 ${MOST * ROW + 3}`, 'aria-hidden': 'true' }, ...bars);
+  return makeSvg('svg', { viewBox: `0 0 96 ${MOST * ROW + 3}`, 'aria-hidden': 'true' }, ...bars);
 }

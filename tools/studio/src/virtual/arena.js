@@ -4,7 +4,7 @@ import { Moods } from './moods.js';
 import { drawRival, drawRobot } from './robot_drawing.js';
 import { COLOURS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
-import { dot, path } from '../page/shapes.js';
+import { drawDot, drawPath } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld, lightTile } from '../world/floor.js';
 
@@ -225,12 +225,12 @@ export class Arena {
       pen.clearRect(0, 0, this.#floor.width, this.#floor.height);
       this.#measure(pen, world);
       drawWorld(pen, world, this.#goals, this.#taken, this.#mark !== null);
-      for (const way of this.#ways.slice(0, -1)) path(pen, way, '#bcd2ea', 1);
+      for (const way of this.#ways.slice(0, -1)) drawPath(pen, way, '#bcd2ea', 1);
       this.#wayDrawn = 0;
       this.#isFloorDrawn = true;
     }
     const way = this.#ways.at(-1) ?? [];
-    if (way.length > this.#wayDrawn) path(pen, way.slice(Math.max(0, this.#wayDrawn - 1)), '#2f74c0', 1);
+    if (way.length > this.#wayDrawn) drawPath(pen, way.slice(Math.max(0, this.#wayDrawn - 1)), '#2f74c0', 1);
     this.#wayDrawn = way.length;
   }
 
@@ -314,19 +314,19 @@ export class Arena {
       const angle = (k * Math.PI) / 8, far = k % 2 ? 2.4 : 6;
       return [x + far * Math.cos(angle), y + far * Math.sin(angle)];
     });
-    path(this.#pen, points, '#a8200f', 0.6, '#ffd84d');
+    drawPath(this.#pen, points, '#a8200f', 0.6, '#ffd84d');
   }
 
   #drawMark() {
     const mark = this.#mark;
     if (!mark) return;
     const pen = this.#pen;
-    path(pen, mark.points, '#b0186b', 0.6);
+    drawPath(pen, mark.points, '#b0186b', 0.6);
     const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
     const [middle] = mark.points, { handle } = mark;
     if (handle && middle) {
-      path(pen, [middle, handle], '#b0186b', 0.6);
-      dot(pen, ...handle, radius * 1.3, '#b0186b');
+      drawPath(pen, [middle, handle], '#b0186b', 0.6);
+      drawDot(pen, ...handle, radius * 1.3, '#b0186b');
       pen.beginPath();
       pen.arc(...handle, radius * 0.7, 0.6, 5.4);
       pen.strokeStyle = '#fff';
@@ -334,8 +334,8 @@ export class Arena {
       pen.stroke();
     }
     mark.points.forEach(([x, y], k) => {
-      dot(pen, x, y, radius, '#fff');
-      dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
+      drawDot(pen, x, y, radius, '#fff');
+      drawDot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
     });
   }
 }

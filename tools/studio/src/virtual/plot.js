@@ -1,6 +1,6 @@
 // Draws how values change over the robot's time. Knows numbers; what they mean, their names say.
 
-import { path } from '../page/shapes.js';
+import { drawPath } from '../page/shapes.js';
 
 const MOST = 2000; // samples; then every other one is forgotten
 const LEAST_ROW = 54; // pixels for one value
@@ -79,11 +79,11 @@ export class Plot {
     this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK : LIGHT;
     pen.fillStyle = this.#colors.said;
     for (let at = Math.ceil(from / step) * step; at <= until; at += step) {
-      path(pen, [[x(at), 0], [x(at), names.length * row]], this.#colors.rule, 1);
+      drawPath(pen, [[x(at), 0], [x(at), names.length * row]], this.#colors.rule, 1);
       const label = `${rounded(at / 1000)} s`;
       pen.fillText(label, Math.min(x(at) + 2, LEFT + wide - pen.measureText(label).width), names.length * row + 14);
     }
-    if (seen_ms !== null) path(pen, [[x(seen_ms), 0], [x(seen_ms), names.length * row]], this.#colors.said, 2);
+    if (seen_ms !== null) drawPath(pen, [[x(seen_ms), 0], [x(seen_ms), names.length * row]], this.#colors.said, 2);
     names.forEach((name, k) => this.#drawRow(pen, name, k * row, row, x, this.#colors.rows[k % this.#colors.rows.length] ?? ''));
   }
 
@@ -110,7 +110,7 @@ export class Plot {
     const middle = high === low ? 0.5 : 0;
     /** @param {number} value */
     const y = (value) => top + row - 6 - ((value - low) / span + middle) * (row - 26);
-    path(pen, [[0, top + row - 0.5], [this.#canvas.clientWidth, top + row - 0.5]], this.#colors.rule, 1);
+    drawPath(pen, [[0, top + row - 0.5], [this.#canvas.clientWidth, top + row - 0.5]], this.#colors.rule, 1);
     pen.strokeStyle = color;
     pen.lineWidth = 1.8;
     pen.beginPath();

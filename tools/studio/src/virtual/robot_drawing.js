@@ -2,7 +2,7 @@
 //
 // x is ahead of the middle between its wheels, y to its left. Knows no world.
 
-import { dot, path } from '../page/shapes.js';
+import { drawDot, drawPath } from '../page/shapes.js';
 import { CALM } from './moods.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
@@ -35,14 +35,14 @@ export function drawRobot(pen, robot, state, seen) {
     if (!device.is_yes_no && !carriesSensor(robot, device.text)) drawJaws(pen, robot, (state?.actuators[k] ?? 0) / (device.arguments[0]?.high || 1));
   });
   const [body = '', edge = ''] = state?.fault ? ['#c8372a', '#5c130c'] : seen.colours ?? GREEN;
-  path(pen, robot.outline, edge, 0.8, body);
+  drawPath(pen, robot.outline, edge, 0.8, body);
   const side = robot.wheel_base_cm / 2, size = sizeOf(robot);
   drawWheel(pen, side, seen.rolled[0], size);
   drawWheel(pen, -side, seen.rolled[1], size);
   drawFace(pen, robot, seen.face ?? CALM, body, edge);
   pen.save();
   pen.scale(size, size);
-  path(pen, [[4.2, 0], [0.6, 2], [0.6, -2]], '#fff', 0.4, '#fff');
+  drawPath(pen, [[4.2, 0], [0.6, 2], [0.6, -2]], '#fff', 0.4, '#fff');
   drawLamps(pen, robot, state, edge);
   drawBuzzer(pen, seen.isBeeping);
   pen.restore();
@@ -79,8 +79,8 @@ export function drawRival(pen, { length_cm, width_cm }, [x = 0, y = 0, heading =
   pen.fill();
   pen.stroke();
   for (const across of [-1.7, 1.7]) {
-    dot(pen, half - 2.6, across, 1.3, '#fff');
-    dot(pen, half - 2.1, across, 0.6, '#20242a');
+    drawDot(pen, half - 2.6, across, 1.3, '#fff');
+    drawDot(pen, half - 2.1, across, 0.6, '#20242a');
   }
   pen.restore();
 }
@@ -100,7 +100,7 @@ function drawWheel(pen, y, rolled, size) {
   // What is above of a wheel goes ahead, as the robot does.
   const first = (((rolled % tread) + tread) % tread) - length / 2;
   for (let x = first; x < length / 2 - 0.2; x += tread) {
-    if (x > 0.2 - length / 2) path(pen, [[x, y - width / 2 + 0.5], [x, y + width / 2 - 0.5]], '#b9c2cb', 0.5);
+    if (x > 0.2 - length / 2) drawPath(pen, [[x, y - width / 2 + 0.5], [x, y + width / 2 - 0.5]], '#b9c2cb', 0.5);
   }
 }
 
@@ -112,14 +112,14 @@ function drawFace(pen, robot, { mood, ahead, aside, isBlinking }, body, edge) {
   for (const side of [-1, 1]) {
     const y = side * apart;
     const isClosed = isBlinking && mood === 'calm';
-    dot(pen, x, y, radius + 0.35, edge);
-    dot(pen, x, y, radius, isClosed || mood === 'glad' ? body : '#fff');
-    if (isClosed) path(pen, [[x, y - radius], [x, y + radius]], edge, stroke);
+    drawDot(pen, x, y, radius + 0.35, edge);
+    drawDot(pen, x, y, radius, isClosed || mood === 'glad' ? body : '#fff');
+    if (isClosed) drawPath(pen, [[x, y - radius], [x, y + radius]], edge, stroke);
     else if (mood === 'glad') arc(pen, x - radius / 2, y, radius * 0.75, -Math.PI / 2, Math.PI / 2, '#fff', 1.3 * stroke);
     else if (mood === 'dizzy') {
-      for (const way of [-1, 1]) path(pen, [[x - pupil, y - pupil * way], [x + pupil, y + pupil * way]], '#20242a', stroke);
+      for (const way of [-1, 1]) drawPath(pen, [[x - pupil, y - pupil * way], [x + pupil, y + pupil * way]], '#20242a', stroke);
     } else {
-      dot(pen, x + room * (mood === 'tired' ? -0.5 : ahead), y + room * aside, pupil, '#20242a');
+      drawDot(pen, x + room * (mood === 'tired' ? -0.5 : ahead), y + room * aside, pupil, '#20242a');
       if (mood === 'tired') lid(pen, x, y, radius, body, edge);
     }
   }
@@ -131,7 +131,7 @@ function lid(pen, x, y, radius, body, edge) {
   pen.arc(x, y, radius, -Math.PI / 2, Math.PI / 2);
   pen.fillStyle = body;
   pen.fill();
-  path(pen, [[x, y - radius], [x, y + radius]], edge, 0.6);
+  drawPath(pen, [[x, y - radius], [x, y + radius]], edge, 0.6);
 }
 
 /** @param {Pen} pen @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} until @param {string} color @param {number} width */
@@ -145,20 +145,20 @@ function arc(pen, x, y, radius, from, until, color, width) {
 
 /** Its own light, which is on where its button would start it, and those that a program turns on. @param {Pen} pen @param {Robot} robot @param {RobotState | null} state @param {string} edge */
 function drawLamps(pen, robot, state, edge) {
-  dot(pen, -7.5, 0, 0.9, state?.is_waiting ? '#ffd84d' : edge);
+  drawDot(pen, -7.5, 0, 0.9, state?.is_waiting ? '#ffd84d' : edge);
   actuatorsOf(robot).forEach((device, k) => {
     if (!device.is_yes_no) return;
     const isLit = Boolean(state?.actuators[k]);
-    if (isLit) dot(pen, -1.2, 0, 5, '#ffe14d77');
-    dot(pen, -1.2, 0, 1.9, edge);
-    dot(pen, -1.2, 0, 1.4, isLit ? '#fff3a8' : '#7c8894');
+    if (isLit) drawDot(pen, -1.2, 0, 5, '#ffe14d77');
+    drawDot(pen, -1.2, 0, 1.9, edge);
+    drawDot(pen, -1.2, 0, 1.4, isLit ? '#fff3a8' : '#7c8894');
   });
 }
 
 /** @param {Pen} pen @param {boolean} isBeeping */
 function drawBuzzer(pen, isBeeping) {
-  dot(pen, -4.6, 0, 1.5, '#20242a');
-  dot(pen, -4.6, 0, 0.5, '#b9c2cb');
+  drawDot(pen, -4.6, 0, 1.5, '#20242a');
+  drawDot(pen, -4.6, 0, 0.5, '#b9c2cb');
   if (!isBeeping) return;
   for (const radius of [4, 6.5, 9]) {
     for (const middle of [Math.PI / 2, -Math.PI / 2]) {
@@ -177,7 +177,7 @@ function drawJaws(pen, robot, part) {
   const front = Math.max(...robot.outline.map(([x = 0]) => x));
   for (const side of [-1, 1]) {
     const off = side * (1 + 4 * part);
-    path(pen, [[front - 2, side * 4], [front + 2, side * 2 + off], [front + 6, off]], '#37434f', 1.4);
+    drawPath(pen, [[front - 2, side * 4], [front + 2, side * 2 + off], [front + 6, off]], '#37434f', 1.4);
   }
 }
 
@@ -203,8 +203,8 @@ function drawFeelers(pen, robot, state) {
   const radius = 1.4 * sizeOf(robot);
   forSensors(robot, state, ({ x_cm, y_cm, sees }, value) => {
     if (sees === 'distance' || sees === 'light') return;
-    dot(pen, x_cm, y_cm, radius, '#123b2c');
-    dot(pen, x_cm, y_cm, radius * 0.75, value ? '#ff6b57' : '#b9c2cb');
+    drawDot(pen, x_cm, y_cm, radius, '#123b2c');
+    drawDot(pen, x_cm, y_cm, radius * 0.75, value ? '#ff6b57' : '#b9c2cb');
   });
 }
 

@@ -1,11 +1,11 @@
 // The window with the last runs: one is seen again, saved as a file, and a file is opened.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, whenChosen } from '../page/files.js';
-import { button, made } from '../page/made.js';
+import { bytesOf, download, onFileChosen } from '../page/files.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
-import { bugSaid } from '../page/faults.js';
-import { known, text } from '../page/texts.js';
+import { bugSentence } from '../page/faults.js';
+import { textKey, text } from '../page/texts.js';
 
 /** @typedef {import('./runs.js').Run} Run */
 /** @typedef {import('./runs.js').Row} Row */
@@ -33,7 +33,7 @@ export class RunsWindow {
     });
     element('runs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
     element('run_open', HTMLButtonElement).addEventListener('click', () => element('run_file', HTMLInputElement).click());
-    whenChosen('run_file', (file) => this.open(file));
+    onFileChosen('run_file', (file) => this.open(file));
     addEventListener('dragover', (event) => {
       if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
     });
@@ -59,7 +59,7 @@ export class RunsWindow {
   async openData(data, name = '', again = null) {
     const answer = await this.#page.python.ask({ do: 'open_run' }, data);
     if (answer.what) {
-      this.#refuse(name, text(known(`record_${answer.what}`), { line: answer.line }));
+      this.#refuse(name, text(textKey(`record_${answer.what}`), { line: answer.line }));
       return;
     }
     this.#window.close();
@@ -88,13 +88,13 @@ export class RunsWindow {
   #show() {
     const rows = this.#page.runs.all.map((run) => {
       const what = text(run.of.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
-      const see = button('', () => {
+      const see = makeButton('', () => {
         this.#window.close();
         this.#page.see(run);
       }, what);
-      const save = button('run_save', () => this.#save(run));
+      const save = makeButton('run_save', () => this.#save(run));
       save.disabled = run.isJudged || !(run.file || run.rows.length);
-      return made('li', '', see, made('code', '', begun(run.of.text)), save);
+      return makeElement('li', '', see, makeElement('code', '', begun(run.of.text)), save);
     });
     element('runs_list', HTMLElement).replaceChildren(...rows);
     if (!rows.length) this.#say(text('runs_none'));
@@ -105,7 +105,7 @@ export class RunsWindow {
     try {
       download(`${text('run_name')}${ENDING}`, await this.fileOf(run));
     } catch (why) {
-      this.#say(bugSaid(why));
+      this.#say(bugSentence(why));
     }
   }
 }

@@ -2,7 +2,7 @@
 //
 // The robot's time goes on only by what this page asks for, so a page that sleeps stands still.
 
-import { bugSaid } from '../page/faults.js';
+import { bugSentence } from '../page/faults.js';
 import { currentLanguage } from '../page/texts.js';
 
 /** @import { Python, Checked, RobotState } from '../python.js' */
@@ -172,7 +172,7 @@ export class Simulator {
     } catch (why) {
       this.phase = 'off';
       this.isStopping = false;
-      this.failure = bugSaid(why);
+      this.failure = bugSentence(why);
       this.#shown();
     } finally {
       this.#isAsking = false;

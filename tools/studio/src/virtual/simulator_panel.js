@@ -2,12 +2,12 @@
 
 import { Arena } from './arena.js';
 import { element, hide, say } from '../page/elements.js';
-import { whenEscaped } from '../page/escape.js';
-import { faultSaid } from '../page/faults.js';
+import { onEscapeKey } from '../page/escape.js';
+import { faultSentence } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { rangeAt, Stops } from '../writing/parts.js';
 import { nameOfShow, showAt } from '../writing/shows.js';
-import { dialPicture, offer, pictured } from '../page/pictures.js';
+import { dialPicture, replaceOptions, pictureOption } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
@@ -16,15 +16,15 @@ import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { measured, numberOf, partOf } from '../page/readings.js';
-import { known, text } from '../page/texts.js';
-import { isSecond } from '../page/twice.js';
-import { devicesOf, nameOf } from '../page/words.js';
+import { readingText, numberOf, percentOfRange } from '../page/readings.js';
+import { textKey, text } from '../page/texts.js';
+import { isSecondPress } from '../page/twice.js';
+import { devicesOf, deviceName } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { celebrate } from '../lesson/celebration.js';
 import { keepStars, worldStars } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
-import { showRows, written } from '../page/rows.js';
+import { showRows, variableText } from '../page/rows.js';
 import { howEnded, starsShown, Where } from './where.js';
 import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
@@ -137,7 +137,7 @@ export class SimulatorPanel {
     });
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', (event) => {
-      if (isSecond(event)) return; // it was pressed twice to pause
+      if (isSecondPress(event)) return; // it was pressed twice to pause
       this.#lookAtNow();
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
       else this.#pauseIt();
@@ -153,9 +153,9 @@ export class SimulatorPanel {
       this.#simulator.push();
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
-    whenEscaped(() => this.stop());
+    onEscapeKey(() => this.stop());
     const speed = element('speed', HTMLSelectElement);
-    offer(speed, SPEEDS.map((each, k) => pictured(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
+    replaceOptions(speed, SPEEDS.map((each, k) => pictureOption(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
     speed.value = '1';
     speed.addEventListener('change', () => {
       this.#simulator.speed = Number(speed.value);
@@ -473,7 +473,7 @@ export class SimulatorPanel {
     this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
-    let program = alone?.checked ?? pageState.checked.value;
+    let program = alone?.checked ?? pageState.checkResult.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
@@ -623,7 +623,7 @@ export class SimulatorPanel {
     const isOver = !this.#isDriving && !this.#timeLine.seen && !state?.fault; // also of one that was stopped before its end
     const ranges = isOver ? [] : isAlone ? [range] : state.places.map((at) => rangeAt(places, at));
     pageState.virtualRun.set({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
-    pageState.fault.set({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
+    pageState.fault.set({ range: state?.fault ? range : null, sentence: state?.fault ? faultSentence(state.fault) : '' });
   }
 
   /** What runs in the text that is seen, or what had a fault. */
@@ -652,7 +652,7 @@ export class SimulatorPanel {
     if (state.began_ms === null) return;
     this.#keepShows(this.#shown, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: deviceName(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
       ...[...this.#shown].map(([name, value]) => ({ name, value: numberOf(value) })),
     ]);
@@ -684,7 +684,7 @@ export class SimulatorPanel {
     if (this.#timeLine.seen) return this.#lookedBack(this.#timeLine.seen);
     if (phase === 'off' || !state) return this.#task() || text('robot_off');
     if (state.fault) {
-      const what = faultSaid(state.fault);
+      const what = faultSentence(state.fault);
       const line = this.#place()?.line;
       return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
     }
@@ -715,7 +715,7 @@ export class SimulatorPanel {
     const { run } = this.#timeLine, { places, variables } = run.program;
     const at = state.fault ? state.fault_at : state.at;
     if (at === null) return text('why_nothing');
-    const values = new Map(variables.map(({ name, is_yes_no }, k) => [name, written(state.variables[k], is_yes_no)]));
+    const values = new Map(variables.map(({ name, is_yes_no }, k) => [name, variableText(state.variables[k], is_yes_no)]));
     const asked = conditionsAt(run.of.text, places, at, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
     const said = asked.map(({ line, condition, values: with_values, is }) => text(is === null ? 'why_asks' : is ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
     const { driver } = state, tasks = blocksOf(run.of.text, places, /^(?:TASK|WHEN)\b/i);
@@ -728,7 +728,7 @@ export class SimulatorPanel {
   #valuesOf(state) {
     return [
       ...devicesOf(this.#robotSeen, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
-      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, written(state.variables[k], is_yes_no)])),
+      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, variableText(state.variables[k], is_yes_no)])),
     ];
   }
 
@@ -757,8 +757,8 @@ export class SimulatorPanel {
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(this.#robotSeen, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
-      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
+      ...devicesOf(this.#robotSeen, 'sensor').map((device, k) => [deviceName(device), state ? readingText(device, state.readings[k]?.text ?? '') : '–', percentOfRange(device, state?.readings[k]?.value)]),
+      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => [name, variableText(state?.variables[k], is_yes_no)]),
       ...(this.#timeLine.seen ? this.#seenShows : this.#shown),
     ];
     showRows(element('values', HTMLElement), rows);
@@ -770,7 +770,7 @@ function partingSaid({ what, agreed, line, robot, virtual, sensor, began_ms }) {
   /** @param {{ms: number, event: string} | null} row */
   const told = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
   const place = line ? text('line', { line }) : text('record_end');
-  return text(known(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual), sensor });
+  return text(textKey(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual), sensor });
 }
 
 /** How long the program has run. @param {import('../python.js').RobotState} state */

@@ -1,6 +1,6 @@
 // How large the virtual robot is seen, and from where: the whole page, and a camera that follows it.
 
-import { button, drawn } from '../page/made.js';
+import { makeButton, makeSvg } from '../page/made.js';
 import { element } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
@@ -22,10 +22,10 @@ export class Stage {
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
   #chosen = '';
   #isReal = false; // the browser has filled the screen, too
-  #path = drawn('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
-  #camera = button('', () => this.#turn(), drawn('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#path));
-  #full = button('', () => this.#fill(!this.isFull), drawn('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' },
-    drawn('path', { d: FULL, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.6, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })));
+  #path = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
+  #camera = makeButton('', () => this.#turn(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#path));
+  #full = makeButton('', () => this.#fill(!this.isFull), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' },
+    makeSvg('path', { d: FULL, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.6, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })));
 
   /** @param {{look: (camera: Camera) => void, stop: () => void}} page shows the robot from there; stops it */
   constructor(page) {
@@ -62,8 +62,8 @@ export class Stage {
       this.#fill(false);
       this.#shrink();
     });
-    let seen = pageState.side.value;
-    pageState.side.subscribe((side) => {
+    let seen = pageState.sideId.value;
+    pageState.sideId.subscribe((side) => {
       if (side !== seen) this.#fill(false); // a phone's Run shows the side that is seen
       seen = side;
     });

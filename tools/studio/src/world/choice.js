@@ -2,9 +2,9 @@
 // another part of the page brings.
 
 import { element } from '../page/elements.js';
-import { pictured, worldPicture } from '../page/pictures.js';
+import { pictureOption, worldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
-import { called, text } from '../page/texts.js';
+import { labelOf, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
 import { OwnWorlds } from './own.js';
 import { lessonStars, worldStars } from '../lesson/progress.js';
@@ -140,11 +140,11 @@ export class WorldChoice {
     const brought = this.#brought;
     const { newest, before } = this.#own, stars = lessonStars();
     /** @param {World} world */
-    const label = (world) => called(world.labels).trim() || text('world_own');
+    const label = (world) => labelOf(world.labels).trim() || text('world_own');
     this.#choice.replaceChildren(
-      ...WORLDS.map((world) => pictured(`${called(world.labels)} ${'★'.repeat(stars.get(worldStars(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
-      ...(newest ? [pictured(label(newest), OWN_WORLD, worldPicture(newest))] : []),
-      ...before.map((world, k) => pictured(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
+      ...WORLDS.map((world) => pictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(worldStars(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
+      ...(newest ? [pictureOption(label(newest), OWN_WORLD, worldPicture(newest))] : []),
+      ...before.map((world, k) => pictureOption(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
       ...(brought ? [new Option(brought.label(), BROUGHT)] : []),
     );
     this.#choice.value = brought ? BROUGHT : this.isOwn ? OWN_WORLD : this.shapes.name;

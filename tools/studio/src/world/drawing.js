@@ -2,10 +2,10 @@
 // only by `parts.js`.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, whenChosen } from '../page/files.js';
+import { bytesOf, download, onFileChosen } from '../page/files.js';
 import { ownCopy } from './own.js';
 import { pageState } from '../page/page_state.js';
-import { currentLanguage, known, text } from '../page/texts.js';
+import { currentLanguage, textKey, text } from '../page/texts.js';
 import {
   FLOOR, handleOf, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedBy, turnedPart,
   valueOf, withDrawn, without, withPoint,
@@ -86,7 +86,7 @@ export class WorldDrawing {
       const part = partsOf(this.#page.world())[this.#parts.selectedIndex];
       if (part) this.#choose(part);
     });
-    whenChosen('world_file', (file) => this.#open(file));
+    onFileChosen('world_file', (file) => this.#open(file));
     this.#canvas.addEventListener('pointerdown', (event) => this.#down(event));
     this.#canvas.addEventListener('pointermove', (event) => this.#move(event));
     this.#canvas.addEventListener('pointerup', () => this.#up());
@@ -164,7 +164,7 @@ export class WorldDrawing {
     const value = valueOf(this.#page.world(), this.#chosen);
     const place = value.points?.[this.#point];
     const numbers = place ? `${text('world_point')} ${this.#point + 1}: ${place.join(', ')}`
-      : NUMBERS[this.#chosen.kind].slice(0, SPOKEN).map(([key]) => `${text(known(`world_${key}`))} ${value[key]}`).join(', ');
+      : NUMBERS[this.#chosen.kind].slice(0, SPOKEN).map(([key]) => `${text(textKey(`world_${key}`))} ${value[key]}`).join(', ');
     return numbers ? text('world_chosen', { part: nameOf(this.#chosen), numbers }) : nameOf(this.#chosen);
   }
 

@@ -2,7 +2,7 @@
 //
 // x and y are centimetres from its lower left corner. Knows no robot.
 
-import { dot, path } from '../page/shapes.js';
+import { drawDot, drawPath } from '../page/shapes.js';
 import { cornersOf } from './parts.js';
 
 /** @typedef {import('../page/shapes.js').Pen} Pen */
@@ -32,15 +32,15 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
   for (const goal of goals) drawGoal(pen, goal);
   world.flags.forEach((flag, k) => drawFlag(pen, flag, k - taken, k + 1));
   for (const ring of world.rings) drawRing(pen, ring);
-  for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
+  for (const line of world.lines) drawPath(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
     const reach = themeOf(world) === 'night' ? [46, 30, 17] : [];
-    for (const each of reach) dot(pen, x, y, each, '#ffe9a324');
-    dot(pen, x, y, 9, '#ffe9a3');
-    dot(pen, x, y, 3, '#e08a1e');
+    for (const each of reach) drawDot(pen, x, y, each, '#ffe9a324');
+    drawDot(pen, x, y, 9, '#ffe9a3');
+    drawDot(pen, x, y, 3, '#e08a1e');
   }
-  for (const box of world.boxes) path(pen, cornersOf(box), '#6b4a2f', 1, '#c79a6b');
-  for (const wall of world.walls) path(pen, wall.points, '#6b4a2f', 2);
+  for (const box of world.boxes) drawPath(pen, cornersOf(box), '#6b4a2f', 1, '#c79a6b');
+  for (const wall of world.walls) drawPath(pen, wall.points, '#6b4a2f', 2);
   if (world.has_border) {
     pen.strokeStyle = '#6b4a2f';
     pen.lineWidth = 2;
@@ -63,22 +63,22 @@ function drawTheme(pen, world) {
   }
   if (theme === 'kitchen') {
     for (let at = TILE_CM; at < Math.max(width, height); at += TILE_CM) {
-      if (at < width) path(pen, [[at, 0], [at, height]], '#efe6d2', 0.5);
-      if (at < height) path(pen, [[0, at], [width, at]], '#efe6d2', 0.5);
+      if (at < width) drawPath(pen, [[at, 0], [at, height]], '#efe6d2', 0.5);
+      if (at < height) drawPath(pen, [[0, at], [width, at]], '#efe6d2', 0.5);
     }
   }
   if (theme === 'city') drawStreets(pen, world);
-  if (theme === 'ring') for (const { points } of world.lines) path(pen, points, 'transparent', 0, '#f6e3bd');
+  if (theme === 'ring') for (const { points } of world.lines) drawPath(pen, points, 'transparent', 0, '#f6e3bd');
 }
 
 /** Lawns around the houses, and in the middle of each street a line. @param {Pen} pen @param {World} world */
 function drawStreets(pen, { boxes, width_cm, height_cm }) {
   const lawns = boxes.map((box) => cornersOf({ ...box, length_cm: box.length_cm + 2 * LAWN_CM, width_cm: box.width_cm + 2 * LAWN_CM }));
   pen.setLineDash([DASH_CM, DASH_CM]);
-  for (const x of gaps(lawns.map((corners) => corners.map(([each]) => each)), width_cm)) path(pen, [[x, 0], [x, height_cm]], '#fff', 1.2);
-  for (const y of gaps(lawns.map((corners) => corners.map(([, each]) => each)), height_cm)) path(pen, [[0, y], [width_cm, y]], '#fff', 1.2);
+  for (const x of gaps(lawns.map((corners) => corners.map(([each]) => each)), width_cm)) drawPath(pen, [[x, 0], [x, height_cm]], '#fff', 1.2);
+  for (const y of gaps(lawns.map((corners) => corners.map(([, each]) => each)), height_cm)) drawPath(pen, [[0, y], [width_cm, y]], '#fff', 1.2);
   pen.setLineDash([]);
-  for (const lawn of lawns) path(pen, lawn, '#b7d3a6', 1, '#cfe3c2');
+  for (const lawn of lawns) drawPath(pen, lawn, '#b7d3a6', 1, '#cfe3c2');
 }
 
 /** The middles of what lies between things, from one edge of the floor to the other. @param {number[][]} things the coordinates of each @param {number} size of the floor */
@@ -110,26 +110,26 @@ export function lightTile(pen, world, x, y) {
 function drawGrid(pen, { width_cm, height_cm }) {
   for (let at = GRID_CM; at < Math.max(width_cm, height_cm); at += GRID_CM) {
     const color = at % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
-    if (at < width_cm) path(pen, [[at, 0], [at, height_cm]], color, 0.4);
-    if (at < height_cm) path(pen, [[0, at], [width_cm, at]], color, 0.4);
+    if (at < width_cm) drawPath(pen, [[at, 0], [at, height_cm]], color, 0.4);
+    if (at < height_cm) drawPath(pen, [[0, at], [width_cm, at]], color, 0.4);
   }
 }
 
 /** @param {Pen} pen @param {import('./parts.js').Ring} ring */
 function drawRing(pen, { x_cm: x, y_cm: y, radius_cm, edge_cm }) {
-  dot(pen, x, y, radius_cm, '#fff');
+  drawDot(pen, x, y, radius_cm, '#fff');
   pen.strokeStyle = '#8b97a3';
   pen.lineWidth = 0.5;
   pen.stroke();
-  dot(pen, x, y, Math.max(0, radius_cm - edge_cm), '#3b434c');
+  drawDot(pen, x, y, Math.max(0, radius_cm - edge_cm), '#3b434c');
 }
 
 /** @param {Pen} pen @param {Goal} goal */
 function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
   pen.setLineDash([4, 2.5]);
-  if (around) path(pen, around, '#0d6040', 0.8, 'transparent');
+  if (around) drawPath(pen, around, '#0d6040', 0.8, 'transparent');
   else {
-    dot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
+    drawDot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
     pen.strokeStyle = '#0d6040';
     pen.lineWidth = 0.8;
     pen.stroke();
@@ -147,13 +147,13 @@ function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
  */
 function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, behind, number) {
   const isTaken = behind < 0, isNext = behind === 0;
-  dot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
+  drawDot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
   if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
   pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';
   pen.lineWidth = rests ? 1.4 : 0.8;
   pen.stroke();
   pen.setLineDash([]);
-  if (isTaken) path(pen, [[x - 5, y], [x - 1.5, y - 4], [x + 6, y + 5]], '#0d6040', 2.4);
+  if (isTaken) drawPath(pen, [[x - 5, y], [x - 1.5, y - 4], [x + 6, y + 5]], '#0d6040', 2.4);
   else {
     drawCloth(pen, x, y, isNext ? '#ffd84d' : '#fff');
     drawNumber(pen, x + 3.6, y + 9.6, String(number));
@@ -162,7 +162,7 @@ function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, behind, number) {
 
 /** @param {Pen} pen @param {number} x @param {number} y of its foot @param {string} color */
 function drawCloth(pen, x, y, color) {
-  path(pen, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1, color);
+  drawPath(pen, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1, color);
 }
 
 /** @param {Pen} pen @param {number} x @param {number} y its middle @param {string} number */

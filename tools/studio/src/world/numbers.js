@@ -1,7 +1,7 @@
 // The numbers of a part of a world, as inputs for whoever wants them exactly.
 
-import { labelled, made } from '../page/made.js';
-import { known, text } from '../page/texts.js';
+import { makeLabel, makeElement } from '../page/made.js';
+import { textKey, text } from '../page/texts.js';
 import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
 
 /** @import { World, Part } from './parts.js' */
@@ -16,21 +16,21 @@ import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
 export function showNumbers(place, world, part, change) {
   const value = valueOf(world, part);
   const rows = NUMBERS[part.kind].map(([key, low, high]) => {
-    const input = made('input');
+    const input = makeElement('input');
     Object.assign(input, { type: 'number', min: String(low), max: String(high), step: 'any', value: String(value[key]), id: `world_${key}` });
     input.addEventListener('change', () => {
       const changed = withNumber(world, part, key, input.valueAsNumber);
       input.value = String(valueOf(changed, part)[key]); // what it was, where it was no number
       change(changed);
     });
-    return labelled(known(`world_${key}`), input);
+    return makeLabel(textKey(`world_${key}`), input);
   });
   const choice = CHOICES[part.kind];
   if (choice) {
-    const input = made('input');
+    const input = makeElement('input');
     Object.assign(input, { type: 'checkbox', checked: value[choice], id: `world_${choice}` });
     input.addEventListener('change', () => change(withChoice(world, part, choice, input.checked)));
-    rows.push(labelled(known(`world_${choice}`), input));
+    rows.push(makeLabel(textKey(`world_${choice}`), input));
   }
   const focused = place.contains(document.activeElement) ? document.activeElement?.id : '';
   place.replaceChildren(...rows);

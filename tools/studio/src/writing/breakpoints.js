@@ -1,7 +1,7 @@
 // Where the program in the text editor is to stop. Knows CodeMirror; a place moves with its text.
 
 import { MapMode, RangeSet, RangeValue, StateEffect, StateField } from '@codemirror/state';
-import { made } from '../page/made.js';
+import { makeElement } from '../page/made.js';
 import { Decoration, EditorView, GutterMarker, gutter, keymap } from '@codemirror/view';
 
 /** @typedef {import('@codemirror/view').BlockInfo} BlockInfo */
@@ -14,7 +14,7 @@ class Breakpoint extends RangeValue {
 
 class Dot extends GutterMarker {
   toDOM() {
-    return made('span', '', '●');
+    return makeElement('span', '', '●');
   }
 }
 

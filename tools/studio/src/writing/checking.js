@@ -75,7 +75,7 @@ export class Checking {
 
   #forget() {
     if (dataset['state'] !== 'failed') dataset['state'] = 'changed';
-    pageState.checked.set(null);
+    pageState.checkResult.set(null);
   }
 
   async #check() {
@@ -90,8 +90,8 @@ export class Checking {
         if (answer.robot !== now.robot && pageState.robotName.value === now.robot) pageState.robotName.set(answer.robot); // and once more
       }
       const { answer } = this.#newest;
-      if (answer && pageState.checked.value !== answer) { // also where a text has come back
-        pageState.checked.set(answer);
+      if (answer && pageState.checkResult.value !== answer) { // also where a text has come back
+        pageState.checkResult.set(answer);
         clearTimeout(this.#pause);
         this.#turn += 1;
         this.#pause = window.setTimeout(() => this.#offer(answer, this.#turn), PAUSE_MS);
@@ -113,14 +113,14 @@ export class Checking {
    * @param {number} turn
    */
   async #offer(answer, turn) {
-    const isNewest = () => pageState.checked.value === answer && this.#turn === turn;
+    const isNewest = () => pageState.checkResult.value === answer && this.#turn === turn;
     try {
       for (const [which, finding] of answer.findings.entries()) {
         if (!isNewest()) return;
         if (!finding.may_repair) continue;
         const request = { do: 'repair', robot: pageState.robotName.value, which };
         finding.repair ??= (await this.#python.ask(request, new TextEncoder().encode(pageState.programText.value))).changes;
-        if (isNewest() && finding.repair?.length) pageState.offeredFinding.set(which);
+        if (isNewest() && finding.repair?.length) pageState.offeredFindingIndex.set(which);
       }
     } catch (why) {
       this.#fail(why);

@@ -125,7 +125,7 @@ export class Editor {
     });
     pageState.robotName.subscribe(() => this.#view.dispatch({ effects: this.#robot.reconfigure(forRobot()) }));
     pageState.language.subscribe(() => this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) }));
-    pageState.checked.subscribe((answer) => {
+    pageState.checkResult.subscribe((answer) => {
       if (answer) this.#places = answer.places.length ? answer.places : null;
     });
   }

@@ -2,7 +2,7 @@
 // as markup. A screen reader hears the first one.
 
 import { element, say } from '../page/elements.js';
-import { button, made } from '../page/made.js';
+import { makeButton, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 
 /** @import { Checked, Finding } from '../python.js' */
@@ -23,15 +23,15 @@ export function whole({ message = '', fix = '' }) {
 export function showMessages(list, findings, goTo) {
   let first = '';
   const rows = findings.slice(0, MOST).map((finding) => {
-    const place = button('', () => goTo(finding), text('line', { line: finding.line }));
+    const place = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
     place.className = 'place';
     place.ariaLabel = text('say_fault', { line: finding.line, what: whole(finding) });
     first ||= place.ariaLabel;
-    const row = made('li', '', place, ' ', whole(finding));
+    const row = makeElement('li', '', place, ' ', whole(finding));
     row.className = finding.severity;
     return row;
   });
-  if (findings.length > MOST) rows.push(made('li', '', text('more', { count: findings.length - MOST })));
+  if (findings.length > MOST) rows.push(makeElement('li', '', text('more', { count: findings.length - MOST })));
   list.replaceChildren(...rows);
   say(element('first_message', HTMLElement), first);
 }
@@ -44,7 +44,7 @@ export function showMessages(list, findings, goTo) {
  * @param {(finding: Finding) => void} repair
  */
 export function showRepair(list, which, finding, repair) {
-  const does = button('repair', () => repair(finding));
+  const does = makeButton('repair', () => repair(finding));
   does.className = 'repair';
   does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
   if (which < MOST) list.children[which]?.append(' ', does);

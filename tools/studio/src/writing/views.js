@@ -2,8 +2,8 @@
 // blocks are made of it when it changes, and it is made of them when they do.
 
 import { element } from '../page/elements.js';
-import { bugSaid } from '../page/faults.js';
-import { blocksPicture, offer, pictured } from '../page/pictures.js';
+import { bugSentence } from '../page/faults.js';
+import { blocksPicture, replaceOptions, pictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { isGiven } from '../start/beginnings.js';
@@ -94,14 +94,14 @@ export class Views {
     pageState.robotName.subscribe(() => this.#setRobot());
     pageState.taughtBlocks.subscribe(() => this.#teach());
     pageState.programText.subscribe(() => this.#textChanged());
-    pageState.checked.subscribe((answer) => {
+    pageState.checkResult.subscribe((answer) => {
       if (answer) this.#showFindings(answer.findings);
     });
     pageState.breakpoints.subscribe(() => this.#showBreakpoints());
     pageState.virtualRun.subscribe(() => this.#mark());
     pageState.robotRun.subscribe(() => this.#mark());
-    pageState.side.subscribe(() => this.#mark());
-    pageState.fault.subscribe(({ range, said }) => {
+    pageState.sideId.subscribe(() => this.#mark());
+    pageState.fault.subscribe(({ range, sentence: said }) => {
       if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
     });
     this.#showWords();
@@ -150,7 +150,7 @@ export class Views {
 
   #showWords() {
     const { value } = this.#level;
-    offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
+    replaceOptions(this.#level, LEVELS.map(([level, name], k) => pictureOption(text(name), level, blocksPicture(k + 1))));
     this.#level.value = value || this.#page.work.level;
     this.#blocks?.showWords();
     if (!this.#isStale()) this.#showAll();
@@ -191,7 +191,7 @@ export class Views {
   #mark() {
     const { ranges, isHeld } = pageState.virtualRun.value;
     const there = pageState.robotRun.value;
-    const isThere = there.range && (!ranges.length || pageState.side.value === 'side_real');
+    const isThere = there.range && (!ranges.length || pageState.sideId.value === 'side_real');
     this.#running = isThere && there.range ? [there.range] : ranges;
     this.#page.editor.showRunning(this.#running, isThere ? there.isHeld : isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
@@ -429,7 +429,7 @@ export class Views {
   /** Blocks that are new have nothing at them yet. */
   #showAll() {
     this.#blocks?.showFindings(this.#findings);
-    this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.said);
+    this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.sentence);
     this.#blocks?.showRunning(this.#running);
     this.#blocks?.showMates(this.#mates);
     this.#showBreakpoints();
@@ -437,7 +437,7 @@ export class Views {
 
   /** @param {unknown} why */
   #fail(why) {
-    this.#note.textContent = bugSaid(why);
+    this.#note.textContent = bugSentence(why);
   }
 
   /** @param {string} note */
