@@ -137,7 +137,7 @@ const PARTS = {
       return true; // nobody is asked outside a group
     };
     const views = { join: () => {}, showMates: () => {}, isBusy: false };
-    new Pupil({ panel, work, views, put: puts, empty: () => notes.push('empty'), newestRun: async () => '' });
+    new Pupil({ panel, work, views, putProgram: puts, clearProgram: () => notes.push('empty'), newestRun: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
@@ -216,7 +216,7 @@ const PARTS = {
       over = chance.of(['', 'kept', 'erased']);
       await passes(5000);
       if (over && (!join.hidden || late > 1 || storedText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
-      if (does('empty') !== Number(over === 'erased') || Boolean(storedText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${kept('tiniscript.pupil_before')}`);
+      if (does('empty') !== Number(over === 'erased') || Boolean(storedText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${storedText('tiniscript.pupil_before')}`);
       return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
@@ -1504,9 +1504,9 @@ const PARTS = {
   async giving() {
     const page = freshPage();
     await learns(page);
-    const { Giving } = await page.load('class/giving.js');
+    const { GivingWindow } = await page.load('class/giving.js');
     const given = [];
-    const giving = new Giving((key, pupil) => given.push([key, pupil]));
+    const giving = new GivingWindow((key, pupil) => given.push([key, pupil]));
     const list = giving.window.children[1].children[1];
     let works = 0;
     return async (chance, isGood) => {
@@ -1680,7 +1680,7 @@ const PARTS = {
       const notes = [];
       for (let k = isGood ? 1 : 1 + chance.below(3); k > 0; k -= 1) {
         const own = { robot: null };
-        const robot = own.robot = new DirectRobot(python, port(own), { event() {}, over: ({ reason }) => notes.push(reason) }, () => {});
+        const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, () => {});
         const met = robot.connect('tinibot', 'en', '').then(() => 'met', ({ reason }) => reason);
         await passes(isGood ? 1000 : chance.below(chance.of([20, 300, 1200])));
         if (!isGood && chance() < 0.3 && state === 'open') goes();

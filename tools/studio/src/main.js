@@ -159,8 +159,8 @@ new Start({
   },
 });
 if ('class' in document.documentElement.dataset) {
-  import('./class/classroom.js').then(({ beginClass }) => beginClass({
-    panel, work, python, editor, views, keep: () => programs.keep(), empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
+  import('./class/classroom.js').then(({ openClass }) => openClass({
+    panel, work, python, editor, views, keepProgram: () => programs.keep(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
     newestRun: () => driving.newestRun(), openRun: (file) => driving.openRun(file),
   }));
 }

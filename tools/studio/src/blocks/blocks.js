@@ -264,7 +264,7 @@ export class Blocks {
     return this.#places.find(([each]) => each === id)?.[1][0] ?? 0;
   }
 
-  /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').Place[]} places */
+  /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').MatePlace[]} places */
   showMates(places) {
     const { createSvgElement } = Blockly.utils.dom;
     for (const each of this.#mates) each.remove();

@@ -89,7 +89,7 @@ export class Pictures {
   }
 
   /** The next pictures' words are those of another language; one that is being made stays as it is. */
-  showWords() {
+  updateLanguage() {
     this.#areWordsOld = true;
   }
 }

@@ -2,14 +2,14 @@
 
 import { correction, generate } from 'lean-qr';
 import { makeButton, makeElement } from '../page/made.js';
-import { sign } from './signs.js';
+import { makeSign } from './signs.js';
 import { element, say } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
-const QUIET = 4; // white modules around a QR code
+const QUIET_MODULES = 4; // white modules around a QR code
 
 /** A window over the whole page. STOP is in it, too: what is behind cannot be pressed. */
-class Big {
+class BigWindow {
   window = makeElement('dialog');
   title = makeElement('h2');
   head = makeElement('header', '', this.title);
@@ -28,110 +28,110 @@ class Big {
     document.body.append(this.window);
   }
 
-  finish() {
+  addButtons() {
     const stop = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stop.className = 'stop';
     this.head.append(makeButton('close', () => this.window.close()), stop);
   }
 }
 
-/** @typedef {{key: string, title: string, said: string, picture: string, text: string, history: string[], drives: boolean, hand: boolean}} Shown */
-/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} Told */
+/** @typedef {{key: string, title: string, stateText: string, picture: string, text: string, history: string[], drives: boolean, hand: boolean}} PupilView */
+/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} PupilActions */
 
-export class BigPupil extends Big {
+export class BigPupil extends BigWindow {
   key = '';
-  #said = makeElement('p');
-  #picture = makeElement('img');
-  #text = makeElement('pre');
-  #history = makeElement('pre');
-  #stop; #next; #lower; #remove;
+  #stateElement = makeElement('p');
+  #pictureElement = makeElement('img');
+  #programElement = makeElement('pre');
+  #historyElement = makeElement('pre');
+  #stopButton; #nextButton; #lowerButton; #removeButton;
 
-  /** @param {Told} told */
-  constructor(told) {
+  /** @param {PupilActions} actions */
+  constructor(actions) {
     super('big_pupil');
-    const act = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => makeButton(key, () => what(this.key));
-    this.#lower = act('class_lower_hand', told.lower);
-    this.#stop = act('stop', told.stop);
-    this.#next = act('class_next', told.next);
-    this.#remove = act('class_remove', told.remove);
-    const step = (/** @type {'left' | 'right'} */ name, /** @type {number} */ by) => {
-      const found = makeButton('', () => told.step(by), sign(name));
-      found.dataset['label'] = `class_${name}`;
-      found.setAttribute('aria-label', text(`class_${name}`));
-      return found;
+    const makeAction = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ action) => makeButton(key, () => action(this.key));
+    this.#lowerButton = makeAction('class_lower_hand', actions.lower);
+    this.#stopButton = makeAction('stop', actions.stop);
+    this.#nextButton = makeAction('class_next', actions.next);
+    this.#removeButton = makeAction('class_remove', actions.remove);
+    const makeStepButton = (/** @type {'left' | 'right'} */ name, /** @type {number} */ offset) => {
+      const stepButton = makeButton('', () => actions.step(offset), makeSign(name));
+      stepButton.dataset['label'] = `class_${name}`;
+      stepButton.setAttribute('aria-label', text(`class_${name}`));
+      return stepButton;
     };
-    this.#said.setAttribute('role', 'status');
-    this.#text.tabIndex = 0;
-    this.#text.setAttribute('translate', 'no');
-    this.title.before(step('left', -1));
-    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, this.#remove);
-    this.finish();
-    this.#picture.alt = '';
-    const paper = makeElement('div', '', this.#picture);
+    this.#stateElement.setAttribute('role', 'status');
+    this.#programElement.tabIndex = 0;
+    this.#programElement.setAttribute('translate', 'no');
+    this.title.before(makeStepButton('left', -1));
+    this.head.append(makeStepButton('right', 1), this.#stateElement, this.#lowerButton, this.#stopButton, this.#nextButton, this.#removeButton);
+    this.addButtons();
+    this.#pictureElement.alt = '';
+    const paper = makeElement('div', '', this.#pictureElement);
     paper.className = 'paper';
-    this.#history.tabIndex = 0;
-    this.#history.setAttribute('translate', 'no');
-    this.body.append(paper, this.#text, this.#history);
+    this.#historyElement.tabIndex = 0;
+    this.#historyElement.setAttribute('translate', 'no');
+    this.body.append(paper, this.#programElement, this.#historyElement);
     this.window.addEventListener('keydown', ({ key, target }) => {
-      if (target === this.#text) return;
-      if (key === 'ArrowLeft') told.step(-1);
-      if (key === 'ArrowRight') told.step(1);
+      if (target === this.#programElement) return;
+      if (key === 'ArrowLeft') actions.step(-1);
+      if (key === 'ArrowRight') actions.step(1);
     });
     this.window.addEventListener('close', () => {
       this.key = '';
     });
   }
 
-  /** @param {Shown} shown */
-  show({ key, title, said, picture, text: program, history, drives, hand }) {
+  /** @param {PupilView} shown */
+  show({ key, title, stateText, picture, text: program, history, drives, hand }) {
     this.key = key;
     say(this.title, title);
-    say(this.#said, said);
-    say(this.#text, program);
-    this.#text.setAttribute('aria-label', text('class_program_of', { name: title }));
-    this.#history.hidden = !history.length;
-    say(this.#history, [text('class_history'), '', ...history].join('\n'));
-    this.#history.setAttribute('aria-label', text('class_history'));
-    const paper = /** @type {HTMLElement} */ (this.#picture.parentElement);
+    say(this.#stateElement, stateText);
+    say(this.#programElement, program);
+    this.#programElement.setAttribute('aria-label', text('class_program_of', { name: title }));
+    this.#historyElement.hidden = !history.length;
+    say(this.#historyElement, [text('class_history'), '', ...history].join('\n'));
+    this.#historyElement.setAttribute('aria-label', text('class_history'));
+    const paper = /** @type {HTMLElement} */ (this.#pictureElement.parentElement);
     paper.hidden = !picture;
-    if (picture && this.#picture.src !== picture) this.#picture.src = picture;
-    this.#lower.hidden = !hand;
-    this.#remove.hidden = key.startsWith('group '); // a group is left by its pupils
-    this.#stop.hidden = this.#next.hidden = !drives;
+    if (picture && this.#pictureElement.src !== picture) this.#pictureElement.src = picture;
+    this.#lowerButton.hidden = !hand;
+    this.#removeButton.hidden = key.startsWith('group '); // a group is left by its pupils
+    this.#stopButton.hidden = this.#nextButton.hidden = !drives;
     if (!this.window.open) this.window.showModal();
   }
 }
 
-export class BigCode extends Big {
-  #code = makeElement('strong');
-  #address = makeElement('strong', '', location.origin);
-  #picture = makeElement('canvas');
+export class BigCode extends BigWindow {
+  #codeElement = makeElement('strong');
+  #addressElement = makeElement('strong', '', location.origin);
+  #qrCanvas = makeElement('canvas');
 
   constructor() {
     super('big_code');
     this.head.append(makeElement('span'));
-    this.finish();
+    this.addButtons();
     this.title.dataset['text'] = 'class_come';
     say(this.title, text('class_come'));
-    this.#picture.setAttribute('role', 'img');
-    this.#picture.dataset['label'] = 'class_picture';
-    this.#picture.setAttribute('aria-label', text('class_picture'));
+    this.#qrCanvas.setAttribute('role', 'img');
+    this.#qrCanvas.dataset['label'] = 'class_picture';
+    this.#qrCanvas.setAttribute('aria-label', text('class_picture'));
     generate(location.origin, { minCorrectionLevel: correction.M })
-      .toCanvas(this.#picture, { padX: QUIET, padY: QUIET, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
-    this.body.append(this.#picture, makeElement('ol', '',
+      .toCanvas(this.#qrCanvas, { padX: QUIET_MODULES, padY: QUIET_MODULES, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+    this.body.append(this.#qrCanvas, makeElement('ol', '',
       makeElement('li', '', makeElement('span', 'class_step_wifi')),
-      makeElement('li', '', makeElement('span', 'class_step_open'), this.#address),
-      makeElement('li', '', makeElement('span', 'class_step_code'), this.#code)));
+      makeElement('li', '', makeElement('span', 'class_step_open'), this.#addressElement),
+      makeElement('li', '', makeElement('span', 'class_step_code'), this.#codeElement)));
   }
 
   /** @param {string} code */
   show(code) {
-    this.change(code);
+    this.setCode(code);
     this.window.showModal();
   }
 
   /** @param {string} code */
-  change(code) {
-    say(this.#code, code);
+  setCode(code) {
+    say(this.#codeElement, code);
   }
 }

@@ -11,22 +11,22 @@ import { isTeacher } from '../robot/host.js';
  * @property {import('../python.js').Python} python
  * @property {import('../writing/editor.js').Editor} editor
  * @property {import('../writing/views.js').Views} views
- * @property {() => void} keep the program among the earlier ones
- * @property {() => void} empty takes the program off the page
+ * @property {() => void} keepProgram the program among the earlier ones
+ * @property {() => void} clearProgram takes the program off the page
  * @property {() => Promise<string>} newestRun its file, or nothing
  * @property {(file: File) => Promise<void>} openRun plays it
- * @property {(program: {text: string, robot: string}) => boolean} put another program into the editor, unless a group is to keep its own; whether it is there
+ * @property {(program: {text: string, robot: string}) => boolean} putProgram another program into the editor, unless a group is to keep its own; whether it is there
  */
 
 /** @param {Page} page */
-export async function beginClass(page) {
-  const looks = document.createElement('link');
-  Object.assign(looks, { rel: 'stylesheet', href: 'class.css' });
-  const isThere = new Promise((resolve) => {
-    looks.onload = looks.onerror = resolve;
+export async function openClass(page) {
+  const stylesheet = document.createElement('link');
+  Object.assign(stylesheet, { rel: 'stylesheet', href: 'class.css' });
+  const loaded = new Promise((resolve) => {
+    stylesheet.onload = stylesheet.onerror = resolve;
   });
-  document.head.append(looks);
-  await isThere;
+  document.head.append(stylesheet);
+  await loaded;
   if (isTeacher) new Teacher(page);
   else new Pupil(page);
 }

@@ -7,67 +7,67 @@ import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').KeptRow} KeptRow */
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */
-/** @typedef {{item: HTMLElement, name: HTMLElement, pupils: HTMLSelectElement, give: HTMLButtonElement, said: HTMLElement}} Row */
+/** @typedef {{item: HTMLElement, nameElement: HTMLElement, pupilSelect: HTMLSelectElement, giveButton: HTMLButtonElement, stateElement: HTMLElement}} KeptRowElements */
 
-export class Giving {
+export class GivingWindow {
   window = makeElement('dialog');
-  #list = makeElement('ul');
-  #give;
-  /** @type {Map<string, Row>} */
-  #rows = new Map();
+  #listElement = makeElement('ul');
+  #giveWork;
+  /** @type {Map<string, KeptRowElements>} */
+  #rowElements = new Map();
 
-  /** @param {(key: string, pupil: number) => void} give */
-  constructor(give) {
-    this.#give = give;
+  /** @param {(key: string, pupil: number) => void} giveWork */
+  constructor(giveWork) {
+    this.#giveWork = giveWork;
     this.window.id = 'class_giving';
     this.window.className = 'class_window';
     this.window.setAttribute('aria-labelledby', 'class_giving_title');
-    const title = makeElement('h2', 'class_give_back');
-    title.id = 'class_giving_title';
-    const stop = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
-    stop.className = 'stop'; // the page's own is behind this window
-    this.window.append(makeElement('header', '', title, makeButton('close', () => this.window.close()), stop), makeElement('section', '', makeElement('p', 'class_give_told'), this.#list));
+    const titleElement = makeElement('h2', 'class_give_back');
+    titleElement.id = 'class_giving_title';
+    const stopButton = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    stopButton.className = 'stop'; // the page's own is behind this window
+    this.window.append(makeElement('header', '', titleElement, makeButton('close', () => this.window.close()), stopButton), makeElement('section', '', makeElement('p', 'class_give_told'), this.#listElement));
     document.body.append(this.window);
   }
 
-  /** @param {KeptRow[]} kept @param {PupilRow[]} pupils */
-  show(kept, pupils) {
-    const old = this.#rows;
-    this.#rows = new Map();
-    for (const each of kept) {
-      const row = old.get(each.key) ?? this.#made(each.key);
-      this.#rows.set(each.key, row);
-      this.#fill(row, each, pupils);
+  /** @param {KeptRow[]} keptRows @param {PupilRow[]} pupils */
+  show(keptRows, pupils) {
+    const oldRows = this.#rowElements;
+    this.#rowElements = new Map();
+    for (const keptRow of keptRows) {
+      const elements = oldRows.get(keptRow.key) ?? this.#addRow(keptRow.key);
+      this.#rowElements.set(keptRow.key, elements);
+      this.#fillRow(elements, keptRow, pupils);
     }
-    for (const [key, { item }] of old) if (!this.#rows.has(key)) item.remove();
-    if (!kept.length) this.window.close();
+    for (const [key, { item }] of oldRows) if (!this.#rowElements.has(key)) item.remove();
+    if (!keptRows.length) this.window.close();
   }
 
-  /** @param {string} key @returns {Row} */
-  #made(key) {
-    const name = makeElement('strong'), pupils = makeElement('select'), said = makeElement('span');
-    const give = makeButton('class_give_one', () => this.#give(key, Number(pupils.value)));
-    pupils.addEventListener('change', () => {
-      pupils.dataset['chosen'] = pupils.value; // by the teacher
-      give.disabled = !pupils.value;
+  /** @param {string} key @returns {KeptRowElements} */
+  #addRow(key) {
+    const nameElement = makeElement('strong'), pupilSelect = makeElement('select'), stateElement = makeElement('span');
+    const giveButton = makeButton('class_give_one', () => this.#giveWork(key, Number(pupilSelect.value)));
+    pupilSelect.addEventListener('change', () => {
+      pupilSelect.dataset['chosen'] = pupilSelect.value; // by the teacher
+      giveButton.disabled = !pupilSelect.value;
     });
-    const item = makeElement('li', '', name, said, pupils, give);
-    this.#list.append(item);
-    return { item, name, pupils, give, said };
+    const item = makeElement('li', '', nameElement, stateElement, pupilSelect, giveButton);
+    this.#listElement.append(item);
+    return { item, nameElement, pupilSelect, giveButton, stateElement };
   }
 
-  /** @param {Row} row @param {KeptRow} kept @param {PupilRow[]} pupils */
-  #fill({ name, pupils: choice, give, said }, { name: whose, given, alike }, pupils) {
-    say(name, plainText(whose));
-    const getting = pupils.find(({ number }) => number === given);
-    say(said, getting ? text('class_giving', { name: plainText(getting.name) }) : '');
-    choice.setAttribute('aria-label', text('class_give_to', { name: plainText(whose) }));
-    const seen = JSON.stringify([alike, pupils.map(({ number, name: own }) => [number, own])]);
-    if (choice.dataset['seen'] === seen) return;
-    choice.dataset['seen'] = seen;
-    const chosen = choice.dataset['chosen'] || (alike.length === 1 ? String(alike[0]) : ''); // of two, nobody
-    choice.replaceChildren(new Option('—', ''), ...pupils.map(({ number, name: own }) => new Option(plainText(own), String(number))));
-    choice.value = pupils.some(({ number }) => String(number) === chosen) ? chosen : '';
-    give.disabled = !choice.value;
+  /** @param {KeptRowElements} row @param {KeptRow} kept @param {PupilRow[]} pupils */
+  #fillRow({ nameElement, pupilSelect: pupilSelect, giveButton, stateElement }, { name: makerName, given, alike }, pupils) {
+    say(nameElement, plainText(makerName));
+    const receiver = pupils.find(({ number }) => number === given);
+    say(stateElement, receiver ? text('class_giving', { name: plainText(receiver.name) }) : '');
+    pupilSelect.setAttribute('aria-label', text('class_give_to', { name: plainText(makerName) }));
+    const optionsKey = JSON.stringify([alike, pupils.map(({ number, name: pupilName }) => [number, pupilName])]);
+    if (pupilSelect.dataset['seen'] === optionsKey) return;
+    pupilSelect.dataset['seen'] = optionsKey;
+    const chosenNumber = pupilSelect.dataset['chosen'] || (alike.length === 1 ? String(alike[0]) : ''); // of two, nobody
+    pupilSelect.replaceChildren(new Option('—', ''), ...pupils.map(({ number, name: pupilName }) => new Option(plainText(pupilName), String(number))));
+    pupilSelect.value = pupils.some(({ number }) => String(number) === chosenNumber) ? chosenNumber : '';
+    giveButton.disabled = !pupilSelect.value;
   }
 }

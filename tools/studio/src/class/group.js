@@ -10,90 +10,90 @@ import { hearStops, post } from '../robot/host.js';
 import { plainText } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { Membership } from './member.js';
-import { named } from './together.js';
+import { nameElements } from './together.js';
 
 const STOP_TRIES = 5;
 
-/** @typedef {{name: string, members: string[]}} Seen */
+/** @typedef {{name: string, members: string[]}} GroupRow */
 
 export class Group {
-  #box;
-  #name = makeElement('input');
-  #form = makeElement('form', '', makeLabel('group_name', this.#name), makeElement('button', 'group_join'));
-  #there = makeElement('p');
-  #said = makeElement('p');
-  #mates = makeElement('p');
-  #leave = makeButton('group_leave', () => this.leave());
+  #section;
+  #nameInput = makeElement('input');
+  #joinForm = makeElement('form', '', makeLabel('group_name', this.#nameInput), makeElement('button', 'group_join'));
+  #groupList = makeElement('p');
+  #statusElement = makeElement('p');
+  #matesElement = makeElement('p');
+  #leaveButton = makeButton('group_leave', () => this.leave());
   /** @type {Membership} */
-  #member;
-  #stops = 0; // that were pressed while somebody else drives
+  #membership;
+  #stopCount = 0; // that were pressed while somebody else drives
   /** Whether another pupil of the group has the robot. */
   isDriven = false;
 
-  /** @param {import('./classroom.js').Page} page @param {HTMLElement} box */
-  constructor(page, box) {
-    this.#member = new Membership(page, {
-      say: (key) => this.#show(key),
-      fails: (why) => say(this.#said, bugSentence(why)),
-      others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: plainText(each.name) })))),
+  /** @param {import('./classroom.js').Page} page @param {HTMLElement} parent */
+  constructor(page, parent) {
+    this.#membership = new Membership(page, {
+      say: (key) => this.#showState(key),
+      onBug: (error) => say(this.#statusElement, bugSentence(error)),
+      onOthers: (others) => this.#matesElement.replaceChildren(...nameElements(others.map((other) => ({ ...other, name: plainText(other.name) })))),
     });
-    this.#box = makeElement('section', '', makeElement('h2', 'group'), this.#form, this.#there, this.#said, this.#mates, this.#leave);
-    this.#box.id = 'class_group';
-    this.#box.hidden = true;
-    this.#name.maxLength = 24;
-    this.#name.autocomplete = 'off';
-    this.#name.required = true;
-    this.#said.setAttribute('role', 'status');
-    this.#mates.id = 'class_mates';
-    this.#form.addEventListener('submit', (event) => {
+    this.#section = makeElement('section', '', makeElement('h2', 'group'), this.#joinForm, this.#groupList, this.#statusElement, this.#matesElement, this.#leaveButton);
+    this.#section.id = 'class_group';
+    this.#section.hidden = true;
+    this.#nameInput.maxLength = 24;
+    this.#nameInput.autocomplete = 'off';
+    this.#nameInput.required = true;
+    this.#statusElement.setAttribute('role', 'status');
+    this.#matesElement.id = 'class_mates';
+    this.#joinForm.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#join(this.#name.value);
+      this.#join(this.#nameInput.value);
     });
-    box.append(this.#box);
-    element('run', HTMLButtonElement).addEventListener('click', () => this.#member.finish());
+    parent.append(this.#section);
+    element('run', HTMLButtonElement).addEventListener('click', () => this.#membership.finishEdit());
     element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
     onEscapeKey(() => this.#stop());
-    this.#show('');
+    this.#showState('');
   }
 
   /** The page is in the class. */
   enter() {
-    this.#box.hidden = false;
-    this.#member.goOn();
+    this.#section.hidden = false;
+    this.#membership.resume();
   }
 
   /** The page is not in the class any more. */
   exit() {
-    this.#box.hidden = true;
-    this.#member.end();
+    this.#section.hidden = true;
+    this.#membership.endMembership();
     this.isDriven = false;
   }
 
-  /** @param {Seen[]} groups that there are @param {string} driver who has the robot of this one */
-  see(groups, driver) {
-    this.isDriven = driver !== '';
-    if (this.#member.isIn) return;
-    const said = JSON.stringify(groups);
-    if (this.#there.dataset['groups'] === said) return;
-    this.#there.dataset['groups'] = said;
-    this.#there.replaceChildren(...groups.map(({ name, members }) => makeButton('', () => this.#join(name), members.length ? `${plainText(name)} (${members.map((each) => plainText(each)).join(', ')})` : plainText(name))));
+  /** @param {GroupRow[]} groups that there are @param {string} driverName who has the robot of this one */
+  showGroups(groups, driverName) {
+    this.isDriven = driverName !== '';
+    if (this.#membership.isInGroup) return;
+    const groupsKey = JSON.stringify(groups);
+    if (this.#groupList.dataset['groups'] === groupsKey) return;
+    this.#groupList.dataset['groups'] = groupsKey;
+    this.#groupList.replaceChildren(...groups.map(({ name, members }) => makeButton('', () => this.#join(name), members.length ? `${plainText(name)} (${members.map((member) => plainText(member)).join(', ')})` : plainText(name))));
   }
 
   leave() {
-    this.#member.leave();
+    this.#membership.leave();
     this.isDriven = false;
   }
 
   /** @param {string} name */
   #join(name) {
-    this.#member.join({ do: 'group_join', name });
+    this.#membership.join({ do: 'group_join', name });
   }
 
   /** Stops the robot of the group where another pupil drives it; where this page does, that page's own STOP does. */
   async #stop() {
     if (!this.isDriven) return;
-    const group_stops = ++this.#stops;
-    for (let tries = 0; tries < STOP_TRIES; tries += 1) {
+    const group_stops = ++this.#stopCount;
+    for (let tryNumber = 0; tryNumber < STOP_TRIES; tryNumber += 1) {
       try {
         hearStops((await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true })).stops ?? 0);
         return;
@@ -104,10 +104,10 @@ export class Group {
   }
 
   /** @param {import('../page/texts.js').Key | ''} key */
-  #show(key) {
-    const { isIn } = this.#member;
-    this.#form.hidden = this.#there.hidden = isIn;
-    this.#leave.hidden = !isIn;
-    say(this.#said, key ? text(key, { group: plainText(pageState.groupName.value) }) : text('group_told'));
+  #showState(key) {
+    const { isInGroup: isIn } = this.#membership;
+    this.#joinForm.hidden = this.#groupList.hidden = isIn;
+    this.#leaveButton.hidden = !isIn;
+    say(this.#statusElement, key ? text(key, { group: plainText(pageState.groupName.value) }) : text('group_told'));
   }
 }

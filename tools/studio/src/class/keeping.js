@@ -6,39 +6,39 @@ import { post } from '../robot/host.js';
 import { text } from '../page/texts.js';
 import { CLASS } from '../page/words.js';
 
-/** @typedef {{name: string, text: string, robot: string, lessons: string[]}} WorkOfOne */
+/** @typedef {{name: string, text: string, robot: string, lessons: string[]}} PupilWork */
 
-/** @returns {Promise<WorkOfOne[]>} */
-export async function workOfAll() {
+/** @returns {Promise<PupilWork[]>} */
+export async function fetchWork() {
   return (await post({ do: 'class_work' })).pupils;
 }
 
 /** Saves the work of all; returns of how many. */
 export async function saveWork() {
-  const pupils = await workOfAll();
+  const pupils = await fetchWork();
   const now = new Date();
   const day = [now.getFullYear(), now.getMonth() + 1, now.getDate()].map((part) => String(part).padStart(2, '0')).join('-');
-  const whole = JSON.stringify({ tiniscript_class: CLASS.form, day, pupils }, null, 1);
-  downloadFile(`${text('class_file')}-${day}.json`, new Blob([whole], { type: 'application/json' }));
+  const fileText = JSON.stringify({ tiniscript_class: CLASS.form, day, pupils }, null, 1);
+  downloadFile(`${text('class_file')}-${day}.json`, new Blob([fileText], { type: 'application/json' }));
   return pupils.length;
 }
 
 /** Opens a file; returns the work of how many was in it, or null where it is no such file. @param {File} file */
 export async function openWork(file) {
-  let kept;
+  let classWork;
   try {
     if (file.size > CLASS.file_bytes) return null;
-    kept = JSON.parse(await file.text());
+    classWork = JSON.parse(await file.text());
   } catch {
     return null;
   }
-  if (kept?.tiniscript_class !== CLASS.form || !Array.isArray(kept.pupils)) return null;
+  if (classWork?.tiniscript_class !== CLASS.form || !Array.isArray(classWork.pupils)) return null;
   let count = 0;
-  for (const each of kept.pupils.slice(0, CLASS.most_works)) {
-    const { name, text: program, robot, lessons } = each ?? {};
+  for (const work of classWork.pupils.slice(0, CLASS.most_works)) {
+    const { name, text: program, robot, lessons } = work ?? {};
     if (![name, program, robot].every((part) => typeof part === 'string') || !Array.isArray(lessons)) continue;
-    const isTaken = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);
-    if (isTaken) count += 1;
+    const isBrought = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);
+    if (isBrought) count += 1;
   }
   return count || null;
 }

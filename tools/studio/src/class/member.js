@@ -5,102 +5,102 @@ import { storeText, storedJson } from '../page/kept.js';
 import { pageState } from '../page/page_state.js';
 import { textKey, text } from '../page/texts.js';
 import { post } from '../robot/host.js';
-import { Together } from './together.js';
+import { SharedEditor } from './together.js';
 
-const PLACE = 'tiniscript.group'; // what a page that is loaded again goes on with
+const STORAGE_KEY = 'tiniscript.group'; // what a page that is loaded again goes on with
 
 /** @typedef {import('./together.js').Other} Other */
-/** @typedef {{say: (key: import('../page/texts.js').Key | '') => void, fails: (why: unknown) => void, others: (others: Other[]) => void}} Told `say` is told of joining and leaving, too */
+/** @typedef {{say: (key: import('../page/texts.js').Key | '') => void, onBug: (why: unknown) => void, onOthers: (others: Other[]) => void}} MembershipListener `say` is told of joining and leaving, too */
 
 export class Membership {
   #page;
-  #told;
-  /** @type {Together | null} */
+  #listener;
+  /** @type {SharedEditor | null} */
   #together = null;
   #isJoining = false;
 
-  /** @param {import('./classroom.js').Page} page @param {Told} told */
-  constructor(page, told) {
+  /** @param {import('./classroom.js').Page} page @param {MembershipListener} listener */
+  constructor(page, listener) {
     this.#page = page;
-    this.#told = told;
+    this.#listener = listener;
   }
 
-  get isIn() { return this.#together !== null; }
+  get isInGroup() { return this.#together !== null; }
 
   /** What is finished becomes the group's. */
-  finish() {
-    this.#together?.finish();
+  finishEdit() {
+    this.#together?.finishEdit();
   }
 
   /** A page that was loaded again goes on, if it was in a group; returns whether it was. */
-  goOn() {
-    const before = storedJson(PLACE, 'sessionStorage');
-    const wasIn = Boolean(before?.request?.do && before.page?.name);
-    if (wasIn) this.join(before.request, before.page);
+  resume() {
+    const stored = storedJson(STORAGE_KEY, 'sessionStorage');
+    const wasIn = Boolean(stored?.request?.do && stored.page?.name);
+    if (wasIn) this.join(stored.request, stored.page);
     return wasIn;
   }
 
-  /** @param {Record<string, unknown>} request @param {{name: string}} [before] */
-  async join(request, before) {
+  /** @param {Record<string, unknown>} request @param {{name: string}} [storedPage] */
+  async join(request, storedPage) {
     if (this.#isJoining || this.#together) return;
     this.#isJoining = true;
     try {
       const { work, python, editor, views, panel } = this.#page;
-      this.#page.keep();
-      const answer = await post({ ...request, text: work.text, ...(before && { before: before.name }) });
+      this.#page.keepProgram();
+      const answer = await post({ ...request, text: work.text, ...(storedPage && { before: storedPage.name }) });
       if (answer.failure) {
-        storeText(PLACE, '', 'sessionStorage');
-        this.#told.say(textKey(answer.failure));
+        storeText(STORAGE_KEY, '', 'sessionStorage');
+        this.#listener.say(textKey(answer.failure));
         return;
       }
-      const together = this.#together = new Together(python, editor, {
+      const together = this.#together = new SharedEditor(python, editor, {
         left: () => {
-          this.end();
-          this.#told.say('group_left');
+          this.endMembership();
+          this.#listener.say('group_left');
         },
         fails: (why) => {
-          this.end();
-          this.#told.fails(why);
+          this.endMembership();
+          this.#listener.onBug(why);
         },
-        others: (others) => this.#told.others(others),
+        others: (others) => this.#listener.onOthers(others),
         refused: () => pageState.note.set(text('group_refused')),
         places: (places) => views.showMates(places),
         runs: (event) => panel.witness(event),
         isBusy: () => views.isBusy,
-        answers: (isHeard) => this.#told.say(isHeard ? 'group_in' : 'class_silent'),
-        keep: (page) => storeText(PLACE, JSON.stringify({ request, page }), 'sessionStorage'),
+        answers: (isHeard) => this.#listener.say(isHeard ? 'group_in' : 'class_silent'),
+        keep: (page) => storeText(STORAGE_KEY, JSON.stringify({ request, page }), 'sessionStorage'),
       });
       pageState.groupName.set(String(answer.group));
-      this.#told.say('group_in');
-      await together.begin(answer, before ?? null).then(() => {
+      this.#listener.say('group_in');
+      await together.begin(answer, storedPage ?? null).then(() => {
         views.join(together);
         document.documentElement.dataset['group'] = 'in';
       }, (why) => {
         this.leave();
-        this.#told.fails(why);
+        this.#listener.onBug(why);
       });
     } catch {
-      this.#told.say('class_silent');
+      this.#listener.say('class_silent');
     } finally {
       this.#isJoining = false;
     }
   }
 
   leave() {
-    this.end();
+    this.endMembership();
     post({ do: 'group_leave' }).catch(() => {}); // a page that is silent gives its place away
   }
 
   /** It is over here; the program stays in the page. */
-  end() {
+  endMembership() {
     this.#together?.end();
     this.#together = null;
     this.#page.views.join(null);
     this.#page.panel.endWitness();
     delete document.documentElement.dataset['group'];
-    storeText(PLACE, '', 'sessionStorage');
+    storeText(STORAGE_KEY, '', 'sessionStorage');
     pageState.groupName.set('');
-    this.#told.others([]);
-    this.#told.say('');
+    this.#listener.onOthers([]);
+    this.#listener.say('');
   }
 }

@@ -13,31 +13,31 @@ import { plainText } from '../robot/plain_text.js';
 import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
 import { giveRun } from './run.js';
-import { sign } from './signs.js';
-import { clock } from './wall.js';
+import { makeSign } from './signs.js';
+import { clockText } from './wall.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
 import { forgetAll, storeText, storedText } from '../page/kept.js';
 
-const PLACE = 'tiniscript.pupil';
-const BEFORE = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
-const LOOK_MS = 1000;
+const TOKEN_KEY = 'tiniscript.pupil';
+const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
+const POLL_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
 
-/** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string, run?: number, stops?: number}} Here */
+/** @typedef {{key: string, text: string, robot: string, lessons: string[]}} GivenWork */
+/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: GivenWork, over?: string, groups?: import('./group.js').GroupRow[], driver?: string, run?: number, stops?: number}} PupilState */
 
-function newStay() {
+function newStayState() {
   return {
-    wants: /** @type {boolean | null} */ (null), // a robot, told at the next look
-    hand: /** @type {boolean | null} */ (null), // help, told at the next look
-    told: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
-    taken: /** @type {Given | null} */ (null), // the work that was given last
-    refused: '', // the key of work that is not to replace the program of the group
-    run: 0, // the newest question for a run
-    isNews: false, // the class has yet to hear that this is here
-    place: -1,
+    wantsRobot: /** @type {boolean | null} */ (null), // a robot, told at the next look
+    isHandWanted: /** @type {boolean | null} */ (null), // help, told at the next look
+    sentFields: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
+    takenWork: /** @type {GivenWork | null} */ (null), // the work that was given last
+    refusedKey: '', // the key of work that is not to replace the program of the group
+    runNumber: 0, // the newest question for a run
+    isTakenUnconfirmed: false, // the class has yet to hear that this is here
+    queuePlace: -1,
   };
 }
 
@@ -48,24 +48,24 @@ export class Pupil {
   #box = element('class_pupil', HTMLElement);
   /** Where the box is until the pupil has joined: whoever opens the class's address sees nothing before it. */
   #entry = element('class_entry', HTMLElement);
-  #code = makeElement('input');
-  #name = makeElement('input');
-  #join = makeElement('form', '', makeLabel('class_code', this.#code), makeLabel('class_name', this.#name), makeElement('button', 'class_join'));
-  #said = makeElement('p');
-  #ask = makeButton('class_ask', () => this.#want(true));
-  #quit = makeButton('class_quit', () => this.#want(false));
+  #codeInput = makeElement('input');
+  #nameInput = makeElement('input');
+  #joinForm = makeElement('form', '', makeLabel('class_code', this.#codeInput), makeLabel('class_name', this.#nameInput), makeElement('button', 'class_join'));
+  #statusElement = makeElement('p');
+  #askButton = makeButton('class_ask', () => this.#wantRobot(true));
+  #quitButton = makeButton('class_quit', () => this.#wantRobot(false));
   /** In the own turn, where the page has not come to its robot by itself. */
-  #connect = makeButton('link_connect', () => this.#panel.connectByHost());
+  #connectButton = makeButton('link_connect', () => this.#panel.connectByHost());
   /** There is no first screen in a class. */
-  #own = makeButton('own_robot', () => element('start_own', HTMLButtonElement).click());
-  #hands = makeButton('', () => {
-    this.#stay.hand = !this.#isUp;
-    this.#look();
-  }, sign('hand', 26));
-  #isUp = false;
+  #ownRobotButton = makeButton('own_robot', () => element('start_own', HTMLButtonElement).click());
+  #handButton = makeButton('', () => {
+    this.#stay.isHandWanted = !this.#isHandUp;
+    this.#poll();
+  }, makeSign('hand', 26));
+  #isHandUp = false;
   #group;
   #isEntering = false;
-  #stay = newStay(); // in one class: an answer of the one before is none of the next one
+  #stay = newStayState(); // in one class: an answer of the one before is none of the next one
   #timer = 0;
 
   /** @param {import('./classroom.js').Page} page */
@@ -73,42 +73,42 @@ export class Pupil {
     this.#page = page;
     this.#panel = page.panel;
     this.#work = page.work;
-    this.#hands.id = 'class_hand';
-    this.#hands.hidden = true;
-    element('stop', HTMLButtonElement).before(this.#hands);
+    this.#handButton.id = 'class_hand';
+    this.#handButton.hidden = true;
+    element('stop', HTMLButtonElement).before(this.#handButton);
     this.#showHand(false);
-    for (const field of [this.#code, this.#name]) {
+    for (const field of [this.#codeInput, this.#nameInput]) {
       field.autocomplete = 'off';
       field.required = true;
       field.spellcheck = false;
     }
-    this.#code.maxLength = 12;
-    this.#code.size = 8;
-    this.#code.autocapitalize = 'characters';
-    this.#name.maxLength = 24;
-    this.#said.setAttribute('role', 'status');
-    this.#join.addEventListener('submit', (event) => {
+    this.#codeInput.maxLength = 12;
+    this.#codeInput.size = 8;
+    this.#codeInput.autocapitalize = 'characters';
+    this.#nameInput.maxLength = 24;
+    this.#statusElement.setAttribute('role', 'status');
+    this.#joinForm.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#enter();
+      this.#joinClass();
     });
-    this.#box.append(this.#join, this.#said, makeElement('p', '', this.#ask, this.#quit, this.#connect, this.#own));
+    this.#box.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
     this.#box.hidden = false;
     this.#group = new Group(page, this.#box);
-    const token = storedText(PLACE, 'sessionStorage');
-    if (token) this.#begin(token);
+    const token = storedText(TOKEN_KEY, 'sessionStorage');
+    if (token) this.#onJoined(token);
     else {
-      this.#leave('class_welcome');
-      this.#code.focus();
+      this.#leaveClass('class_welcome');
+      this.#codeInput.focus();
     }
   }
 
-  async #enter() {
+  async #joinClass() {
     if (this.#isEntering) return; // who presses twice is one pupil
     this.#isEntering = true;
     try {
-      const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value, before: storedText(BEFORE) });
+      const answer = await post({ do: 'join', code: this.#codeInput.value, name: this.#nameInput.value, before: storedText(LAST_TOKEN_KEY) });
       if (answer.failure) this.#say(answer.failure);
-      else this.#begin(answer.token);
+      else this.#onJoined(answer.token);
     } catch {
       this.#say('class_silent');
     }
@@ -116,81 +116,81 @@ export class Pupil {
   }
 
   /** @param {string} token */
-  #begin(token) {
+  #onJoined(token) {
     askAs(token);
-    storeText(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
-    storeText(BEFORE, token);
-    this.#join.hidden = this.#entry.hidden = true;
+    storeText(TOKEN_KEY, token, 'sessionStorage'); // without a storage, a reload joins anew
+    storeText(LAST_TOKEN_KEY, token);
+    this.#joinForm.hidden = this.#entry.hidden = true;
     element('class_place', HTMLElement).append(this.#box);
-    this.#hands.hidden = false;
+    this.#handButton.hidden = false;
     this.#group.enter();
-    this.#look();
+    this.#poll();
   }
 
-  /** @param {import('../page/texts.js').Key} why */
-  #leave(why) {
+  /** @param {import('../page/texts.js').Key} key */
+  #leaveClass(key) {
     clearTimeout(this.#timer);
-    this.#stay = newStay();
+    this.#stay = newStayState();
     this.#showHand(false);
     this.#group.exit();
     askAs('');
-    storeText(PLACE, '', 'sessionStorage');
-    this.#join.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
+    storeText(TOKEN_KEY, '', 'sessionStorage');
+    this.#joinForm.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
     this.#entry.append(this.#box);
-    this.#ask.hidden = this.#quit.hidden = this.#connect.hidden = this.#hands.hidden = true;
-    this.#say(why);
+    this.#askButton.hidden = this.#quitButton.hidden = this.#connectButton.hidden = this.#handButton.hidden = true;
+    this.#say(key);
   }
 
-  /** @param {boolean} wants */
-  #want(wants) {
-    this.#stay.wants = wants;
-    this.#look();
+  /** @param {boolean} wantsRobot */
+  #wantRobot(wantsRobot) {
+    this.#stay.wantsRobot = wantsRobot;
+    this.#poll();
   }
 
-  async #look() {
+  async #poll() {
     clearTimeout(this.#timer);
     const stay = this.#stay;
-    const { wants, hand } = stay, taken = stay.isNews ? stay.taken : null;
-    const now = taken ? stay.told : this.#now(); // two programs may be too large
+    const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
+    const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
     const request = { do: 'here' };
-    if (taken) request['took'] = { key: taken.key, text: taken.text };
-    if (wants !== null) request['wants'] = wants;
-    if (hand !== null) request['hand'] = hand;
-    for (const [name, value] of Object.entries(now)) if (stay.told[name] !== value) request[name] = JSON.parse(value);
-    let wait_ms = LOOK_MS;
+    if (takenWork) request['took'] = { key: takenWork.key, text: takenWork.text };
+    if (wantsRobot !== null) request['wants'] = wantsRobot;
+    if (isHandWanted !== null) request['hand'] = isHandWanted;
+    for (const [name, value] of Object.entries(fields)) if (stay.sentFields[name] !== value) request[name] = JSON.parse(value);
+    let wait_ms = POLL_MS;
     try {
-      const answer = /** @type {Here} */ (await post(request));
+      const answer = /** @type {PupilState} */ (await post(request));
       if (stay !== this.#stay) return;
-      if (stay.wants === wants) stay.wants = null;
-      if (stay.hand === hand) stay.hand = null;
-      stay.told = now;
+      if (stay.wantsRobot === wantsRobot) stay.wantsRobot = null;
+      if (stay.isHandWanted === isHandWanted) stay.isHandWanted = null;
+      stay.sentFields = fields;
       if (answer.over) {
-        this.#end(answer.over === 'erased');
+        this.#endClass(answer.over === 'erased');
         return;
       }
-      this.#show(answer);
-      if (taken) stay.isNews = false;
-      this.#take(answer.given);
-      if (answer.run && answer.run !== stay.run) {
-        stay.run = answer.run;
+      this.#showState(answer);
+      if (takenWork) stay.isTakenUnconfirmed = false;
+      this.#takeGiven(answer.given);
+      if (answer.run && answer.run !== stay.runNumber) {
+        stay.runNumber = answer.run;
         giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
       }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
       if (stay !== this.#stay) return;
       if (why instanceof ConnectionFailure && why.reason === 'host_other') {
-        this.#leave('class_gone');
+        this.#leaveClass('class_gone');
         return;
       }
       this.#say('class_silent');
     }
     clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#look(), wait_ms);
+    this.#timer = window.setTimeout(() => this.#poll(), wait_ms);
   }
 
   /** What the teacher sees of this page, each as JSON. @returns {Record<string, string>} */
-  #now() {
+  #currentFields() {
     const { state, image } = document.documentElement.dataset;
     return {
       text: JSON.stringify(this.#work.text.slice(0, CLASS.text_characters)),
@@ -204,65 +204,65 @@ export class Pupil {
   /**
    * Takes work that the teacher gives back, once: it is given until the class has heard of that. A pupil who does not want
    * it in place of the group's program gets it when the page is in no group.
-   * @param {Given | undefined} given
+   * @param {GivenWork | undefined} work
    */
-  #take(given) {
-    if (!given) return;
+  #takeGiven(work) {
+    if (!work) return;
     const stay = this.#stay;
-    if (stay.taken?.key !== given.key) {
-      if (stay.refused === given.key && pageState.groupName.value) return;
-      if (!this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot })) {
-        stay.refused = given.key;
+    if (stay.takenWork?.key !== work.key) {
+      if (stay.refusedKey === work.key && pageState.groupName.value) return;
+      if (!this.#page.putProgram({ text: work.text, robot: isRobot(work.robot) ? work.robot : this.#work.robot })) {
+        stay.refusedKey = work.key;
         return;
       }
-      stay.taken = given;
-      for (const name of given.lessons) keepDone(name);
+      stay.takenWork = work;
+      for (const name of work.lessons) keepDone(name);
       element('note', HTMLElement).textContent = text('class_given');
     }
-    stay.isNews = true;
+    stay.isTakenUnconfirmed = true;
   }
 
-  /** @param {boolean} isUp */
-  #showHand(isUp) {
-    this.#isUp = isUp;
-    this.#hands.setAttribute('aria-pressed', String(isUp));
-    const key = isUp ? 'class_hand_down' : 'class_hand';
-    this.#hands.dataset['label'] = key;
-    this.#hands.title = text(key);
-    this.#hands.setAttribute('aria-label', this.#hands.title);
+  /** @param {boolean} isHandUp */
+  #showHand(isHandUp) {
+    this.#isHandUp = isHandUp;
+    this.#handButton.setAttribute('aria-pressed', String(isHandUp));
+    const key = isHandUp ? 'class_hand_down' : 'class_hand';
+    this.#handButton.dataset['label'] = key;
+    this.#handButton.title = text(key);
+    this.#handButton.setAttribute('aria-label', this.#handButton.title);
   }
 
-  /** @param {Here} here */
-  #show({ place, waiting, robots, robot, left_s, name, hand, groups = [], driver = '', stops = 0 }) {
+  /** @param {PupilState} here */
+  #showState({ place, waiting, robots, robot: robotName, left_s, name, hand: isHandUp, groups = [], driver: driverName = '', stops = 0 }) {
     hearStops(stops);
-    this.#showHand(hand);
-    this.#group.see(groups, driver);
-    const isNew = place === 0 && this.#stay.place !== 0 && !driver;
-    this.#stay.place = place;
-    this.#ask.hidden = place >= 0;
-    this.#quit.hidden = place <= 0;
-    const time = clock(left_s);
-    const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : driver ? 'group_drives' : waiting ? 'class_turn' : 'class_turn_alone';
-    this.#say(key, { place, waiting, robots, time, name: plainText(driver || name), robot: plainText(robot) });
-    if (isNew && this.#panel.isFree) {
+    this.#showHand(isHandUp);
+    this.#group.showGroups(groups, driverName);
+    const isTurnNew = place === 0 && this.#stay.queuePlace !== 0 && !driverName;
+    this.#stay.queuePlace = place;
+    this.#askButton.hidden = place >= 0;
+    this.#quitButton.hidden = place <= 0;
+    const timeLeft = clockText(left_s);
+    const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : driverName ? 'group_drives' : waiting ? 'class_turn' : 'class_turn_alone';
+    this.#say(key, { place, waiting, robots, time: timeLeft, name: plainText(driverName || name), robot: plainText(robotName) });
+    if (isTurnNew && this.#panel.isFree) {
       element('side_real', HTMLButtonElement).click();
       this.#panel.connectByHost();
     }
-    this.#connect.hidden = place !== 0 || !this.#panel.isFree;
+    this.#connectButton.hidden = place !== 0 || !this.#panel.isFree;
   }
 
   /** The class is over. @param {boolean} isErased */
-  #end(isErased) {
-    this.#leave(isErased ? 'class_erased' : 'class_kept');
-    this.#join.hidden = element('class_entry_title', HTMLElement).hidden = true;
+  #endClass(isErased) {
+    this.#leaveClass(isErased ? 'class_erased' : 'class_kept');
+    this.#joinForm.hidden = element('class_entry_title', HTMLElement).hidden = true;
     if (!isErased) return;
     forgetAll();
-    this.#page.empty();
+    this.#page.clearProgram();
   }
 
   /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
   #say(key, values = {}) {
-    say(this.#said, text(key, values));
+    say(this.#statusElement, text(key, values));
     document.documentElement.dataset['pupil'] = key;
   }
 }

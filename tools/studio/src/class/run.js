@@ -3,26 +3,26 @@
 
 import { post } from '../robot/host.js';
 
-const PART = 60_000; // characters: each has three bytes at most
-const LOOK_MS = 300;
-const WAIT_MS = 15_000;
+const PART_CHARACTERS = 60_000; // characters: each has three bytes at most
+const POLL_MS = 300;
+const ANSWER_LIMIT_MS = 15_000;
 
-/** Gives it to the class. @param {number} asked the number of the question @param {() => Promise<string>} newest its file, or nothing */
-export async function giveRun(asked, newest) {
-  const file = await newest().catch(() => '');
-  for (let from = 0; from === 0 || from < file.length; from += PART) {
-    const part = file.slice(from, from + PART);
-    await post({ do: 'run', asked, from, part, is_last: from + PART >= file.length });
+/** Gives it to the class. @param {number} questionNumber the number of the question @param {() => Promise<string>} newestRunFile its file, or nothing */
+export async function giveRun(questionNumber, newestRunFile) {
+  const file = await newestRunFile().catch(() => '');
+  for (let offset = 0; offset === 0 || offset < file.length; offset += PART_CHARACTERS) {
+    const part = file.slice(offset, offset + PART_CHARACTERS);
+    await post({ do: 'run', asked: questionNumber, from: offset, part, is_last: offset + PART_CHARACTERS >= file.length });
   }
 }
 
-/** Asks a pupil's page for it; nothing where it has none, null where it does not answer. @param {number} pupil @returns {Promise<string | null>} */
-export async function runOf(pupil) {
-  const until = performance.now() + WAIT_MS;
-  for (let isFirst = true; performance.now() < until; isFirst = false) {
-    const { run } = await post({ do: 'class_run', pupil, asks: isFirst });
+/** Asks a pupil's page for it; nothing where it has none, null where it does not answer. @param {number} pupilNumber @returns {Promise<string | null>} */
+export async function fetchRun(pupilNumber) {
+  const end_ms = performance.now() + ANSWER_LIMIT_MS;
+  for (let isFirst = true; performance.now() < end_ms; isFirst = false) {
+    const { run } = await post({ do: 'class_run', pupil: pupilNumber, asks: isFirst });
     if (typeof run === 'string') return run;
-    await new Promise((resolve) => { setTimeout(resolve, LOOK_MS); });
+    await new Promise((resolve) => { setTimeout(resolve, POLL_MS); });
   }
   return null;
 }

@@ -5,64 +5,64 @@
 import { say } from '../page/elements.js';
 import { makeButton, makeSvg, makeElement } from '../page/made.js';
 import { COLOURS } from '../page/own_robot.js';
-import { sign } from './signs.js';
+import { makeSign } from './signs.js';
 import { plainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */
 /**
- * @typedef {object} Seen of a tile
+ * @typedef {object} TileContent of a tile
  * @property {string} key
  * @property {string} name
  * @property {string[]} lessons
  * @property {PupilRow | null} pupil null of who is not here
  */
-/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, play: (key: string) => void, join: (key: string) => void}} Told */
+/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, play: (key: string) => void, join: (key: string) => void}} TileActions */
 /** @typedef {{item: HTMLElement, see: HTMLButtonElement, own: SVGElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, play: HTMLButtonElement, join: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
 
 const SILENT_S = 5;
-const WIDE = 1.75; // of a tile's picture: what suits most programs
-const LEAST = 132; // pixels of width, below which the wall is scrolled
-const LOW = 84; // and of height
-const HIGHEST = 260;
-const GAP = 6;
+const PICTURE_RATIO = 1.75; // of a tile's picture: what suits most programs
+const LEAST_WIDTH_PX = 132; // pixels of width, below which the wall is scrolled
+const LEAST_HEIGHT_PX = 84; // and of height
+const MOST_HEIGHT_PX = 260;
+const GAP_PX = 6;
 
 export class Wall {
   element = makeElement('ul');
-  #told;
+  #actions;
   /** @type {Map<string, Tile>} */
   #tiles = new Map();
 
-  /** @param {Told} told */
-  constructor(told) {
-    this.#told = told;
+  /** @param {TileActions} actions */
+  constructor(actions) {
+    this.#actions = actions;
     this.element.id = 'wall';
-    new ResizeObserver(() => this.#fit()).observe(this.element);
+    new ResizeObserver(() => this.#fitTiles()).observe(this.element);
   }
 
-  /** @param {Seen[]} all in their order @param {number} lessons how many there are */
-  show(all, lessons) {
-    const old = this.#tiles;
+  /** @param {TileContent[]} contents in their order @param {number} lessonCount how many there are */
+  show(contents, lessonCount) {
+    const oldTiles = this.#tiles;
     this.#tiles = new Map();
-    all.forEach((each, k) => {
-      const tile = old.get(each.key) ?? this.#made(each);
-      this.#tiles.set(each.key, tile);
-      if (this.element.children[k] !== tile.item) this.element.insertBefore(tile.item, this.element.children[k] ?? null);
-      this.#fill(tile, each, lessons);
+    contents.forEach((content, index) => {
+      const tile = oldTiles.get(content.key) ?? this.#makeTile(content);
+      this.#tiles.set(content.key, tile);
+      if (this.element.children[index] !== tile.item) this.element.insertBefore(tile.item, this.element.children[index] ?? null);
+      this.#fillTile(tile, content, lessonCount);
     });
-    for (const [key, tile] of old) {
+    for (const [key, tile] of oldTiles) {
       if (this.#tiles.has(key)) continue;
-      release(tile);
+      releasePicture(tile);
       tile.item.remove();
     }
-    if (old.size !== this.#tiles.size) this.#fit();
+    if (oldTiles.size !== this.#tiles.size) this.#fitTiles();
   }
 
   /** @param {string} key @param {string} address of a picture, or nothing */
-  picture(key, address) {
+  setPicture(key, address) {
     const tile = this.#tiles.get(key);
     if (!tile) return false;
-    release(tile);
+    releasePicture(tile);
     tile.picture.hidden = !address;
     tile.empty.hidden = Boolean(address);
     if (address) tile.picture.src = address;
@@ -75,49 +75,49 @@ export class Wall {
     return this.#tiles.get(key)?.picture.getAttribute('src') ?? '';
   }
 
-  /** @param {Seen} of @returns {Tile} */
-  #made({ key }) {
-    const see = makeButton('', () => this.#told.see(key));
-    const hand = makeButton('', () => this.#told.lower(key), sign('hand', 26));
-    const out = makeButton('', () => this.#told.remove(key), sign('out', 20));
-    const play = makeButton('', () => this.#told.play(key), sign('run', 20));
-    const join = makeButton('', () => this.#told.join(key), sign('join', 20));
-    const name = makeElement('strong'), picture = makeElement('img'), empty = makeElement('span', 'class_empty');
-    const badge = makeElement('span'), pips = makeElement('span'), said = makeElement('span');
-    for (const [looks, each] of Object.entries({ see, hand, out, play, join, badge, pips, said, empty })) each.className = looks;
-    picture.alt = '';
-    picture.hidden = true;
-    empty.hidden = true; // until its program is known
-    const own = makeSvg('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
-    const item = makeElement('li', '', name, makeElement('div', '', picture, empty), makeElement('p', '', pips, said), badge, own, see, hand, play, join, out);
-    return { item, see, own, name, hand, out, play, join, picture, empty, badge, pips, said };
+  /** @param {TileContent} of @returns {Tile} */
+  #makeTile({ key }) {
+    const seeButton = makeButton('', () => this.#actions.see(key));
+    const handButton = makeButton('', () => this.#actions.lower(key), makeSign('hand', 26));
+    const outButton = makeButton('', () => this.#actions.remove(key), makeSign('out', 20));
+    const playButton = makeButton('', () => this.#actions.play(key), makeSign('run', 20));
+    const joinButton = makeButton('', () => this.#actions.join(key), makeSign('join', 20));
+    const nameElement = makeElement('strong'), pictureElement = makeElement('img'), emptyElement = makeElement('span', 'class_empty');
+    const badgeElement = makeElement('span'), pipsElement = makeElement('span'), stateElement = makeElement('span');
+    for (const [className, element] of Object.entries({ see: seeButton, hand: handButton, out: outButton, play: playButton, join: joinButton, badge: badgeElement, pips: pipsElement, said: stateElement, empty: emptyElement })) element.className = className;
+    pictureElement.alt = '';
+    pictureElement.hidden = true;
+    emptyElement.hidden = true; // until its program is known
+    const ownRobotDrawing = makeSvg('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
+    const listItem = makeElement('li', '', nameElement, makeElement('div', '', pictureElement, emptyElement), makeElement('p', '', pipsElement, stateElement), badgeElement, ownRobotDrawing, seeButton, handButton, playButton, joinButton, outButton);
+    return { item: listItem, see: seeButton, own: ownRobotDrawing, name: nameElement, hand: handButton, out: outButton, play: playButton, join: joinButton, picture: pictureElement, empty: emptyElement, badge: badgeElement, pips: pipsElement, said: stateElement };
   }
 
-  /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
-  #fill(tile, { key, name, lessons: done, pupil }, lessons) {
+  /** @param {Tile} tile @param {TileContent} seen @param {number} lessonCount */
+  #fillTile(tile, { key, name, lessons: lessonsDone, pupil }, lessonCount) {
     const isGroup = key.startsWith('group '); // whose pupils leave it
-    const plain = plainText(name);
+    const plainName = plainText(name);
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
-    const drives = pupil?.robot ? plainText(pupil.robot) : '';
+    const drivenRobot = pupil?.robot ? plainText(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
-    const { name: own_name = '', colour = 0 } = pupil?.own_robot ?? {};
+    const { name: ownRobotName = '', colour = 0 } = pupil?.own_robot ?? {};
     const [body, edge] = COLOURS[colour] ?? COLOURS[0];
     tile.own.style.setProperty('--robot', body);
     tile.own.style.setProperty('--robot-edge', edge);
-    say(tile.name, [plain, plainText(own_name)].filter(Boolean).join(' · '));
+    say(tile.name, [plainName, plainText(ownRobotName)].filter(Boolean).join(' · '));
     say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
     tile.play.hidden = isGroup || state === 'gone' || state === 'away';
     tile.out.hidden = isGroup;
     tile.join.hidden = !isGroup;
-    const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
+    const badge = drivenRobot ? `${drivenRobot} ${clockText(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
     tile.badge.hidden = !badge;
     if (tile.badge.dataset['said'] !== badge) {
       tile.badge.dataset['said'] = badge;
-      tile.badge.replaceChildren(sign(drives ? 'robot' : 'queue', 18), makeElement('span', '', badge));
-      tile.badge.classList.toggle('drives', Boolean(drives));
+      tile.badge.replaceChildren(makeSign(drivenRobot ? 'robot' : 'queue', 18), makeElement('span', '', badge));
+      tile.badge.classList.toggle('drives', Boolean(drivenRobot));
     }
-    const marks = Array.from({ length: lessons }, (_, k) => (done.some((each) => Number.parseInt(each, 10) === k + 1) ? '●' : '○')).join('');
+    const marks = Array.from({ length: lessonCount }, (_, index) => (lessonsDone.some((lesson) => Number.parseInt(lesson, 10) === index + 1) ? '●' : '○')).join('');
     if (tile.pips.dataset['marks'] !== marks) {
       tile.pips.dataset['marks'] = marks;
       tile.pips.replaceChildren(...[...marks].map((mark) => {
@@ -126,46 +126,46 @@ export class Wall {
         return pip;
       }));
     }
-    const more = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', drives && text('class_drives', { robot: drives }),
-      pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: done.length, all: lessons })];
-    label(tile.see, `${text('class_see_of', { name: plain })} ${more.filter(Boolean).join(', ')}`);
-    label(tile.hand, text('class_lower', { name: plain }));
-    label(tile.out, text('class_remove_of', { name: plain }));
-    label(tile.join, text('class_visit_of', { name: plain }));
-    label(tile.play, text('class_run_of', { name: plain }));
+    const details = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', drivenRobot && text('class_drives', { robot: drivenRobot }),
+      pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: lessonsDone.length, all: lessonCount })];
+    setLabel(tile.see, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
+    setLabel(tile.hand, text('class_lower', { name: plainName }));
+    setLabel(tile.out, text('class_remove_of', { name: plainName }));
+    setLabel(tile.join, text('class_visit_of', { name: plainName }));
+    setLabel(tile.play, text('class_run_of', { name: plainName }));
   }
 
   /** Chooses the columns with which tiles are largest. */
-  #fit() {
+  #fitTiles() {
     const { clientWidth: width, clientHeight: height } = this.element;
     const count = this.#tiles.size;
     if (!count || !width || !height) return;
     let best = { columns: 1, size: 0 };
-    for (let columns = 1; columns <= count && (width + GAP) / columns - GAP >= LEAST; columns += 1) {
-      const wide = (width + GAP) / columns - GAP;
-      const high = Math.min(HIGHEST, (height + GAP) / Math.ceil(count / columns) - GAP);
-      const size = Math.min(wide / WIDE, high);
-      if (size > best.size) best = { columns, size };
+    for (let columns = 1; columns <= count && (width + GAP_PX) / columns - GAP_PX >= LEAST_WIDTH_PX; columns += 1) {
+      const width_px = (width + GAP_PX) / columns - GAP_PX;
+      const height_px = Math.min(MOST_HEIGHT_PX, (height + GAP_PX) / Math.ceil(count / columns) - GAP_PX);
+      const pictureSize = Math.min(width_px / PICTURE_RATIO, height_px);
+      if (pictureSize > best.size) best = { columns, size: pictureSize };
     }
-    if (best.size < LOW) best.columns = Math.max(1, Math.floor((width + GAP) / (LEAST + 30 + GAP)));
+    if (best.size < LEAST_HEIGHT_PX) best.columns = Math.max(1, Math.floor((width + GAP_PX) / (LEAST_WIDTH_PX + 30 + GAP_PX)));
     const rows = Math.ceil(count / best.columns);
-    const high = Math.max(LOW, Math.min(HIGHEST, Math.floor((height + GAP) / rows - GAP)));
+    const tileHeight = Math.max(LEAST_HEIGHT_PX, Math.min(MOST_HEIGHT_PX, Math.floor((height + GAP_PX) / rows - GAP_PX)));
     this.element.style.setProperty('--columns', String(best.columns));
-    this.element.style.setProperty('--high', `${high}px`);
+    this.element.style.setProperty('--high', `${tileHeight}px`);
   }
 }
 
 /** Nothing is kept of the picture in a tile. @param {Tile} tile */
-function release({ picture }) {
+function releasePicture({ picture }) {
   if (picture.src.startsWith('blob:')) URL.revokeObjectURL(picture.src);
 }
 
 /** @param {number} seconds */
-export function clock(seconds) {
+export function clockText(seconds) {
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
 }
 
-/** @param {HTMLElement} place @param {string} said */
-function label(place, said) {
-  if (place.getAttribute('aria-label') !== said) place.setAttribute('aria-label', said);
+/** @param {HTMLElement} target @param {string} label */
+function setLabel(target, label) {
+  if (target.getAttribute('aria-label') !== label) target.setAttribute('aria-label', label);
 }

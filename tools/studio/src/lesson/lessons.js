@@ -107,11 +107,11 @@ export class Lessons {
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
     pageState.language.subscribe(() => {
-      this.#pictures.showWords();
+      this.#pictures.updateLanguage();
       if (this.#isShown) this.#fetch();
     });
     pageState.areWordsShown.subscribe(() => {
-      this.#pictures.showWords();
+      this.#pictures.updateLanguage();
       this.#fill();
     });
     pageState.view.subscribe(() => {

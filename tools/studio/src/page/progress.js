@@ -4,7 +4,7 @@
 const NOTICE_MS = 3000;
 const TIMEOUT_MS = 20_000;
 
-/** @typedef {{onWait?: (() => void) | undefined, cancelSignal?: AbortSignal | undefined, onProgress?: (() => void) | undefined, onFail?: ((why: unknown) => void) | undefined}} WatchOptions `waits`: nothing has come for a while, told once; `came`: something has; `fails`: not all will come */
+/** @typedef {{onWait?: (() => void) | undefined, cancelSignal?: AbortSignal | undefined, onProgress?: (() => void) | undefined, onFail?: ((why: unknown) => void) | undefined}} WatchOptions `onWait`: nothing has come for a while, told once; `onProgress`: something has; `onFail`: not all will come */
 
 export class Progress {
   #controller = new AbortController();

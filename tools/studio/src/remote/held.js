@@ -3,47 +3,47 @@
 
 /** @typedef {{keys: number, x: number, y: number}} Held a bit for each key; to the right and up, in percent */
 
-export const MOST = 100;
-export const NOTHING = Object.freeze({ keys: 0, x: 0, y: 0 });
+export const MOST_PERCENT = 100;
+export const NOTHING_HELD = Object.freeze({ keys: 0, x: 0, y: 0 });
 
-/** @param {Held} one @param {Held} other */
-export function isSame(one, other) {
-  return one.keys === other.keys && one.x === other.x && one.y === other.y;
+/** @param {Held} first @param {Held} second */
+export function isSameHeld(first, second) {
+  return first.keys === second.keys && first.x === second.x && first.y === second.y;
 }
 
 /** Where a stick is that was moved so far of what it can be. @param {number} right @param {number} up @returns {Held} */
-export function moved(right, up) {
-  const far = Math.max(1, Math.hypot(right, up));
-  return { keys: 0, x: Math.round((MOST * right) / far) || 0, y: Math.round((MOST * up) / far) || 0 };
+export function heldOfStick(right, up) {
+  const length = Math.max(1, Math.hypot(right, up));
+  return { keys: 0, x: Math.round((MOST_PERCENT * right) / length) || 0, y: Math.round((MOST_PERCENT * up) / length) || 0 };
 }
 
-export class Holding {
+export class HeldByHolder {
   /** The newest last. @type {Map<unknown, Held>} */
-  #held = new Map();
+  #heldByHolder = new Map();
 
-  /** @param {unknown} who @param {Held} held */
-  hold(who, held) {
-    const before = this.#held.get(who);
-    if (before && isSame(before, held)) return; // who has not moved is not the newest
-    this.#held.delete(who);
-    if (!isSame(held, NOTHING)) this.#held.set(who, held);
+  /** @param {unknown} holder @param {Held} held */
+  hold(holder, held) {
+    const heldBefore = this.#heldByHolder.get(holder);
+    if (heldBefore && isSameHeld(heldBefore, held)) return; // who has not moved is not the newest
+    this.#heldByHolder.delete(holder);
+    if (!isSameHeld(held, NOTHING_HELD)) this.#heldByHolder.set(holder, held);
   }
 
-  /** @param {unknown} who */
-  letGo(who) {
-    this.#held.delete(who);
+  /** @param {unknown} holder */
+  letGo(holder) {
+    this.#heldByHolder.delete(holder);
   }
 
   letAllGo() {
-    this.#held.clear();
+    this.#heldByHolder.clear();
   }
 
   /** @returns {Held} */
-  get all() {
+  get combined() {
     let keys = 0, x = 0, y = 0;
-    for (const each of this.#held.values()) {
-      keys |= each.keys;
-      if (each.x || each.y) ({ x, y } = each);
+    for (const held of this.#heldByHolder.values()) {
+      keys |= held.keys;
+      if (held.x || held.y) ({ x, y } = held);
     }
     return { keys, x, y };
   }

@@ -9,63 +9,63 @@ import { makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
 import { LINK, REMOTE } from '../page/words.js';
-import { gamepadsHeld } from './gamepads.js';
-import { Holding, isSame, moved, NOTHING } from './held.js';
+import { readGamepads } from './gamepads.js';
+import { HeldByHolder, isSameHeld, heldOfStick, NOTHING_HELD } from './held.js';
 
 /** @import { Held } from './held.js' */
 /**
- * @typedef {object} Driven a robot that can be driven
+ * @typedef {object} DrivenRobot a robot that can be driven
  * @property {string[]} reads words of a remote control that its program reads
  * @property {(held: Held) => void} tell says it to the robot
  * @property {boolean} [isDeaf] it has no remote control
  */
 
-const KEYS = REMOTE.filter((each) => each.is_yes_no);
+const KEY_DEVICES = REMOTE.filter((device) => device.is_yes_no);
 const ARROWS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
-const TYPED = [...Object.keys(ARROWS), 'a', 'b']; // in the order of the keys
-const THUMB = 0.75; // of its own size, to where the stick ends
-const PRESSES = [' ', 'Enter']; // what presses a button that has the focus
+const KEYBOARD_KEYS = [...Object.keys(ARROWS), 'a', 'b']; // in the order of the keys
+const THUMB_SHARE = 0.75; // of its own size, to where the stick ends
+const PRESSING_KEYS = [' ', 'Enter']; // what presses a button that has the focus
 /** Where arrows and letters are somebody else's. */
-const TAKEN = 'input, textarea, select, dialog, [contenteditable=true], #blocks, #arena, [tabindex="0"]';
+const TAKEN_SELECTOR = 'input, textarea, select, dialog, [contenteditable=true], #blocks, #arena, [tabindex="0"]';
 
 export class Pad {
-  #holding = new Holding();
+  #holders = new HeldByHolder();
   /** @type {Held} */
-  #said = NOTHING;
+  #lastHeld = NOTHING_HELD;
   #timer = 0;
-  #looks = 0; // at the gamepads
+  #frameRequest = 0; // at the gamepads
   /** @type {number[]} */
-  #gamepads = [];
+  #gamepadNumbers = [];
   /** Those that have to let go before they are heeded. @type {Set<number>} */
-  #stale = new Set();
+  #staleGamepads = new Set();
   /** Fingers on a part, and what each does when it moves. @type {Map<number, (event: PointerEvent) => void>} */
-  #fingers = new Map();
+  #fingerMoves = new Map();
   /** By what is pressed of a keyboard: which key it is. @type {Map<string, number>} */
-  #typed = new Map();
-  /** @type {Map<string, Driven>} */
-  #offered = new Map();
-  /** @type {Driven | undefined} */
-  #driven;
-  #box = element('pad', HTMLElement);
-  #stick = element('pad_stick', HTMLElement);
-  #thumb = element('pad_thumb', HTMLElement);
-  #parts;
+  #pressedKeys = new Map();
+  /** @type {Map<string, DrivenRobot>} */
+  #offeredRobots = new Map();
+  /** @type {DrivenRobot | undefined} */
+  #drivenRobot;
+  #padElement = element('pad', HTMLElement);
+  #stickElement = element('pad_stick', HTMLElement);
+  #thumbElement = element('pad_thumb', HTMLElement);
+  #keyButtons;
 
   constructor() {
-    this.#parts = KEYS.map((device, key) => {
-      const part = makeElement('button', '', device.labels.en.split(' ').at(-1) ?? '');
-      part.type = 'button';
-      part.dataset['key'] = device.text;
-      this.#heed(part, () => ({ ...NOTHING, keys: 1 << key }));
-      return part;
+    this.#keyButtons = KEY_DEVICES.map((device, keyIndex) => {
+      const keyButton = makeElement('button', '', device.labels.en.split(' ').at(-1) ?? '');
+      keyButton.type = 'button';
+      keyButton.dataset['key'] = device.text;
+      this.#listenToFingers(keyButton, () => ({ ...NOTHING_HELD, keys: 1 << keyIndex }));
+      return keyButton;
     });
-    element('pad_arrows', HTMLElement).append(...this.#parts.slice(0, 4));
-    element('pad_letters', HTMLElement).append(...this.#parts.slice(4));
-    this.#heed(this.#stick, (event) => this.#at(event), true);
-    this.#box.addEventListener('contextmenu', (event) => event.preventDefault()); // of a finger that stays
-    addEventListener('keydown', (event) => this.#type(event));
-    addEventListener('keyup', (event) => this.#untype(event));
-    for (const name of ['gamepadconnected', 'gamepaddisconnected']) addEventListener(name, () => this.#look());
+    element('pad_arrows', HTMLElement).append(...this.#keyButtons.slice(0, 4));
+    element('pad_letters', HTMLElement).append(...this.#keyButtons.slice(4));
+    this.#listenToFingers(this.#stickElement, (event) => this.#stickAt(event), true);
+    this.#padElement.addEventListener('contextmenu', (event) => event.preventDefault()); // of a finger that stays
+    addEventListener('keydown', (event) => this.#onKeyDown(event));
+    addEventListener('keyup', (event) => this.#onKeyUp(event));
+    for (const name of ['gamepadconnected', 'gamepaddisconnected']) addEventListener(name, () => this.#pollGamepads());
     for (const name of ['blur', 'pagehide', 'freeze']) addEventListener(name, () => this.letGo());
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') this.letGo();
@@ -74,163 +74,163 @@ export class Pad {
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') this.letGo();
     }, { capture: true });
-    pageState.sideId.subscribe(() => this.#choose());
-    pageState.language.subscribe(() => this.#name());
+    pageState.sideId.subscribe(() => this.#chooseRobot());
+    pageState.language.subscribe(() => this.#updateNames());
   }
 
-  /** A robot can be driven on a side of the page, or none can any more. @param {'driving' | 'link'} side @param {Driven | null} driven */
-  offer(side, driven) {
-    const before = this.#offered.get(side);
-    if (driven && before && before.isDeaf === driven.isDeaf && `${before.reads}` === `${driven.reads}`) return;
-    if (driven) this.#offered.set(side, driven);
-    else this.#offered.delete(side);
-    this.#choose();
+  /** A robot can be driven on a side of the page, or none can any more. @param {'driving' | 'link'} side @param {DrivenRobot | null} robot */
+  offer(side, robot) {
+    const robotBefore = this.#offeredRobots.get(side);
+    if (robot && robotBefore && robotBefore.isDeaf === robot.isDeaf && `${robotBefore.reads}` === `${robot.reads}`) return;
+    if (robot) this.#offeredRobots.set(side, robot);
+    else this.#offeredRobots.delete(side);
+    this.#chooseRobot();
   }
 
   /** Nobody holds anything before he presses anew. */
   letGo() {
-    this.#holding.letAllGo();
-    this.#fingers.clear();
-    this.#typed.clear();
-    for (const number of gamepadsHeld().keys()) this.#stale.add(number);
-    this.#change();
+    this.#holders.letAllGo();
+    this.#fingerMoves.clear();
+    this.#pressedKeys.clear();
+    for (const number of readGamepads().keys()) this.#staleGamepads.add(number);
+    this.#updateHeld();
   }
 
   /** Which robot is driven follows from what is seen. */
-  #choose() {
+  #chooseRobot() {
     const side = pageState.sideId.value === 'side_real' ? 'link' : 'driving';
-    const driven = this.#offered.get(side);
-    if (driven === this.#driven) return;
+    const robot = this.#offeredRobots.get(side);
+    if (robot === this.#drivenRobot) return;
     this.letGo(); // it goes to the robot before
-    this.#driven = driven;
-    this.#box.hidden = !driven;
-    if (!driven) return;
-    const { reads, isDeaf } = driven;
-    if (side === 'link') element('link_said', HTMLElement).after(this.#box);
-    else element(side, HTMLElement).append(this.#box);
-    KEYS.forEach((device, k) => {
-      const part = this.#parts[k];
-      if (part) part.hidden = isDeaf || !reads.includes(device.text);
+    this.#drivenRobot = robot;
+    this.#padElement.hidden = !robot;
+    if (!robot) return;
+    const { reads, isDeaf } = robot;
+    if (side === 'link') element('link_said', HTMLElement).after(this.#padElement);
+    else element(side, HTMLElement).append(this.#padElement);
+    KEY_DEVICES.forEach((device, index) => {
+      const keyButton = this.#keyButtons[index];
+      if (keyButton) keyButton.hidden = isDeaf || !reads.includes(device.text);
     });
-    this.#stick.hidden = isDeaf || !reads.some((word) => REMOTE.some((each) => each.text === word && !each.is_yes_no));
-    for (const id of ['pad_arrows', 'pad_letters']) {
-      const group = element(id, HTMLElement);
-      group.hidden = [...group.children].every((each) => each instanceof HTMLElement && each.hidden);
+    this.#stickElement.hidden = isDeaf || !reads.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
+    for (const groupId of ['pad_arrows', 'pad_letters']) {
+      const group = element(groupId, HTMLElement);
+      group.hidden = [...group.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);
     }
-    this.#name();
-    this.#look();
+    this.#updateNames();
+    this.#pollGamepads();
   }
 
-  #name() {
-    this.#parts.forEach((part, k) => part.setAttribute('aria-label', labelOf(KEYS[k]?.labels ?? {})));
-    if (this.#driven) say(element('pad_said', HTMLElement), this.#driven.isDeaf ? text('pad_deaf') : '');
+  #updateNames() {
+    this.#keyButtons.forEach((keyButton, k) => keyButton.setAttribute('aria-label', labelOf(KEY_DEVICES[k]?.labels ?? {})));
+    if (this.#drivenRobot) say(element('pad_said', HTMLElement), this.#drivenRobot.isDeaf ? text('pad_deaf') : '');
   }
 
   // -- who holds ----------------------------------------------------------------------------------
 
-  /** A part is held by fingers; of one that `isOne`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => Held} held @param {boolean} [isOne] */
-  #heed(part, held, isOne) {
-    let owner = -1;
+  /** A part is held by fingers; of one that `isOne`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => Held} heldAt @param {boolean} [isSingleFinger] */
+  #listenToFingers(part, heldAt, isSingleFinger) {
+    let fingerId = -1;
     part.addEventListener('pointerdown', (event) => {
-      if (event.button || (isOne && this.#fingers.has(owner))) return;
-      owner = event.pointerId;
+      if (event.button || (isSingleFinger && this.#fingerMoves.has(fingerId))) return;
+      fingerId = event.pointerId;
       part.setPointerCapture(event.pointerId);
-      const holds = (/** @type {PointerEvent} */ each) => this.#hold(each.pointerId, held(each));
-      this.#fingers.set(event.pointerId, holds);
-      holds(event);
+      const onMove = (/** @type {PointerEvent} */ move) => this.#hold(move.pointerId, heldAt(move));
+      this.#fingerMoves.set(event.pointerId, onMove);
+      onMove(event);
     });
-    part.addEventListener('pointermove', (event) => this.#fingers.get(event.pointerId)?.(event));
+    part.addEventListener('pointermove', (event) => this.#fingerMoves.get(event.pointerId)?.(event));
     for (const name of /** @type {const} */ (['pointerup', 'pointercancel', 'lostpointercapture'])) {
       part.addEventListener(name, ({ pointerId }) => {
-        this.#fingers.delete(pointerId);
-        this.#letGo(pointerId);
+        this.#fingerMoves.delete(pointerId);
+        this.#letHolderGo(pointerId);
       });
     }
   }
 
   /** Where a finger has the stick. @param {PointerEvent} event */
-  #at({ clientX, clientY }) {
-    const { left, top, width, height } = this.#stick.getBoundingClientRect();
-    const reach = width / 3;
-    return moved((clientX - left - width / 2) / reach, (top + height / 2 - clientY) / reach);
+  #stickAt({ clientX, clientY }) {
+    const { left, top, width, height } = this.#stickElement.getBoundingClientRect();
+    const reach_px = width / 3;
+    return heldOfStick((clientX - left - width / 2) / reach_px, (top + height / 2 - clientY) / reach_px);
   }
 
   /** @param {KeyboardEvent} event */
-  #type(event) {
-    if (!this.#driven || this.#driven.isDeaf || event.ctrlKey || event.metaKey || event.altKey) return;
+  #onKeyDown(event) {
+    if (!this.#drivenRobot || this.#drivenRobot.isDeaf || event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = event;
     if (!(target instanceof Element)) return;
-    const part = PRESSES.includes(event.key) ? this.#parts.findIndex((each) => each === target) : -1;
-    const key = part < 0 ? TYPED.indexOf(event.key.length > 1 ? event.key : event.key.toLowerCase()) : part;
-    if (key < 0 || target.closest(TAKEN)) return;
+    const buttonIndex = PRESSING_KEYS.includes(event.key) ? this.#keyButtons.findIndex((button) => button === target) : -1;
+    const keyIndex = buttonIndex < 0 ? KEYBOARD_KEYS.indexOf(event.key.length > 1 ? event.key : event.key.toLowerCase()) : buttonIndex;
+    if (keyIndex < 0 || target.closest(TAKEN_SELECTOR)) return;
     event.preventDefault(); // an arrow scrolls
     if (event.repeat) return;
-    this.#typed.set(event.code, key);
-    this.#showTyped();
+    this.#pressedKeys.set(event.code, keyIndex);
+    this.#holdPressedKeys();
   }
 
   /** @param {KeyboardEvent} event */
-  #untype({ code }) {
-    if (this.#typed.delete(code)) this.#showTyped();
+  #onKeyUp({ code }) {
+    if (this.#pressedKeys.delete(code)) this.#holdPressedKeys();
   }
 
-  #showTyped() {
-    const isStick = !this.#stick.hidden && this.#parts.slice(0, 4).every((part) => part.hidden);
+  #holdPressedKeys() {
+    const isStick = !this.#stickElement.hidden && this.#keyButtons.slice(0, 4).every((part) => part.hidden);
     let keys = 0, right = 0, up = 0;
-    for (const key of this.#typed.values()) {
-      const way = Object.values(ARROWS)[key];
-      if (isStick && way) [right, up] = [right + (way[0] ?? 0), up + (way[1] ?? 0)];
-      else keys |= 1 << key;
+    for (const keyIndex of this.#pressedKeys.values()) {
+      const direction = Object.values(ARROWS)[keyIndex];
+      if (isStick && direction) [right, up] = [right + (direction[0] ?? 0), up + (direction[1] ?? 0)];
+      else keys |= 1 << keyIndex;
     }
-    this.#hold('keyboard', { ...moved(right, up), keys });
+    this.#hold('keyboard', { ...heldOfStick(right, up), keys });
   }
 
   /** Looks what gamepads hold, as long as there is one and a robot is driven. */
-  #look() {
-    cancelAnimationFrame(this.#looks);
-    const there = gamepadsHeld();
-    for (const number of this.#gamepads) if (!there.has(number)) this.#letGo(gamepad(number));
-    this.#gamepads = [...there.keys()];
-    if (!this.#driven || !there.size) return;
-    for (const [number, held] of there) {
-      if (isSame(held, NOTHING)) this.#stale.delete(number);
-      if (!this.#stale.has(number)) this.#hold(gamepad(number), held);
+  #pollGamepads() {
+    cancelAnimationFrame(this.#frameRequest);
+    const heldByGamepad = readGamepads();
+    for (const number of this.#gamepadNumbers) if (!heldByGamepad.has(number)) this.#letHolderGo(gamepadHolder(number));
+    this.#gamepadNumbers = [...heldByGamepad.keys()];
+    if (!this.#drivenRobot || !heldByGamepad.size) return;
+    for (const [number, held] of heldByGamepad) {
+      if (isSameHeld(held, NOTHING_HELD)) this.#staleGamepads.delete(number);
+      if (!this.#staleGamepads.has(number)) this.#hold(gamepadHolder(number), held);
     }
-    this.#looks = requestAnimationFrame(() => this.#look());
+    this.#frameRequest = requestAnimationFrame(() => this.#pollGamepads());
   }
 
   // -- what is held -------------------------------------------------------------------------------
 
-  /** @param {unknown} who @param {Held} held */
-  #hold(who, held) {
-    this.#holding.hold(who, held);
-    this.#change();
+  /** @param {unknown} holder @param {Held} held */
+  #hold(holder, held) {
+    this.#holders.hold(holder, held);
+    this.#updateHeld();
   }
 
-  /** @param {unknown} who */
-  #letGo(who) {
-    this.#holding.letGo(who);
-    this.#change();
+  /** @param {unknown} holder */
+  #letHolderGo(holder) {
+    this.#holders.letGo(holder);
+    this.#updateHeld();
   }
 
-  #change() {
-    const held = this.#holding.all;
-    if (isSame(held, this.#said)) return;
-    this.#said = held;
-    this.#thumb.style.setProperty('translate', `${held.x * THUMB}% ${-held.y * THUMB}%`);
-    this.#parts.forEach((part, k) => part.classList.toggle('held', Boolean(held.keys & (1 << k))));
-    this.#say();
+  #updateHeld() {
+    const held = this.#holders.combined;
+    if (isSameHeld(held, this.#lastHeld)) return;
+    this.#lastHeld = held;
+    this.#thumbElement.style.setProperty('translate', `${held.x * THUMB_SHARE}% ${-held.y * THUMB_SHARE}%`);
+    this.#keyButtons.forEach((part, k) => part.classList.toggle('held', Boolean(held.keys & (1 << k))));
+    this.#sendHeld();
   }
 
-  #say() {
+  #sendHeld() {
     clearTimeout(this.#timer);
-    if (!this.#driven || this.#driven.isDeaf) return;
-    this.#driven.tell(this.#said);
-    if (!isSame(this.#said, NOTHING)) this.#timer = window.setTimeout(() => this.#say(), LINK.keys_every_ms);
+    if (!this.#drivenRobot || this.#drivenRobot.isDeaf) return;
+    this.#drivenRobot.tell(this.#lastHeld);
+    if (!isSameHeld(this.#lastHeld, NOTHING_HELD)) this.#timer = window.setTimeout(() => this.#sendHeld(), LINK.keys_every_ms);
   }
 }
 
 /** @param {number} number */
-function gamepad(number) {
+function gamepadHolder(number) {
   return `gamepad ${number}`;
 }

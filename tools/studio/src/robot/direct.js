@@ -10,11 +10,11 @@ import { LINK, robotOf } from '../page/words.js';
 /** @import { RobotListener, About } from './transport.js' */
 
 /**
- * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.
+ * What carries bytes. `write` keeps the order; `onGone` is called once, when nothing is carried any more.
  * @typedef {object} Port
  * @property {boolean} isRadio
  * @property {string} goneBy why the connection is over when the port is
- * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a ConnectionFailure
+ * @property {(onData: (data: Uint8Array) => void, onGone: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close
  */

@@ -14,13 +14,13 @@ import { BOARDS, flash } from './stk500.js';
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
 const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
-/** @typedef {import('../page/progress.js').WatchOptions} Watching */
+/** @typedef {import('../page/progress.js').WatchOptions} WatchOptions */
 
 /**
  * Returns the firmware of a robot, or that of a file; rejects with a ConnectionFailure.
  * @param {WantedFirmware | File} wanted
  * @param {string} board
- * @param {Watching} watchOptions
+ * @param {WatchOptions} watchOptions
  */
 export async function firmwareOf(wanted, board, watchOptions) {
   const data = wanted instanceof File ? await wanted.slice(0, MOST_BYTES).arrayBuffer() : await fetchFirmware(wanted, board, watchOptions);
@@ -56,7 +56,7 @@ export async function flashBoard(port, board, data, onProgress, cancelSignal) {
   await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, onProgress, cancelSignal);
 }
 
-/** What there is beside this page. @param {Watching} [watchOptions] @returns {Promise<Firmware[]>} */
+/** What there is beside this page. @param {WatchOptions} [watchOptions] @returns {Promise<Firmware[]>} */
 export async function firmwares(watchOptions) {
   return JSON.parse(new TextDecoder().decode(await fetchBytes('firmware.json', watchOptions)));
 }
@@ -66,7 +66,7 @@ export function haltingTitle(robot) {
   return `${robot}_breakpoints`;
 }
 
-/** @param {WantedFirmware} which @param {string} board @param {Watching} watchOptions */
+/** @param {WantedFirmware} which @param {string} board @param {WatchOptions} watchOptions */
 async function fetchFirmware({ robot, language, halts }, board, watchOptions) {
   const firmwareList = await firmwares(watchOptions);
   const titles = halts ? [haltingTitle(robot)] : [`${robot}_${language}`, robot];
@@ -75,7 +75,7 @@ async function fetchFirmware({ robot, language, halts }, board, watchOptions) {
   return fetchBytes(firmware.file, watchOptions);
 }
 
-/** @param {string} fileName @param {Watching} [watchOptions] */
+/** @param {string} fileName @param {WatchOptions} [watchOptions] */
 async function fetchBytes(fileName, watchOptions) {
   try {
     const response = await watchedFetch(`./${encodeURIComponent(fileName)}`, watchOptions);

@@ -5,7 +5,7 @@ import { plainText } from './plain_text.js';
 import { pageState } from '../page/page_state.js';
 import { hasText, textKey, text } from '../page/texts.js';
 
-/** @typedef {import('./transport.js').ConnectionFailure} Failed */
+/** @typedef {import('./transport.js').ConnectionFailure} ConnectionFailure */
 
 const MOST_SHOWN_LINES = 200; // lines of what the robot shows
 const MOST_SENTENCE_CHARACTERS = 1000;
@@ -28,7 +28,7 @@ export class Speech {
     this.#sentenceElement.textContent = this.#sentence();
   }
 
-  /** @param {Failed} failure @param {() => string} [addition] that is said with it */
+  /** @param {ConnectionFailure} failure @param {() => string} [addition] that is said with it */
   fail(failure, addition = () => '') {
     const key = `why_${failure.reason}`;
     const sentence = plainText(failure.details, MOST_SENTENCE_CHARACTERS);

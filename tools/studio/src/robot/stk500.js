@@ -6,7 +6,7 @@ import { ConnectionFailure } from './transport.js';
 /**
  * The cable. `open` opens it and `reset` restarts the board, whose bootloader then listens for a second.
  * @typedef {object} Cable
- * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a ConnectionFailure
+ * @property {(onData: (data: Uint8Array) => void, onGone: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {() => Promise<void>} reset
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close

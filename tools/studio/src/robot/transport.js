@@ -57,7 +57,7 @@
  */
 
 /**
- * Who hears of a robot: `over` comes once, when the connection has ended.
+ * Who hears of a robot: `onEnd` comes once, when the connection has ended.
  * @typedef {object} RobotListener
  * @property {(event: RobotEvent) => void} onEvent
  * @property {(why: ConnectionFailure) => void} onEnd

@@ -51,9 +51,9 @@ export class Views {
   /** @type {import('./editor.js').Range[]} */
   #running = [];
   #telling = 0;
-  /** @type {import('../class/together.js').Place[]} */
+  /** @type {import('../class/together.js').MatePlace[]} */
   #mates = [];
-  /** Who edits the program, too. @type {import('../class/together.js').Together | null} */
+  /** Who edits the program, too. @type {import('../class/together.js').SharedEditor | null} */
   #group = null;
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
@@ -263,17 +263,17 @@ export class Views {
     if (this.#isReady) this.#refresh(true);
   }
 
-  /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').Together | null} group */
+  /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').SharedEditor | null} group */
   join(group) {
     if (group === this.#group) return;
     this.#group = group;
     clearInterval(this.#telling);
-    if (group) this.#telling = window.setInterval(() => group.chose(this.#blocks?.chosenLine ?? 0, this.isBusy), TELL_MS);
+    if (group) this.#telling = window.setInterval(() => group.chooseLine(this.#blocks?.chosenLine ?? 0, this.isBusy), TELL_MS);
     this.#shown = null;
     if (this.#isOn) this.#refresh(true);
   }
 
-  /** @param {import('../class/together.js').Place[]} places where the others of a group are */
+  /** @param {import('../class/together.js').MatePlace[]} places where the others of a group are */
   showMates(places) {
     this.#mates = places;
     if (!this.#isStale()) this.#blocks?.showMates(places);
@@ -345,7 +345,7 @@ export class Views {
     else this.#showState();
   }
 
-  /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').Together} group */
+  /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').SharedEditor} group */
   async #write(group) {
     while (this.#blocks) {
       this.#changes = 0;
@@ -358,7 +358,7 @@ export class Views {
         return;
       }
       this.#form = whole;
-      const answer = await group.write(form, ids);
+      const answer = await group.writeBlocks(form, ids);
       if (!answer?.is_shown) return;
       this.#shown = this.#page.editor.text;
       this.#blocks.placed(ids, answer.places ?? []);
@@ -398,7 +398,7 @@ export class Views {
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
         this.#stand = this.#blocks.stand;
-        if (group && !(await group.blocksShown(this.#blocks.lines)).is_known) this.#shown = null;
+        if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shown = null;
         this.#showAll();
       }
       this.#showState();
@@ -423,7 +423,7 @@ export class Views {
       this.#changes ||= 1; // Blockly tells of it a moment later
       await this.#send();
     }
-    await this.#group?.meet();
+    await this.#group?.settle();
   }
 
   /** Blocks that are new have nothing at them yet. */
