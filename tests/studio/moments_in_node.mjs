@@ -44,9 +44,9 @@ function played(moments, chance, most) {
     check(JSON.stringify(state, Object.keys(was ?? {}).sort()) === JSON.stringify(was, Object.keys(was ?? {}).sort()), `another state: ${JSON.stringify([state, was])}`);
     const isEvent = hasDone(state) || (k > 0 && state.bumps !== moments.at(k - 1).bumps);
     if (k) check(moments.events.includes(k) === isEvent, `not the events: ${k}`);
-    const ends = moments.shows(k);
+    const ends = moments.shownUntil(k);
     check(JSON.stringify(ends) === JSON.stringify(shows.slice(shown - ends.length, shown)), `other shows at ${k}`);
-    check(moments.until(state.now_ms) === k && moments.until(state.now_ms + 0.5) === k, `another moment than ${k}`);
+    check(moments.momentAt(state.now_ms) === k && moments.momentAt(state.now_ms + 0.5) === k, `another moment than ${k}`);
     times.push(state.now_ms);
     if (k) check(moments.parts.includes(k) === (state.at !== moments.at(k - 1).at), `not the parts: ${k}`);
   }
@@ -60,11 +60,11 @@ function played(moments, chance, most) {
   for (const which of [moments.events, moments.parts]) {
     let k = moments.length - 1;
     const back = [];
-    while (k > 0) back.push(k = moments.beside(k, -1, which));
+    while (k > 0) back.push(k = moments.neighbourOf(k, -1, which));
     for (const event of which) check(back.includes(event) || event === moments.length - 1, `${event} is passed on the way back`);
     for (const event of back.reverse()) {
       check(k <= event, 'on goes back');
-      k = moments.beside(event, 1, which);
+      k = moments.neighbourOf(event, 1, which);
       check(k > event || event === moments.length - 1, 'stands still on the way on');
     }
   }

@@ -11,7 +11,7 @@ for (const story of JSON.parse(await text(process.stdin))) {
   const kept = story.map(([count, length, file]) => {
     const run = new Run({ of: 'real', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
     runs.begin(run);
-    for (let k = 0; k < count; k += 1) run.put([k, 'x'.repeat(length)]);
+    for (let k = 0; k < count; k += 1) run.addRow([k, 'x'.repeat(length)]);
     run.file = 'x'.repeat(file);
     runs.trim(); // at its end
     return [runs.all.map(({ number }) => number), runs.size, run.size];

@@ -103,7 +103,7 @@ const PARTS = {
       simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3);
       await passes(50);
       for (let k = chance.below(8); k > 0; k -= 1) {
-        chance.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.push(), () => {}])();
+        chance.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), () => {}])();
         await passes(chance.below(400));
       }
       const end = chance.of(['stop', 'leave', 'wait']);
@@ -285,8 +285,8 @@ const PARTS = {
       } });
     };
     const page = freshPage({
-      Arena: beginning('arena'), Plot: beginning('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
+      Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
+      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -574,7 +574,7 @@ const PARTS = {
     const run = new Run({ of: 'real', text: 'F(1)', robot: 'tinibot', program: '1' }, PROGRAM, null);
     run.file = 'a run';
     return async (chance) => {
-      run.again();
+      run.restart();
       let now_ms = chance.below(100);
       let bumps = 0;
       let parting = null;
@@ -586,7 +586,7 @@ const PARTS = {
         run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
       }
       const { marks, moments, seconds, size } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.shows(moments.length), moments.last_ms, seconds, size]) };
+      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.shownUntil(moments.length), moments.last_ms, seconds, size]) };
     };
   },
 
@@ -1298,7 +1298,7 @@ const PARTS = {
         const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null, rivals: world.rivals.map((each) => [each.x_cm, each.y_cm, each.heading]),
           score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
         arena.follow(state);
-        if (!isGood && chance() < 0.3) arena.say(`${chance.below(9)}`, now_ms);
+        if (!isGood && chance() < 0.3) arena.showBubble(`${chance.below(9)}`, now_ms);
         if (!isGood && chance() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
         arena.draw(state);
       }
@@ -1707,8 +1707,8 @@ const PARTS = {
     class Drawing { said = ''; allow() {} forget() {} letGo() {} end() {} }
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
-      Arena: notingClass('arena'), Plot: notingClass('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
+      Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
+      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');

@@ -16,7 +16,7 @@ import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { bringsProgram } from './programs/links.js';
 import { labelOf, currentLanguage, textKey, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
-import { isRun } from './virtual/runs_window.js';
+import { isRunFile } from './virtual/runs_window.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
 import { Pad } from './remote/pad.js';
 import { Recorder } from './robot/recorder.js';
@@ -190,7 +190,7 @@ python.heed({
   waits: () => {
     if (isReady) pageState.note.set(text('starting_waits'));
     else status.textContent = text('starting_waits');
-    driving.waitOn();
+    driving.showWaiting();
   },
   begins: () => {
     status.textContent = text('starting');
@@ -272,7 +272,7 @@ words.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
 
 onFileChosen('file', async (chosen) => {
-  if (isRun(chosen.name)) {
+  if (isRunFile(chosen.name)) {
     driving.openRun(chosen);
     return;
   }

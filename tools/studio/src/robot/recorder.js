@@ -71,7 +71,7 @@ export class Recorder {
     this.goOn();
     if (this.#isOver) return;
     const duration_ms = Math.min(this.#elapsed_ms, MOST_MS);
-    this.#run?.put([duration_ms, event]);
+    this.#run?.addRow([duration_ms, event]);
     if (this.#run) this.#run.end_ms = duration_ms;
     this.#isOver = true;
     this.#page.runs.trim();
@@ -91,7 +91,7 @@ export class Recorder {
     this.#began_ms = Math.min(this.#began_ms ?? Infinity, performance.now() - (event.ms ?? 0));
     if (event.event !== 'SHOW') this.end(row);
     else if (this.#run.rows.length >= MOST_EVENTS || this.#elapsed_ms > MOST_MS) this.end('STOPPED');
-    else this.#run.put([event.ms ?? this.#elapsed_ms, row]);
+    else this.#run.addRow([event.ms ?? this.#elapsed_ms, row]);
     this.#show();
   }
 
@@ -102,7 +102,7 @@ export class Recorder {
       const [ms, text] = row;
       this.#began_ms ??= performance.now() - ms;
       if (this.#run.rows.length >= MOST_EVENTS || ms > MOST_MS) return this.end('STOPPED');
-      this.#run.put(row);
+      this.#run.addRow(row);
       if (text.startsWith(UNREAD_PREFIX)) this.#incompleteSensors.add(text.slice(UNREAD_PREFIX.length));
     }
     this.#show();
@@ -130,7 +130,7 @@ export class Recorder {
 
   /** Whether the program names a sensor. */
   get #readsSensor() {
-    const { text = '', robot = '' } = this.#run?.of ?? {};
+    const { text = '', robot = '' } = this.#run?.origin ?? {};
     return devicesOf(robot, 'sensor').some((device) => text.toUpperCase().includes(device.text));
   }
 

@@ -2,11 +2,11 @@
 
 import { drawPath } from '../page/shapes.js';
 
-const MOST = 2000; // samples; then every other one is forgotten
-const LEAST_ROW = 54; // pixels for one value
-const LEFT = 6;
-const LIGHT = { rule: '#c8d2dc', said: '#4a5663', behind: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
-const DARK = { rule: '#3b4d5f', said: '#b8c5d1', behind: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
+const MOST_SAMPLES = 2000; // samples; then every other one is forgotten
+const LEAST_ROW_PX = 54; // pixels for one value
+const MARGIN_PX = 6;
+const LIGHT_COLORS = { rule: '#c8d2dc', said: '#4a5663', behind: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
+const DARK_COLORS = { rule: '#3b4d5f', said: '#b8c5d1', behind: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
 
 /** @typedef {{name: string, value: number | undefined}} Value */
 
@@ -14,9 +14,9 @@ export class Plot {
   #canvas;
   /** @type {{at_ms: number, values: Map<string, number>}[]} */
   #samples = [];
-  #colors = LIGHT;
-  #every = 1; // of so many samples one is kept
-  #left = 0; // samples until the next one that is kept
+  #colors = LIGHT_COLORS;
+  #keepEvery = 1; // of so many samples one is kept
+  #skipCount = 0; // samples until the next one that is kept
 
   /** @param {HTMLCanvasElement} canvas in an element that scrolls */
   constructor(canvas) {
@@ -25,8 +25,8 @@ export class Plot {
 
   begin() {
     this.#samples = [];
-    this.#every = 1;
-    this.#left = 0;
+    this.#keepEvery = 1;
+    this.#skipCount = 0;
   }
 
   /**
@@ -37,15 +37,15 @@ export class Plot {
   add(at_ms, values) {
     const sample = { at_ms, values: new Map(values.flatMap(({ name, value }) => (value === undefined ? [] : [[name, value]]))) };
     if (this.#samples.at(-1)?.at_ms === at_ms) this.#samples.pop();
-    else if (this.#left > 0) {
-      this.#left -= 1;
+    else if (this.#skipCount > 0) {
+      this.#skipCount -= 1;
       return;
     }
-    this.#left = this.#every - 1;
+    this.#skipCount = this.#keepEvery - 1;
     this.#samples.push(sample);
-    if (this.#samples.length <= MOST) return;
-    this.#samples = this.#samples.filter((_, k) => k % 2 === 0);
-    this.#every *= 2;
+    if (this.#samples.length <= MOST_SAMPLES) return;
+    this.#samples = this.#samples.filter((_, index) => index % 2 === 0);
+    this.#keepEvery *= 2;
   }
 
   /** @returns {string[]} names, in the order in which they came */
@@ -56,11 +56,11 @@ export class Plot {
   /** Draws all of it, if it is to be seen. @param {number | null} seen_ms when the moment was at which somebody looks */
   draw(seen_ms = null) {
     const canvas = this.#canvas;
-    const place = canvas.parentElement;
-    if (!place || place.hidden || !place.clientHeight) return; // what is hidden is not laid out for it
+    const container = canvas.parentElement;
+    if (!container || container.hidden || !container.clientHeight) return; // what is hidden is not laid out for it
     const names = this.names;
-    const row = Math.max(LEAST_ROW, Math.floor((place.clientHeight - 22) / Math.max(1, names.length)));
-    canvas.style.height = `${Math.max(place.clientHeight, names.length * row + 20)}px`;
+    const rowHeight = Math.max(LEAST_ROW_PX, Math.floor((container.clientHeight - 22) / Math.max(1, names.length)));
+    canvas.style.height = `${Math.max(container.clientHeight, names.length * rowHeight + 20)}px`;
     const ratio = window.devicePixelRatio || 1;
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
@@ -70,81 +70,81 @@ export class Plot {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = '12px system-ui, sans-serif';
-    const from = this.#samples[0]?.at_ms ?? 0;
-    const until = Math.max(this.#samples.at(-1)?.at_ms ?? 0, from + 1000);
-    const wide = canvas.clientWidth - 2 * LEFT;
+    const from_ms = this.#samples[0]?.at_ms ?? 0;
+    const until_ms = Math.max(this.#samples.at(-1)?.at_ms ?? 0, from_ms + 1000);
+    const plotWidth = canvas.clientWidth - 2 * MARGIN_PX;
     /** @param {number} at_ms */
-    const x = (at_ms) => LEFT + ((at_ms - from) / (until - from)) * wide;
-    const step = niceStep((until - from) / Math.max(2, wide / 70));
-    this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK : LIGHT;
+    const xOf = (at_ms) => MARGIN_PX + ((at_ms - from_ms) / (until_ms - from_ms)) * plotWidth;
+    const step_ms = niceStep((until_ms - from_ms) / Math.max(2, plotWidth / 70));
+    this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK_COLORS : LIGHT_COLORS;
     pen.fillStyle = this.#colors.said;
-    for (let at = Math.ceil(from / step) * step; at <= until; at += step) {
-      drawPath(pen, [[x(at), 0], [x(at), names.length * row]], this.#colors.rule, 1);
-      const label = `${rounded(at / 1000)} s`;
-      pen.fillText(label, Math.min(x(at) + 2, LEFT + wide - pen.measureText(label).width), names.length * row + 14);
+    for (let tick_ms = Math.ceil(from_ms / step_ms) * step_ms; tick_ms <= until_ms; tick_ms += step_ms) {
+      drawPath(pen, [[xOf(tick_ms), 0], [xOf(tick_ms), names.length * rowHeight]], this.#colors.rule, 1);
+      const label = `${roundedText(tick_ms / 1000)} s`;
+      pen.fillText(label, Math.min(xOf(tick_ms) + 2, MARGIN_PX + plotWidth - pen.measureText(label).width), names.length * rowHeight + 14);
     }
-    if (seen_ms !== null) drawPath(pen, [[x(seen_ms), 0], [x(seen_ms), names.length * row]], this.#colors.said, 2);
-    names.forEach((name, k) => this.#drawRow(pen, name, k * row, row, x, this.#colors.rows[k % this.#colors.rows.length] ?? ''));
+    if (seen_ms !== null) drawPath(pen, [[xOf(seen_ms), 0], [xOf(seen_ms), names.length * rowHeight]], this.#colors.said, 2);
+    names.forEach((name, index) => this.#drawRow(pen, name, index * rowHeight, rowHeight, xOf, this.#colors.rows[index % this.#colors.rows.length] ?? ''));
   }
 
   /**
    * @param {CanvasRenderingContext2D} pen
    * @param {string} name
    * @param {number} top
-   * @param {number} row its height
-   * @param {(at_ms: number) => number} x
+   * @param {number} rowHeight its height
+   * @param {(at_ms: number) => number} xOf
    * @param {string} color
    */
-  #drawRow(pen, name, top, row, x, color) {
+  #drawRow(pen, name, top, rowHeight, xOf, color) {
     let low = Infinity;
     let high = -Infinity;
-    let last = 0;
+    let lastValue = 0;
     for (const { values } of this.#samples) {
       const value = values.get(name);
       if (value === undefined) continue;
       low = Math.min(low, value);
       high = Math.max(high, value);
-      last = value;
+      lastValue = value;
     }
     const span = high - low || 1;
-    const middle = high === low ? 0.5 : 0;
+    const centering = high === low ? 0.5 : 0;
     /** @param {number} value */
-    const y = (value) => top + row - 6 - ((value - low) / span + middle) * (row - 26);
-    drawPath(pen, [[0, top + row - 0.5], [this.#canvas.clientWidth, top + row - 0.5]], this.#colors.rule, 1);
+    const yOf = (value) => top + rowHeight - 6 - ((value - low) / span + centering) * (rowHeight - 26);
+    drawPath(pen, [[0, top + rowHeight - 0.5], [this.#canvas.clientWidth, top + rowHeight - 0.5]], this.#colors.rule, 1);
     pen.strokeStyle = color;
     pen.lineWidth = 1.8;
     pen.beginPath();
-    let before;
+    let previous;
     for (const { at_ms, values } of this.#samples) {
       const value = values.get(name);
       if (value === undefined) continue;
-      if (before === undefined) pen.moveTo(x(at_ms), y(value));
+      if (previous === undefined) pen.moveTo(xOf(at_ms), yOf(value));
       else {
-        pen.lineTo(x(at_ms), y(before)); // it was that until now
-        pen.lineTo(x(at_ms), y(value));
+        pen.lineTo(xOf(at_ms), yOf(previous)); // it was that until now
+        pen.lineTo(xOf(at_ms), yOf(value));
       }
-      before = value;
+      previous = value;
     }
     pen.stroke();
-    const range = low === high ? rounded(last) : `${rounded(low)} – ${rounded(high)}`;
-    const label = `${name}: ${rounded(last)}  (${range})`;
+    const range = low === high ? roundedText(lastValue) : `${roundedText(low)} – ${roundedText(high)}`;
+    const label = `${name}: ${roundedText(lastValue)}  (${range})`;
     pen.fillStyle = this.#colors.behind;
-    pen.fillRect(LEFT, top + 2, pen.measureText(label).width + 6, 16);
+    pen.fillRect(MARGIN_PX, top + 2, pen.measureText(label).width + 6, 16);
     pen.fillStyle = color;
-    pen.fillText(label, LEFT + 3, top + 14);
+    pen.fillText(label, MARGIN_PX + 3, top + 14);
   }
 }
 
 /**
  * A step of 1, 2 or 5 times a power of ten, of so much at least.
- * @param {number} least milliseconds
+ * @param {number} least_ms milliseconds
  */
-function niceStep(least) {
-  const power = 10 ** Math.floor(Math.log10(Math.max(least, 1)));
-  return ([1, 2, 5].find((each) => each * power >= least) ?? 10) * power;
+function niceStep(least_ms) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(least_ms, 1)));
+  return ([1, 2, 5].find((factor) => factor * power >= least_ms) ?? 10) * power;
 }
 
 /** @param {number} value */
-function rounded(value) {
+function roundedText(value) {
   return String(Math.round(value * 1000) / 1000);
 }

@@ -1,13 +1,13 @@
 // The runs that the page keeps while it is open: how each was, moment by moment, and what its file has.
 
-import { isSeen, Moments } from './moments.js';
+import { isDeed, Moments } from './moments.js';
 import { blocksOf } from './why.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @typedef {import('../python.js').Checked} Checked */
 /** @typedef {[number, string] | [number, string, number]} Row when, what, and of a SHOW where */
 /**
- * @typedef {object} Of whose run it is
+ * @typedef {object} RunOrigin whose run it is
  * @property {'virtual' | 'real'} of
  * @property {string} text of the program
  * @property {string} robot
@@ -17,16 +17,16 @@ import { blocksOf } from './why.js';
  */
 
 const MOST_RUNS = 10;
-const MOST = 2_000_000; // characters of all of them
-const MOST_OF_MOMENTS = 1_200_000; // of one
+const MOST_CHARACTERS = 2_000_000; // characters of all of them
+const MOST_MOMENT_CHARACTERS = 1_200_000; // of one
 const MOST_MARKS = 10_000;
-const WORDS = new Set(['BEEP', 'SHOW', 'FAULT']);
+const MARK_WORDS = new Set(['BEEP', 'SHOW', 'FAULT']);
 
 export class Run {
-  /** @type {Of} */
-  of;
+  /** @type {RunOrigin} */
+  origin;
   number = 0;
-  moments = new Moments(MOST_OF_MOMENTS);
+  moments = new Moments(MOST_MOMENT_CHARACTERS);
   /** @type {{at_ms: number, kind: string}[]} */
   marks = [];
   /** @type {Row[]} */
@@ -36,9 +36,9 @@ export class Run {
   /** What it says of the program. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
   program;
   /** The world as it is drawn. @type {import('../world/parts.js').World | null} */
-  shapes;
+  world;
   /** What the file of the run has, of one that was opened. @type {Row[]} */
-  told = [];
+  fileRows = [];
   /** It cannot be played again: somebody else has driven it. */
   isJudged = false;
   /** The file that it was opened from; nothing of one that was recorded here. */
@@ -47,27 +47,27 @@ export class Run {
   clock = null;
   /** Where it and the recorded one part, once it was played again. @type {import('../python.js').Parting | null} */
   parting = null;
-  #size = 0;
-  #bumps = 0;
+  #characters = 0;
+  #bumpCount = 0;
   /** @type {import('./why.js').Block[] | null} */
-  #whens = null;
+  #whenBlocks = null;
   /** Those in which a task was. @type {import('./why.js').Block[]} */
-  #begun = [];
+  #begunBlocks = [];
 
   /**
-   * @param {Of} of
+   * @param {RunOrigin} origin
    * @param {Pick<Checked, 'places' | 'shows' | 'variables'>} program
-   * @param {import('../world/parts.js').World | null} shapes
+   * @param {import('../world/parts.js').World | null} world
    */
-  constructor(of, program, shapes) {
-    this.of = of;
+  constructor(origin, program, world) {
+    this.origin = origin;
     this.program = program;
-    this.shapes = shapes;
+    this.world = world;
   }
 
   /** @returns {number} characters */
   get size() {
-    return this.moments.size + this.#size + this.file.length;
+    return this.moments.size + this.#characters + this.file.length;
   }
 
   /** @returns {number} seconds */
@@ -78,47 +78,47 @@ export class Run {
 
   /** @param {RobotState} state the next one of a virtual robot's run */
   add(state) {
-    for (const [at_ms, what] of state.events.filter(isSeen)) {
-      const [word = ''] = what.split(' ');
-      this.mark(at_ms, WORDS.has(word) ? word : '');
+    for (const [at_ms, event] of state.events.filter(isDeed)) {
+      const [eventWord = ''] = event.split(' ');
+      this.mark(at_ms, MARK_WORDS.has(eventWord) ? eventWord : '');
     }
-    if (state.bumps > this.#bumps) this.mark(state.now_ms, 'BUMP');
-    this.#bumps = state.bumps;
+    if (state.bumps > this.#bumpCount) this.mark(state.now_ms, 'BUMP');
+    this.#bumpCount = state.bumps;
     this.#markWhens(state);
-    if (this.of.of === 'virtual' && !this.file) {
+    if (this.origin.of === 'virtual' && !this.file) {
       this.markKeys(state.rows ?? []);
-      for (const row of state.rows ?? []) this.put(row);
+      for (const row of state.rows ?? []) this.addRow(row);
     }
     if (state.parting && !this.parting) {
       this.parting = state.parting;
       if (state.parting.at_ms !== null) this.mark(state.parting.at_ms, 'PART');
     }
-    if (!state.is_full && this.of.of === 'virtual') this.end_ms = state.now_ms;
+    if (!state.is_full && this.origin.of === 'virtual') this.end_ms = state.now_ms;
     this.moments.add(state);
   }
 
   /** @param {RobotState} state in which a WHEN may have begun */
   #markWhens({ now_ms, places }) {
-    const { of: { text }, program } = this;
-    this.#whens ??= blocksOf(text, program.places, /^WHEN\b/i);
-    const begun = this.#whens.filter(({ has }) => places.some((each) => has(each, true)));
-    if (begun.some((each) => !this.#begun.includes(each))) this.mark(now_ms, 'WHEN');
-    this.#begun = begun;
+    const { origin: { text }, program } = this;
+    this.#whenBlocks ??= blocksOf(text, program.places, /^WHEN\b/i);
+    const begunBlocks = this.#whenBlocks.filter(({ has }) => places.some((offset) => has(offset, true)));
+    if (begunBlocks.some((block) => !this.#begunBlocks.includes(block))) this.mark(now_ms, 'WHEN');
+    this.#begunBlocks = begunBlocks;
   }
 
   /** It is played: what is seen of it begins anew. */
-  again() {
+  restart() {
     this.moments.begin();
     this.marks = [];
     this.parting = null;
-    this.#bumps = 0;
-    this.#whens = null;
-    this.#begun = [];
+    this.#bumpCount = 0;
+    this.#whenBlocks = null;
+    this.#begunBlocks = [];
   }
 
   /** @param {Row[]} rows in which somebody may have pressed keys */
   markKeys(rows) {
-    for (const [at_ms, what] of rows) if (/^KEYS (?!0 0 0$)/.test(what)) this.mark(at_ms, 'KEYS');
+    for (const [at_ms, event] of rows) if (/^KEYS (?!0 0 0$)/.test(event)) this.mark(at_ms, 'KEYS');
   }
 
   /** @param {number} at_ms @param {string} kind */
@@ -129,22 +129,22 @@ export class Run {
 
   /** What a sensor read last until a time of the robot, as the program read it. @param {string} name @param {number} at_ms @returns {string | undefined} */
   readAt(name, at_ms) {
-    const begin = `READ ${name} `;
-    const rows = this.rows.length ? this.rows : this.told;
-    return rows.findLast(([ms, what]) => ms <= at_ms && what.startsWith(begin))?.[1].slice(begin.length);
+    const prefix = `READ ${name} `;
+    const rows = this.rows.length ? this.rows : this.fileRows;
+    return rows.findLast(([ms, what]) => ms <= at_ms && what.startsWith(prefix))?.[1].slice(prefix.length);
   }
 
   /** @param {Row} row */
-  put(row) {
+  addRow(row) {
     this.rows.push(row);
-    this.#size += row[1].length + 12;
+    this.#characters += row[1].length + 12;
   }
 }
 
 export class Runs {
   /** The newest last. @type {Run[]} */
   #runs = [];
-  #count = 0;
+  #runCount = 0;
 
   /** @returns {readonly Run[]} the newest first */
   get all() {
@@ -158,13 +158,13 @@ export class Runs {
 
   /** @param {Run} run is the newest one from now on */
   begin(run) {
-    run.number = this.#count += 1;
+    run.number = this.#runCount += 1;
     this.#runs = [...this.#runs.filter(({ rows, moments }) => rows.length || moments.length > 1), run];
     this.trim();
   }
 
   /** Forgets the oldest ones, where there are too many or they are too large. */
   trim() {
-    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.size > MOST)) this.#runs.shift();
+    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.size > MOST_CHARACTERS)) this.#runs.shift();
   }
 }

@@ -9,9 +9,9 @@ import { textKey, text } from '../page/texts.js';
 
 /** @typedef {import('./runs.js').Run} Run */
 /** @typedef {import('./runs.js').Row} Row */
-/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, file: string}} Opened */
+/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, file: string}} OpenedRun */
 
-const ENDING = '.tsr';
+const FILE_EXTENSION = '.tsr';
 
 export class RunsWindow {
   #window = element('runs', HTMLDialogElement);
@@ -21,13 +21,13 @@ export class RunsWindow {
    * @param {object} page
    * @param {import('../python.js').Python} page.python
    * @param {import('./runs.js').Runs} page.runs
-   * @param {(run: Run) => void} page.see one of them
-   * @param {(opened: Opened, again: Run | null) => void} page.play the run of a file, which may be kept already
+   * @param {(run: Run) => void} page.show one of them
+   * @param {(opened: OpenedRun, known: Run | null) => void} page.play the run of a file, which may be kept already
    */
   constructor(page) {
     this.#page = page;
     element('runs_open', HTMLButtonElement).addEventListener('click', () => {
-      this.#say('');
+      this.#showNotice('');
       this.#show();
       this.#window.showModal();
     });
@@ -41,7 +41,7 @@ export class RunsWindow {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault(); // a browser would leave the page for it
-      if (isRun(file.name)) this.open(file);
+      if (isRunFile(file.name)) this.open(file);
       else pageState.note.set(text('not_opened', { name: file.name, why: text('run_not') }));
     });
   }
@@ -51,72 +51,72 @@ export class RunsWindow {
     try {
       await this.openData(await bytesOf(file));
     } catch {
-      this.#refuse(file.name, text('unreadable'));
+      this.#showRefusal(file.name, text('unreadable'));
     }
   }
 
-  /** @param {Uint8Array} data @param {string} [name] @param {Run | null} [again] that is kept already */
-  async openData(data, name = '', again = null) {
+  /** @param {Uint8Array} data @param {string} [name] @param {Run | null} [knownRun] that is kept already */
+  async openData(data, name = '', knownRun = null) {
     const answer = await this.#page.python.ask({ do: 'open_run' }, data);
     if (answer.what) {
-      this.#refuse(name, text(textKey(`record_${answer.what}`), { line: answer.line }));
+      this.#showRefusal(name, text(textKey(`record_${answer.what}`), { line: answer.line }));
       return;
     }
     this.#window.close();
-    this.#page.play({ ...answer, file: new TextDecoder().decode(data) }, again);
+    this.#page.play({ ...answer, file: new TextDecoder().decode(data) }, knownRun);
   }
 
   /** @param {Run} run @returns {Promise<string>} its file */
   async fileOf(run) {
     if (run.file) return run.file;
-    const { of, rows, end_ms } = run;
-    const answer = await this.#page.python.ask({ do: 'write_run', ...of, rows, end_ms: end_ms ?? run.clock?.() ?? rows.at(-1)?.[0] ?? 0 });
+    const { origin, rows, end_ms } = run;
+    const answer = await this.#page.python.ask({ do: 'write_run', ...origin, rows, end_ms: end_ms ?? run.clock?.() ?? rows.at(-1)?.[0] ?? 0 });
     return answer.file;
   }
 
-  /** @param {string} name @param {string} why */
-  #refuse(name, why) {
-    if (this.#window.open) this.#say(why);
-    else pageState.note.set(text('not_opened', { name, why }));
+  /** @param {string} name @param {string} reason */
+  #showRefusal(name, reason) {
+    if (this.#window.open) this.#showNotice(reason);
+    else pageState.note.set(text('not_opened', { name, why: reason }));
   }
 
-  /** @param {string} said */
-  #say(said) {
-    element('runs_said', HTMLElement).textContent = said;
+  /** @param {string} notice */
+  #showNotice(notice) {
+    element('runs_said', HTMLElement).textContent = notice;
   }
 
   #show() {
     const rows = this.#page.runs.all.map((run) => {
-      const what = text(run.of.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
-      const see = makeButton('', () => {
+      const title = text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
+      const seeButton = makeButton('', () => {
         this.#window.close();
-        this.#page.see(run);
-      }, what);
-      const save = makeButton('run_save', () => this.#save(run));
-      save.disabled = run.isJudged || !(run.file || run.rows.length);
-      return makeElement('li', '', see, makeElement('code', '', begun(run.of.text)), save);
+        this.#page.show(run);
+      }, title);
+      const saveButton = makeButton('run_save', () => this.#saveRun(run));
+      saveButton.disabled = run.isJudged || !(run.file || run.rows.length);
+      return makeElement('li', '', seeButton, makeElement('code', '', beginningOf(run.origin.text)), saveButton);
     });
     element('runs_list', HTMLElement).replaceChildren(...rows);
-    if (!rows.length) this.#say(text('runs_none'));
+    if (!rows.length) this.#showNotice(text('runs_none'));
   }
 
   /** @param {Run} run */
-  async #save(run) {
+  async #saveRun(run) {
     try {
-      download(`${text('run_name')}${ENDING}`, await this.fileOf(run));
+      download(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
     } catch (why) {
-      this.#say(bugSentence(why));
+      this.#showNotice(bugSentence(why));
     }
   }
 }
 
 /** @param {string} name of a file */
-export function isRun(name) {
-  return name.toLowerCase().endsWith(ENDING);
+export function isRunFile(name) {
+  return name.toLowerCase().endsWith(FILE_EXTENSION);
 }
 
 /** @param {string} program */
-function begun(program) {
-  const line = program.split('\n').map((each) => each.trim()).filter(Boolean).join(' ');
+function beginningOf(program) {
+  const line = program.split('\n').map((line) => line.trim()).filter(Boolean).join(' ');
   return line.length > 60 ? `${line.slice(0, 60)}…` : line;
 }

@@ -9,14 +9,14 @@ import { currentLanguage } from '../page/texts.js';
 /** @import { Held } from '../remote/held.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
-const MOST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
-const LOOKED_MS = 100; // of this computer's time at most for one picture
+const MOST_REQUEST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
+const MOST_FRAME_MS = 100; // of this computer's time at most for one picture
 const STEP_LIMIT_MS = 60_000;
-const KEPT = 5000; // lines of the trace
+const MOST_TRACE_LINES = 5000; // lines of the trace
 
 export class Simulator {
   #python;
-  #shown;
+  #onChange;
   /** @type {Phase} */
   phase = 'off';
   /** @type {RobotState | null} */
@@ -26,56 +26,56 @@ export class Simulator {
   speed = 1;
   /** What somebody holds of a remote control, where the program reads one. @type {Held | null} */
   held = null;
-  #least = 0;
+  #leastSpeed = 0;
   failure = ''; // a mistake of ours
   #isAsking = false;
   isStopping = false; // it has not confirmed it yet
-  #rest = 0; // of a millisecond that is not asked for yet
-  #last = 0;
-  #left = 0; // runs that were left
-  #next = 0; // picture of the browser, for which it waits
+  #unasked_ms = 0; // of a millisecond that is not asked for yet
+  #lastFrame_ms = 0;
+  #leftRuns = 0; // runs that were left
+  #frameRequest = 0; // picture of the browser, for which it waits
   /** @type {Promise<void> | null} */
-  #stopped = null; // when the last stop is confirmed
+  #stopRequest = null; // when the last stop is confirmed
 
   /**
    * @param {Python} python
-   * @param {(state?: RobotState) => void} shown what shows how it is, and its newest state
+   * @param {(state?: RobotState) => void} onChange what shows how it is, and its newest state
    */
-  constructor(python, shown) {
+  constructor(python, onChange) {
     this.#python = python;
-    this.#shown = shown;
+    this.#onChange = onChange;
   }
 
   /**
    * Switches the robot on at the start of its world, with the program.
    * @param {Checked} program
-   * @param {string} robot
+   * @param {string} robotName
    * @param {unknown} world
    * @param {number[]} breakpoints offsets in its code
    * @param {boolean} isPaused in front of its first part
-   * @param {number} least times as quick as the robot, whatever `speed` is
-   * @param {boolean} plays the recorded run that was opened last
+   * @param {number} leastSpeed times as quick as the robot, whatever `speed` is
+   * @param {boolean} isReplay the recorded run that was opened last
    */
-  async begin(program, robot, world, breakpoints = [], isPaused = false, least = 0, plays = false) {
+  async begin(program, robotName, world, breakpoints = [], isPaused = false, leastSpeed = 0, isReplay = false) {
     if (this.#isAsking) return;
-    this.#least = least;
+    this.#leastSpeed = leastSpeed;
     const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
-    const parts = program.places.map(([offset]) => offset);
-    const variables = program.variables.length;
+    const partOffsets = program.places.map(([offset]) => offset);
+    const variableCount = program.variables.length;
     this.trace = [];
     this.state = null;
     this.failure = '';
     this.phase = isPaused ? 'paused' : 'running';
-    this.#rest = 0;
-    this.#last = performance.now();
-    const request = { do: 'power_on', robot, world, language: currentLanguage(), parts, breakpoints, variables, is_held: isPaused, plays };
+    this.#unasked_ms = 0;
+    this.#lastFrame_ms = performance.now();
+    const request = { do: 'power_on', robot: robotName, world, language: currentLanguage(), parts: partOffsets, breakpoints, variables: variableCount, is_held: isPaused, plays: isReplay };
     await this.#ask(request, new Uint8Array(bytes));
-    if (this.phase === 'running') this.#goOnWithNext();
+    if (this.phase === 'running') this.#requestFrame();
   }
 
   pause() {
     if (this.phase === 'running') this.phase = 'paused';
-    this.#shown();
+    this.#onChange();
   }
 
   async goOn() {
@@ -83,9 +83,9 @@ export class Simulator {
     this.phase = 'running';
     if (this.state?.is_held) await this.#ask({ do: 'go_on' });
     if (this.phase !== 'running') return;
-    this.#last = performance.now();
-    this.#shown();
-    this.#goOnWithNext();
+    this.#lastFrame_ms = performance.now();
+    this.#onChange();
+    this.#requestFrame();
   }
 
   /** Lets the robot go on until another part of the program is next. */
@@ -93,7 +93,7 @@ export class Simulator {
     if (this.phase !== 'paused' || this.#isAsking) return;
     const until_ms = (this.state?.now_ms ?? 0) + STEP_LIMIT_MS;
     do {
-      await this.#drive({ do: 'step', limit_ms: MOST_MS });
+      await this.#drive({ do: 'step', limit_ms: MOST_REQUEST_MS });
     } while (
       this.phase === 'paused' &&
       this.state?.is_running &&
@@ -107,7 +107,7 @@ export class Simulator {
     if (this.phase === 'running' || this.phase === 'paused') await this.#ask({ do: 'breakpoints', breakpoints });
   }
 
-  async push() {
+  async pressButton() {
     if (this.state) await this.#ask({ do: 'push' }); // after what is under way
   }
 
@@ -116,39 +116,39 @@ export class Simulator {
     if ((this.phase === 'running' || this.phase === 'paused') && !this.isStopping) {
       this.isStopping = true;
       this.phase = 'ended';
-      this.#shown();
-      this.#stopped = this.#ask({ do: 'stop' });
+      this.#onChange();
+      this.#stopRequest = this.#ask({ do: 'stop' });
     }
-    await this.#stopped;
+    await this.#stopRequest;
   }
 
   /** Nothing of the run is seen any more, nor what it answers later. It was stopped. */
   leave() {
-    this.#left += 1;
+    this.#leftRuns += 1;
     this.phase = 'off';
     this.state = null;
     this.trace = [];
   }
 
   /** There is one row of pictures, whichever run or pause has begun it. */
-  #goOnWithNext() {
-    cancelAnimationFrame(this.#next);
-    this.#next = requestAnimationFrame((now) => this.#frame(now));
+  #requestFrame() {
+    cancelAnimationFrame(this.#frameRequest);
+    this.#frameRequest = requestAnimationFrame((now) => this.#onFrame(now));
   }
 
-  /** @param {number} now */
-  async #frame(now) {
+  /** @param {number} now_ms */
+  async #onFrame(now_ms) {
     if (this.phase !== 'running') return;
     if (!this.#isAsking) {
-      this.#rest += Math.min(LOOKED_MS, now - this.#last) * Math.max(this.#least, this.speed);
-      this.#last = now;
-      const whole = Math.min(MOST_MS, Math.floor(this.#rest));
-      if (whole > 0) {
-        this.#rest = Math.min(this.#rest - whole, MOST_MS);
-        await this.#drive({ do: 'go', duration_ms: whole });
+      this.#unasked_ms += Math.min(MOST_FRAME_MS, now_ms - this.#lastFrame_ms) * Math.max(this.#leastSpeed, this.speed);
+      this.#lastFrame_ms = now_ms;
+      const duration_ms = Math.min(MOST_REQUEST_MS, Math.floor(this.#unasked_ms));
+      if (duration_ms > 0) {
+        this.#unasked_ms = Math.min(this.#unasked_ms - duration_ms, MOST_REQUEST_MS);
+        await this.#drive({ do: 'go', duration_ms: duration_ms });
       }
     }
-    this.#goOnWithNext();
+    this.#requestFrame();
   }
 
   /** Lets the robot's time go on, for less than what is held counts. @param {Record<string, unknown>} request */
@@ -161,43 +161,43 @@ export class Simulator {
    * @param {Uint8Array} [data]
    */
   async #ask(request, data) {
-    const left = this.#left;
+    const leftRuns = this.#leftRuns;
     this.#isAsking = true;
     try {
       const answer = await this.#python.ask(request, data);
       if (request['do'] === 'stop') this.isStopping = false;
-      if (left !== this.#left) this.#shown();
-      else if (answer.refused) this.#refuse(answer.refused);
-      else this.#take(answer);
+      if (leftRuns !== this.#leftRuns) this.#onChange();
+      else if (answer.refused) this.#showRefusal(answer.refused);
+      else this.#takeState(answer);
     } catch (why) {
       this.phase = 'off';
       this.isStopping = false;
       this.failure = bugSentence(why);
-      this.#shown();
+      this.#onChange();
     } finally {
       this.#isAsking = false;
     }
   }
 
-  /** @param {string[]} why the robot cannot be in that world */
-  #refuse(why) {
+  /** @param {string[]} reasons the robot cannot be in that world */
+  #showRefusal(reasons) {
     this.phase = 'off';
-    this.failure = why.join(' ');
-    this.#shown();
+    this.failure = reasons.join(' ');
+    this.#onChange();
   }
 
   /** @param {RobotState} state */
-  #take(state) {
+  #takeState(state) {
     this.state = state;
-    for (const [time, what] of state.events) {
-      if (what === 'START') this.trace = [];
-      else this.trace.push(`${time - (state.began_ms ?? 0)} ${what}`);
+    for (const [event_ms, event] of state.events) {
+      if (event === 'START') this.trace = [];
+      else this.trace.push(`${event_ms - (state.began_ms ?? 0)} ${event}`);
     }
-    if (this.trace.length > KEPT) this.trace.splice(0, this.trace.length - KEPT);
-    const goesOn = this.phase === 'running' || this.phase === 'paused';
-    if (goesOn && this.#hasEnded(state)) this.phase = 'ended';
+    if (this.trace.length > MOST_TRACE_LINES) this.trace.splice(0, this.trace.length - MOST_TRACE_LINES);
+    const isDriving = this.phase === 'running' || this.phase === 'paused';
+    if (isDriving && this.#hasEnded(state)) this.phase = 'ended';
     if (this.phase === 'running' && state.is_held) this.phase = 'paused';
-    this.#shown(state);
+    this.#onChange(state);
   }
 
   /** @param {RobotState} state */

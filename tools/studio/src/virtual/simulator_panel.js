@@ -25,7 +25,7 @@ import { celebrate } from '../lesson/celebration.js';
 import { keepStars, worldStars } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, variableText } from '../page/rows.js';
-import { howEnded, starsShown, Where } from './where.js';
+import { boutEnd, starsText, RunAnnouncer } from './where.js';
 import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
 
@@ -42,120 +42,120 @@ import { WorldDrawing } from '../world/drawing.js';
  * @property {(program: {text: string, robot: string}) => void} put the program of a recorded run into the editor
  */
 
-const SHOWN = 200; // lines of the trace
-const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
+const MOST_TRACE_LINES = 200; // lines of the trace
+const READINGS_INTERVAL_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
-const PLAYED_MS = 6000; // at most for a run of a lesson, or a recorded one
-const HEARD_S = 0.35; // a tone that somebody chooses
-const NEAR_MS = 60; // of a moment: nothing else of it is kept
+const LONGEST_REPLAY_MS = 6000; // at most for a run of a lesson, or a recorded one
+const TONE_S = 0.35; // a tone that somebody chooses
+const NEAR_MOMENT_MS = 60; // of a moment: nothing else of it is kept
 /** What of a run is seen, by the button that shows it. */
-const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
+const RUN_VIEWS = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
 export class SimulatorPanel {
   #page;
-  #starts = 0; // one that STOP or a newer one has overtaken does nothing
+  #startCount = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
   #isAlone = false; // what runs is a part of the program
-  #seenRun = () => {}; // the run of a lesson is over
+  #onRunOver = () => {}; // the run of a lesson is over
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
   #sounds = new Sounds();
   #stage;
-  #where = new Where();
+  #announcer = new RunAnnouncer();
   #timeLine = new TimeLine(() => this.#lookBack());
   runs = new Runs();
-  #window;
+  #runsWindow;
   /** The newest one. @type {Run | null} */
-  #newest = null;
-  #bumps = 0; // that were seen
-  #canEarn = false; // stars: the run is of the whole program, in a world of its own task
+  #newestRun = null;
+  #bumpCount = 0; // that were seen
+  #canEarnStars = false; // stars: the run is of the whole program, in a world of its own task
   /** What each SHOW has shown last. @type {Map<string, string>} */
-  #shown = new Map();
+  #shownValues = new Map();
   /** What each had shown when somebody looks back. @type {Map<string, string>} */
-  #seenShows = new Map();
+  #pastShownValues = new Map();
   /** Whose run it is. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
   #program = { places: [], shows: [], variables: [] };
   #wasStopped = false;
   /** What the run reads of a remote control; nothing of one that was judged. @type {string[]} */
-  #remote = [];
+  #remoteWords = [];
   #note = '';
-  #told = ''; // of the trace
-  #shown_ms = 0; // when more than the robot was shown last
+  #traceText = ''; // of the trace
+  #lastShown_ms = 0; // when more than the robot was shown last
   #isReadingNext = false; // what is measured, not where the program is
   /** @type {Checked['places']} */
   #places = [];
   #stops = new Stops();
   /** @type {Checked['variables']} */
   #variables = [];
-  #run = element('run', HTMLButtonElement);
-  #pause = element('pause', HTMLButtonElement);
-  #push = element('push', HTMLButtonElement);
-  #why = element('why', HTMLButtonElement);
-  #asksWhy = false; // somebody, of each place at which they look
-  #world;
-  #drawing;
+  #runButton = element('run', HTMLButtonElement);
+  #pauseButton = element('pause', HTMLButtonElement);
+  #pushButton = element('push', HTMLButtonElement);
+  #whyButton = element('why', HTMLButtonElement);
+  #isWhyAsked = false; // somebody, of each place at which they look
+  #worldChoice;
+  #worldDrawing;
   /** While a finger moves a part. @type {import('../world/parts.js').World | null} */
-  #preview = null;
-  #restored;
+  #previewWorld = null;
+  #restoring;
 
   /** @param {Page} page */
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
-    this.#window = new RunsWindow({ python, runs: this.runs, see: (run) => this.#see(run), play: (opened, again) => this.#play(opened, again) });
-    this.#world = new WorldChoice(python, work, () => this.#enter());
+    this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (opened, again) => this.#playOpened(opened, again) });
+    this.#worldChoice = new WorldChoice(python, work, () => this.#enterWorld());
     this.#simulator = new Simulator(python, (state) => {
-      if (state) this.#keep(state);
+      if (state) this.#takeState(state);
       const isSame = document.documentElement.dataset['phase'] === 'running' && this.#simulator.phase === 'running';
-      if (state && isSame) this.#goOn(state);
+      if (state && isSame) this.#showFrame(state);
       else this.#show();
     });
-    this.#drawing = new WorldDrawing(python, this.#arena, {
-      world: () => this.#shapes,
-      choice: this.#world,
+    this.#worldDrawing = new WorldDrawing(python, this.#arena, {
+      world: () => this.#shownWorld,
+      choice: this.#worldChoice,
       robot: () => {
-        const [x, y] = this.#simulator.state?.pose ?? [this.#shapes.start.x_cm, this.#shapes.start.y_cm];
+        const [x, y] = this.#simulator.state?.pose ?? [this.#shownWorld.start.x_cm, this.#shownWorld.start.y_cm];
         return [x, y];
       },
       isDriving: () => this.#isDriving,
       rest: () => {
-        this.#rest();
-        this.#choose('seen_arena');
+        this.#switchOff();
+        this.#chooseView('seen_arena');
       },
       put: (world, isOther) => {
-        this.#preview = null;
-        this.#world.putOwn(world, isOther);
+        this.#previewWorld = null;
+        this.#worldChoice.putOwn(world, isOther);
         remember();
-        this.#rest();
+        this.#switchOff();
       },
       preview: (world) => {
-        this.#preview = world;
-        this.#rest();
+        this.#previewWorld = world;
+        this.#switchOff();
       },
       tell: () => this.#show(),
     });
-    this.#run.addEventListener('click', () => this.#start(false));
-    this.#pause.addEventListener('click', (event) => {
+    this.#runButton.addEventListener('click', () => this.#start(false));
+    this.#pauseButton.addEventListener('click', (event) => {
       if (isSecondPress(event)) return; // it was pressed twice to pause
       this.#lookAtNow();
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
-      else this.#pauseIt();
+      else this.#pauseRun();
     });
     element('step', HTMLButtonElement).addEventListener('click', () => {
       this.#lookAtNow();
-      if (this.#simulator.phase === 'running') this.#pauseIt();
+      if (this.#simulator.phase === 'running') this.#pauseRun();
       else if (this.#simulator.phase === 'paused') this.#simulator.step();
       else this.#start(true);
     });
-    this.#push.addEventListener('click', () => {
+    this.#pushButton.addEventListener('click', () => {
       this.#lookAtNow();
-      this.#simulator.push();
+      this.#simulator.pressButton();
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     onEscapeKey(() => this.stop());
     const speed = element('speed', HTMLSelectElement);
-    replaceOptions(speed, SPEEDS.map((each, k) => pictureOption(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
+    replaceOptions(speed, SPEEDS.map((speed, k) => pictureOption(`× ${speed}`, String(speed), dialPicture(k / (SPEEDS.length - 1)))));
     speed.value = '1';
     speed.addEventListener('change', () => {
       this.#simulator.speed = Number(speed.value);
@@ -163,11 +163,11 @@ export class SimulatorPanel {
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
-    this.#why.addEventListener('click', () => {
-      this.#asksWhy = !this.#asksWhy;
+    this.#whyButton.addEventListener('click', () => {
+      this.#isWhyAsked = !this.#isWhyAsked;
       this.#show();
     });
-    for (const each of Object.keys(SEEN)) element(each, HTMLButtonElement).addEventListener('click', () => this.#choose(each));
+    for (const viewButton of Object.keys(RUN_VIEWS)) element(viewButton, HTMLButtonElement).addEventListener('click', () => this.#chooseView(viewButton));
     const sound = element('sound', HTMLButtonElement);
     const applySound = () => {
       this.#sounds.mute(!work.sound);
@@ -180,7 +180,7 @@ export class SimulatorPanel {
     });
     applySound();
     element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
-      this.#arena.eraseWays();
+      this.#arena.eraseTracks();
       this.#show();
     });
     pageState.ownRobot.subscribe(() => {
@@ -189,7 +189,7 @@ export class SimulatorPanel {
     new ResizeObserver(() => this.#showReadings()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => {
       this.#arena.resize();
-      this.#arena.draw(this.#state);
+      this.#arena.draw(this.#shownState);
     }).observe(element('arena', HTMLCanvasElement));
     pageState.language.subscribe(() => this.#show());
     pageState.areWordsShown.subscribe(() => this.#show());
@@ -203,22 +203,22 @@ export class SimulatorPanel {
       look: (camera) => {
         this.#arena.camera = camera;
         this.#arena.resize();
-        this.#arena.draw(this.#state);
+        this.#arena.draw(this.#shownState);
       },
       stop: () => this.stop(),
     });
     this.begin();
-    this.#restored = this.#restore();
+    this.#restoring = this.#restoreWorlds();
   }
 
-  get #shapes() {
-    return this.#preview ?? this.#world.shapes;
+  get #shownWorld() {
+    return this.#previewWorld ?? this.#worldChoice.shapes;
   }
 
-  /** Runs the program in a shipped world; resolves once the robot is on. @param {string} world */
-  async run(world) {
-    this.#world.choose(world);
-    this.#enter();
+  /** Runs the program in a shipped world; resolves once the robot is on. @param {string} worldName */
+  async run(worldName) {
+    this.#worldChoice.choose(worldName);
+    this.#enterWorld();
     await this.#start(false);
   }
 
@@ -228,40 +228,40 @@ export class SimulatorPanel {
    */
   async play(run) {
     const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    await this.#start(false, run, isStill ? run.until_ms : run.until_ms / PLAYED_MS);
-    if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+    await this.#start(false, run, isStill ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
+    if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
   }
 
   /**
    * Runs a part of the program alone; resolves when it is over. A run of the whole program goes on.
-   * @param {string} program
+   * @param {string} programText
    * @param {boolean} isAsked whoever only touched a block wants the virtual robot to be seen already
-   * @param {() => void} see has it seen
+   * @param {() => void} showArena has it seen
    */
-  async tryAlone(program, isAsked, see) {
+  async tryAlone(programText, isAsked, showArena) {
     const isSeen = element('arena', HTMLCanvasElement).checkVisibility();
     if ((this.#isDriving && !this.#isAlone) || this.#isWaiting || !(isSeen || isAsked)) return;
-    if (!isSeen) see();
-    const start = ++this.#starts;
+    if (!isSeen) showArena();
+    const startNumber = ++this.#startCount;
     const request = { do: 'check', robot: pageState.robotName.value, language: pageState.language.value };
-    const checked = /** @type {Checked} */ (await this.#page.python.ask(request, new TextEncoder().encode(program)));
-    if (start !== this.#starts) return;
-    if (!checked.image) {
-      pageState.note.set(text('alone_wrong', { why: checked.findings.find(({ severity }) => severity === 'mistake')?.message ?? '' }));
+    const checkResult = /** @type {Checked} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
+    if (startNumber !== this.#startCount) return;
+    if (!checkResult.image) {
+      pageState.note.set(text('alone_wrong', { why: checkResult.findings.find(({ severity }) => severity === 'mistake')?.message ?? '' }));
       return;
     }
-    await this.#start(false, null, 0, null, { text: program, checked });
-    if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+    await this.#start(false, null, 0, null, { text: programText, checked: checkResult });
+    if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
   }
 
   /** @param {number} hertz of a tone that somebody chooses */
   hear(hertz) {
     this.#sounds.begin();
-    this.#sounds.beep(hertz, HEARD_S);
+    this.#sounds.beep(hertz, TONE_S);
   }
 
   /** Nothing comes of the compiler, for which a run may wait. */
-  waitOn() {
+  showWaiting() {
     if (!this.#isWaiting) return;
     this.#note = text('run_waits');
     this.#show();
@@ -269,108 +269,108 @@ export class SimulatorPanel {
 
   /** Another program begins: with its robot at the start, on a floor without trails. */
   beginAnew() {
-    this.#arena.eraseWays();
+    this.#arena.eraseTracks();
     this.begin();
   }
 
   /** What a lesson has brought goes. */
   leaveLesson() {
-    if (!this.#world.isOfLesson) return;
-    this.#world.choose(this.#page.work.world);
-    this.#enter();
+    if (!this.#worldChoice.isOfLesson) return;
+    this.#worldChoice.choose(this.#page.work.world);
+    this.#enterWorld();
   }
 
   /** Another screen is seen. */
   leave() {
     this.stop();
-    this.#drawing.end();
+    this.#worldDrawing.end();
   }
 
   /** How the robot is, or was at the moment at which somebody looks. */
-  get #state() {
-    return this.#timeLine.seen ?? this.#simulator.state;
+  get #shownState() {
+    return this.#timeLine.seenState ?? this.#simulator.state;
   }
 
   /** What is seen of which robot. */
-  get #robotSeen() {
-    return this.#timeLine.seen ? this.#timeLine.run.of.robot : pageState.robotName.value;
+  get #shownRobot() {
+    return this.#timeLine.seenState ? this.#timeLine.run.origin.robot : pageState.robotName.value;
   }
 
-  get #variablesSeen() {
-    return this.#timeLine.seen ? this.#timeLine.run.program.variables : this.#variables;
+  get #shownVariables() {
+    return this.#timeLine.seenState ? this.#timeLine.run.program.variables : this.#variables;
   }
 
-  get #placesSeen() {
-    if (!this.#timeLine.seen || this.#timeLine.run === this.#newest) return this.#places;
-    const { of, program } = this.#timeLine.run;
+  get #shownPlaces() {
+    if (!this.#timeLine.seenState || this.#timeLine.run === this.#newestRun) return this.#places;
+    const { origin: of, program } = this.#timeLine.run;
     return of.text === pageState.programText.value ? program.places : [];
   }
 
   /** Plays a run that is kept, with its own program. @param {Run} run */
   async playAgain(run) {
-    await this.#window.openData(new TextEncoder().encode(await this.#window.fileOf(run)), '', run);
+    await this.#runsWindow.openData(new TextEncoder().encode(await this.#runsWindow.fileOf(run)), '', run);
   }
 
   /** Shows a run that is kept, at its end; a real robot's is played first. @param {Run} run */
-  async #see(run) {
-    if (run.moments.length < 2 || !run.shapes) {
+  async #showRun(run) {
+    if (run.moments.length < 2 || !run.world) {
       await this.playAgain(run);
       return;
     }
-    if (this.#simulator.phase === 'running') this.#pauseIt();
+    if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#timeLine.begin(run);
-    this.#drawWay(run);
+    this.#drawTrack(run);
     this.#timeLine.look(run.moments.last_ms);
   }
 
   /** @param {Run} run its world, and the way that it has taken */
-  #drawWay(run) {
-    this.#arena.begin(run.shapes ?? this.#world.shapes, run.of.robot, run === this.#newest ? this.#world.goals : []);
+  #drawTrack(run) {
+    this.#arena.begin(run.world ?? this.#worldChoice.shapes, run.origin.robot, run === this.#newestRun ? this.#worldChoice.goals : []);
     for (const state of run.moments.all()) this.#arena.follow(state);
   }
 
   /** The file of the newest run that can be played again, or nothing. @returns {Promise<string>} */
   async newestRun() {
-    const run = this.runs.all.find((each) => !each.isJudged && (each.file || each.rows.length));
-    return run ? this.#window.fileOf(run) : '';
+    const run = this.runs.all.find((candidate) => !candidate.isJudged && (candidate.file || candidate.rows.length));
+    return run ? this.#runsWindow.fileOf(run) : '';
   }
 
   /** Opens the file of a run. @param {File} file */
   openRun(file) {
-    return this.#window.open(file);
+    return this.#runsWindow.open(file);
   }
 
-  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').Opened} opened @param {Run | null} again */
-  async #play(opened, again) {
+  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').OpenedRun} opened @param {Run | null} knownRun */
+  async #playOpened(opened, knownRun) {
     await this.#simulator.stop();
     this.#page.put(opened);
-    if (typeof opened.world === 'string') this.#world.choose(opened.world);
+    if (typeof opened.world === 'string') this.#worldChoice.choose(opened.world);
     else if (opened.world && opened.shapes) {
-      this.#world.bring({ request: opened.world, shapes: opened.shapes, label: () => text('world_of_run'), goals: [] });
+      this.#worldChoice.bring({ request: opened.world, shapes: opened.shapes, label: () => text('world_of_run'), goals: [] });
     }
     this.begin();
-    this.#choose('seen_arena');
-    const lasts_ms = Math.max(1, opened.rows.at(-1)?.[0] ?? 0);
-    await this.#start(false, null, lasts_ms / PLAYED_MS, { opened, again });
+    this.#chooseView('seen_arena');
+    const duration_ms = Math.max(1, opened.rows.at(-1)?.[0] ?? 0);
+    await this.#start(false, null, duration_ms / LONGEST_REPLAY_MS, { opened, again: knownRun });
   }
 
   /** What runs stands still while somebody looks back. */
   #lookBack() {
-    if (this.#simulator.phase === 'running') this.#pauseIt();
-    this.#arena.say('', 0);
-    this.#seenShows = this.#keepShows(new Map(), this.#timeLine.shows);
+    if (this.#simulator.phase === 'running') this.#pauseRun();
+    this.#arena.showBubble('', 0);
+    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shownUntilSeen);
     this.#show();
   }
 
   /** The newest moment is seen again. */
   #lookAtNow() {
-    if (!this.#timeLine.seen) return;
-    if (this.#newest && this.#timeLine.run !== this.#newest) {
-      this.#timeLine.begin(this.#newest);
-      this.#drawWay(this.#newest);
+    if (!this.#timeLine.seenState) return;
+    if (this.#newestRun && this.#timeLine.run !== this.#newestRun) {
+      this.#timeLine.begin(this.#newestRun);
+      this.#drawTrack(this.#newestRun);
     }
     this.#timeLine.leave();
-    this.#keepShows(this.#shown, this.#timeLine.shows);
+    this.#keepShownValues(this.#shownValues, this.#timeLine.shownUntilSeen);
     this.#show();
   }
 
@@ -379,22 +379,22 @@ export class SimulatorPanel {
     return phase === 'running' || phase === 'paused';
   }
 
-  /** Shows the robot from above, or its values, or what it has done. @param {string} chosen a button */
-  #choose(chosen) {
-    for (const [each, place] of Object.entries(SEEN)) {
-      element(each, HTMLButtonElement).setAttribute('aria-pressed', String(each === chosen));
-      element(place, HTMLElement).hidden = each !== chosen;
+  /** Shows the robot from above, or its values, or what it has done. @param {string} chosenButton a button */
+  #chooseView(chosenButton) {
+    for (const [viewButton, viewId] of Object.entries(RUN_VIEWS)) {
+      element(viewButton, HTMLButtonElement).setAttribute('aria-pressed', String(viewButton === chosenButton));
+      element(viewId, HTMLElement).hidden = viewButton !== chosenButton;
     }
     this.#show();
   }
 
   /** What the worker is asked for to have the world that is shown. */
   get world() {
-    return this.#world.request;
+    return this.#worldChoice.request;
   }
 
   /** Another world has been chosen. */
-  #enter() {
+  #enterWorld() {
     this.#page.remember();
     this.begin();
   }
@@ -407,55 +407,55 @@ export class SimulatorPanel {
    */
   async showLesson(number, seed, label) {
     const { world, goals } = await this.#page.python.ask({ do: 'lesson_world', number, seed });
-    this.#world.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
+    this.#worldChoice.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
     this.begin();
-    this.#choose('seen_arena');
+    this.#chooseView('seen_arena');
   }
 
   /** Another robot or world: what drove there has ended. */
   begin() {
-    this.#drawing.letGo();
-    this.#preview = null;
-    this.#rest();
+    this.#worldDrawing.letGo();
+    this.#previewWorld = null;
+    this.#switchOff();
     this.#stage?.rest();
-    this.#drawing.forget();
+    this.#worldDrawing.forget();
   }
 
-  #pauseIt() {
+  #pauseRun() {
     this.#sounds.silence();
     this.#simulator.pause();
   }
 
   /** Stops, and switches off. */
-  #rest() {
+  #switchOff() {
     this.stop();
     this.#simulator.leave();
     this.#plot.begin();
     this.#timeLine.begin();
     this.#variables = [];
-    this.#arena.begin(this.#shapes, pageState.robotName.value, this.#world.goals);
+    this.#arena.begin(this.#shownWorld, pageState.robotName.value, this.#worldChoice.goals);
     this.#show();
   }
 
   /** Brings the worlds back that were drawn here; none is drawn before, for it would take their place. */
-  async #restore() {
+  async #restoreWorlds() {
     try {
-      const isWhole = await this.#world.restoreOwn();
+      const isWhole = await this.#worldChoice.restoreOwn();
       if (this.#page.work.world !== OWN_WORLD) return;
       if (!isWhole) this.#note = text('world_lost');
       this.begin();
     } catch {
       // the page says that there is no compiler
     } finally {
-      this.#drawing.allow();
+      this.#worldDrawing.allow();
     }
   }
 
   /** The program is to stop elsewhere. */
   #breakpointsChanged() {
-    const before = this.#stops.offsets.join();
+    const offsetsBefore = this.#stops.offsets.join();
     this.#findStops();
-    if (this.#stops.offsets.join() !== before) this.#simulator.setBreakpoints(this.#stops.offsets);
+    if (this.#stops.offsets.join() !== offsetsBefore) this.#simulator.setBreakpoints(this.#stops.offsets);
   }
 
   #findStops() {
@@ -465,83 +465,83 @@ export class SimulatorPanel {
   /**
    * @param {boolean} isPaused
    * @param {import('../lesson/lessons.js').JudgedRun | null} judged
-   * @param {number} least times as quick as the robot
-   * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played a recorded run
-   * @param {{text: string, checked: Checked} | null} alone a part of the program
+   * @param {number} leastSpeed times as quick as the robot
+   * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay a recorded run
+   * @param {{text: string, checked: Checked} | null} part a part of the program
    */
-  async #start(isPaused, judged = null, least = 0, played = null, alone = null) {
-    this.#seenRun();
-    const start = ++this.#starts;
-    this.#drawing.said = '';
-    let program = alone?.checked ?? pageState.checkResult.value;
+  async #start(isPaused, judged = null, leastSpeed = 0, replay = null, part = null) {
+    this.#onRunOver();
+    const startNumber = ++this.#startCount;
+    this.#worldDrawing.said = '';
+    let program = part?.checked ?? pageState.checkResult.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
       this.#show();
       program = await this.#page.whenCompiled();
-      if (program) await this.#restored;
-      if (start !== this.#starts) return;
+      if (program) await this.#restoring;
+      if (startNumber !== this.#startCount) return;
       this.#isWaiting = false;
     }
     this.#note = !program ? text('no_compiler') : program.image ? '' : text('first_repair');
     this.#show();
     await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
-    if (start !== this.#starts || !program?.image) return;
+    if (startNumber !== this.#startCount || !program?.image) return;
     this.#sounds.begin();
     this.#wasStopped = false;
-    this.#bumps = 0;
-    this.#canEarn = !judged && !played && !alone;
-    this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
+    this.#bumpCount = 0;
+    this.#canEarnStars = !judged && !replay && !part;
+    this.#arena.begin(this.#worldChoice.shapes, pageState.robotName.value, this.#worldChoice.goals);
     this.#plot.begin();
-    this.#shown.clear();
+    this.#shownValues.clear();
     this.#program = program;
-    this.#isAlone = alone !== null;
-    this.#places = alone ? [] : program.places; // which are those of another text
+    this.#isAlone = part !== null;
+    this.#places = part ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
-    this.#remote = judged || played ? [] : program.remote;
-    const world = judged ?? this.#world.request;
-    const run = this.#newest = this.#runOf(program, world, played, alone?.text);
+    this.#remoteWords = judged || replay ? [] : program.remote;
+    const world = judged ?? this.#worldChoice.request;
+    const run = this.#newestRun = this.#runOf(program, world, replay, part?.text);
     run.isJudged = judged !== null;
     this.#timeLine.begin(run);
-    const stops = judged || played || alone ? [] : this.#stops.offsets;
-    const begins = this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
-    if (!alone && !judged) this.#stage.begin(); // it sees nothing of the run before
-    await begins;
+    const breakpoints = judged || replay || part ? [] : this.#stops.offsets;
+    const begun = this.#simulator.begin(program, pageState.robotName.value, world, breakpoints, isPaused, leastSpeed, replay !== null);
+    if (!part && !judged) this.#stage.begin(); // it sees nothing of the run before
+    await begun;
   }
 
   /**
    * The run that begins, among those that are kept.
    * @param {Checked} program
    * @param {unknown} world
-   * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played
-   * @param {string} [whole] its text
+   * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay
+   * @param {string} [programText] its text
    */
-  #runOf(program, world, played, whole = pageState.programText.value) {
-    const run = played?.again ?? new Run({ of: 'virtual', text: whole, robot: pageState.robotName.value, program: program.program, world }, program, null);
-    if (played && !played.again) {
-      run.of = { ...run.of, of: played.opened.of };
-      run.file = played.opened.file;
+  #runOf(program, world, replay, programText = pageState.programText.value) {
+    const run = replay?.again ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world }, program, null);
+    if (replay && !replay.again) {
+      run.origin = { ...run.origin, of: replay.opened.of };
+      run.file = replay.opened.file;
     }
-    run.shapes = this.#world.shapes;
+    run.world = this.#worldChoice.shapes;
     run.program = program;
-    run.again();
-    if (played) {
-      run.markKeys(played.opened.rows);
-      run.told = played.opened.rows;
+    run.restart();
+    if (replay) {
+      run.markKeys(replay.opened.rows);
+      run.fileRows = replay.opened.rows;
     }
-    if (!played?.again && !this.#isAlone) this.runs.begin(run);
+    if (!replay?.again && !this.#isAlone) this.runs.begin(run);
     return run;
   }
 
   /** A world is solved: that is celebrated once a run, and its stars are kept. @param {number} stars */
-  #earn(stars) {
-    if (!stars || !this.#canEarn) return;
-    this.#canEarn = false;
-    const { request } = this.#world;
+  #earnStars(stars) {
+    if (!stars || !this.#canEarnStars) return;
+    this.#canEarnStars = false;
+    const { request } = this.#worldChoice;
     if (typeof request === 'string') {
       if (!keepStars(worldStars(request), stars)) pageState.note.set(text('not_kept'));
-      this.#world.showStars();
+      this.#worldChoice.showStars();
     }
     this.cheer();
     celebrate();
@@ -551,11 +551,11 @@ export class SimulatorPanel {
   cheer() {
     this.#arena.cheer();
     this.#sounds.cheer();
-    this.#arena.draw(this.#state);
+    this.#arena.draw(this.#shownState);
   }
 
   stop() {
-    this.#starts += 1;
+    this.#startCount += 1;
     if (this.#isWaiting) {
       this.#isWaiting = false;
       this.#note = '';
@@ -569,172 +569,172 @@ export class SimulatorPanel {
   }
 
   #show() {
-    const { phase } = this.#simulator, state = this.#state;
+    const { phase } = this.#simulator, state = this.#shownState;
     this.#showReadings();
     this.#arena.draw(state);
     document.documentElement.dataset['phase'] = phase;
-    this.#offer();
-    if (!this.#isDriving) this.#seenRun();
-    this.#showPlaces(); // last: the editor has the page laid out, which is then done once
+    this.#offerRemote();
+    if (!this.#isDriving) this.#onRunOver();
+    this.#markPlaces(); // last: the editor has the page laid out, which is then done once
   }
 
   /** A run that reads a remote control can be driven. */
-  #offer() {
-    const canDrive = this.#isDriving && this.#remote.length > 0;
-    this.#page.pad.offer('driving', canDrive ? { reads: this.#remote, tell: (held) => { this.#simulator.held = held; } } : null);
+  #offerRemote() {
+    const canDrive = this.#isDriving && this.#remoteWords.length > 0;
+    this.#page.pad.offer('driving', canDrive ? { reads: this.#remoteWords, tell: (held) => { this.#simulator.held = held; } } : null);
     if (!canDrive) this.#simulator.held = null;
   }
 
   /** A picture of a run: beside the robot, one thing at a time is new. @param {import('../python.js').RobotState} state */
-  #goOn(state) {
+  #showFrame(state) {
     this.#arena.draw(state);
-    if (performance.now() - this.#shown_ms < READ_MS / 2) return;
+    if (performance.now() - this.#lastShown_ms < READINGS_INTERVAL_MS / 2) return;
     if (this.#isReadingNext) this.#showReadings();
-    else this.#showPlaces();
+    else this.#markPlaces();
   }
 
   #showReadings() {
-    const { phase, trace } = this.#simulator, state = this.#state;
-    this.#shown_ms = performance.now();
+    const { phase, trace } = this.#simulator, state = this.#shownState;
+    this.#lastShown_ms = performance.now();
     this.#isReadingNext = false;
-    this.#pause.disabled = !this.#isDriving;
-    say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
-    hide(this.#push, !state?.is_waiting || phase !== 'running');
-    say(element('doing', HTMLElement), this.#note || this.#drawing.said || [pageState.ownRobot.value.name, this.#doing()].filter(Boolean).join(': '));
-    const told = trace.slice(-SHOWN).join('\n');
-    if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
+    this.#pauseButton.disabled = !this.#isDriving;
+    say(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
+    hide(this.#pushButton, !state?.is_waiting || phase !== 'running');
+    say(element('doing', HTMLElement), this.#note || this.#worldDrawing.said || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
+    const traceText = trace.slice(-MOST_TRACE_LINES).join('\n');
+    if (traceText !== this.#traceText) element('trace', HTMLElement).textContent = this.#traceText = traceText;
     this.#showScore(state?.score ?? null);
-    this.#where.tell(state, phase);
+    this.#announcer.announce(state, phase);
     this.#showValues();
-    hide(this.#why, !this.#timeLine.seen);
-    this.#why.setAttribute('aria-pressed', String(this.#asksWhy));
-    this.#plot.draw(state && this.#timeLine.seen ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
+    hide(this.#whyButton, !this.#timeLine.seenState);
+    this.#whyButton.setAttribute('aria-pressed', String(this.#isWhyAsked));
+    this.#plot.draw(state && this.#timeLine.seenState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
   }
 
   /** Marks what runs, or where it had a fault. */
-  #showPlaces() {
-    const state = this.#state;
-    this.#shown_ms = performance.now();
+  #markPlaces() {
+    const state = this.#shownState;
+    this.#lastShown_ms = performance.now();
     this.#isReadingNext = true;
-    const range = this.#place();
-    const places = this.#placesSeen;
+    const range = this.#rangeShown();
+    const places = this.#shownPlaces;
     const isAlone = !state || state.fault || state.is_held;
-    const isOver = !this.#isDriving && !this.#timeLine.seen && !state?.fault; // also of one that was stopped before its end
-    const ranges = isOver ? [] : isAlone ? [range] : state.places.map((at) => rangeAt(places, at));
-    pageState.virtualRun.set({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
+    const isOver = !this.#isDriving && !this.#timeLine.seenState && !state?.fault; // also of one that was stopped before its end
+    const ranges = isOver ? [] : isAlone ? [range] : state.places.map((offset) => rangeAt(places, offset));
+    pageState.virtualRun.set({ ranges: ranges.filter((range) => range !== null), isHeld: Boolean(state?.is_held) });
     pageState.fault.set({ range: state?.fault ? range : null, sentence: state?.fault ? faultSentence(state.fault) : '' });
   }
 
   /** What runs in the text that is seen, or what had a fault. */
-  #place() {
-    const state = this.#state;
-    return rangeAt(this.#placesSeen, state?.fault ? state.fault_at : state?.at);
+  #rangeShown() {
+    const state = this.#shownState;
+    return rangeAt(this.#shownPlaces, state?.fault ? state.fault_at : state?.at);
   }
 
   /** Keeps what is to be seen, and lets be heard what is. @param {import('../python.js').RobotState} state */
-  #keep(state) {
+  #takeState(state) {
     this.#arena.follow(state);
-    this.#newest?.add(state);
+    this.#newestRun?.add(state);
     this.runs.trim();
-    if (state.bumps > this.#bumps) {
+    if (state.bumps > this.#bumpCount) {
       this.#arena.shake();
       this.#sounds.crash();
     }
-    this.#bumps = state.bumps;
-    this.#earn(state.score?.stars ?? 0);
-    for (const [at_ms, what] of state.events) {
-      const [word, hertz, lasts_ms] = what.split(' ');
-      if (word !== 'BEEP') continue;
+    this.#bumpCount = state.bumps;
+    this.#earnStars(state.score?.stars ?? 0);
+    for (const [at_ms, event] of state.events) {
+      const [eventWord, hertz, lasts_ms] = event.split(' ');
+      if (eventWord !== 'BEEP') continue;
       this.#arena.showBeep(at_ms, at_ms + Number(lasts_ms));
       this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
     }
     if (state.began_ms === null) return;
-    this.#keepShows(this.#shown, state.events);
+    this.#keepShownValues(this.#shownValues, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: deviceName(device), value: numberOf(state.readings[k]?.text) })),
-      ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
-      ...[...this.#shown].map(([name, value]) => ({ name, value: numberOf(value) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: numberOf(state.readings[index]?.text) })),
+      ...this.#variables.map(({ name, is_yes_no }, index) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[index])) : state.variables[index] })),
+      ...[...this.#shownValues].map(([name, value]) => ({ name, value: numberOf(value) })),
     ]);
   }
 
   /**
    * Keeps what has been shown, by its name, and says the last of it.
-   * @param {Map<string, string>} shown
+   * @param {Map<string, string>} shownValues
    * @param {[number, string, number][]} events
    */
-  #keepShows(shown, events) {
-    for (const [at_ms, what, at] of events) {
-      if (!what.startsWith('SHOW ')) continue;
-      const value = what.slice('SHOW '.length);
-      const show = showAt(this.#timeLine.seen ? this.#timeLine.run.program : this.#program, at);
-      shown.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
-      this.#arena.say(value, at_ms);
+  #keepShownValues(shownValues, events) {
+    for (const [at_ms, event, offset] of events) {
+      if (!event.startsWith('SHOW ')) continue;
+      const value = event.slice('SHOW '.length);
+      const show = showAt(this.#timeLine.seenState ? this.#timeLine.run.program : this.#program, offset);
+      shownValues.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
+      this.#arena.showBubble(value, at_ms);
     }
-    return shown;
+    return shownValues;
   }
 
-  #doing() {
+  #statusText() {
     const { phase, state, isStopping, failure } = this.#simulator;
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
     const { parting } = this.#timeLine.run;
-    const partsHere = parting && (this.#timeLine.seen ? parting.at_ms !== null && Math.abs(this.#timeLine.seen.now_ms - parting.at_ms) < NEAR_MS : phase === 'ended');
-    if (parting && partsHere) return partingSaid(parting);
-    if (this.#timeLine.seen) return this.#lookedBack(this.#timeLine.seen);
-    if (phase === 'off' || !state) return this.#task() || text('robot_off');
+    const isAtParting = parting && (this.#timeLine.seenState ? parting.at_ms !== null && Math.abs(this.#timeLine.seenState.now_ms - parting.at_ms) < NEAR_MOMENT_MS : phase === 'ended');
+    if (parting && isAtParting) return partingText(parting);
+    if (this.#timeLine.seenState) return this.#pastText(this.#timeLine.seenState);
+    if (phase === 'off' || !state) return this.#taskText() || text('robot_off');
     if (state.fault) {
-      const what = faultSentence(state.fault);
-      const line = this.#place()?.line;
-      return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
+      const faultText = faultSentence(state.fault);
+      const line = this.#rangeShown()?.line;
+      return line ? text('say_fault', { line, what: faultText }) : text('robot_fault', { what: faultText });
     }
     if (this.#wasStopped) return text('robot_stopped');
-    const ended = state.score && howEnded(state.score);
-    if (ended) return ended;
-    const held = state.is_held && this.#place()?.line;
-    if (phase === 'paused' && held) return text('robot_held', { line: held });
+    const endText = state.score && boutEnd(state.score);
+    if (endText) return endText;
+    const heldLine = state.is_held && this.#rangeShown()?.line;
+    if (phase === 'paused' && heldLine) return text('robot_held', { line: heldLine });
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 
   /** What ran at a moment, and the values of what it names. @param {import('../python.js').RobotState} state */
-  #lookedBack(state) {
-    const seconds = secondsOf(state), range = this.#place();
-    const why = this.#asksWhy ? [this.#whySaid(state)] : [];
-    if (!range) return [text('looked_back', { seconds }), ...why].join('   ');
+  #pastText(state) {
+    const seconds = secondsOf(state), range = this.#rangeShown();
+    const reasons = this.#isWhyAsked ? [this.#whyText(state)] : [];
+    if (!range) return [text('looked_back', { seconds }), ...reasons].join('   ');
     const { line, column, end_column } = range;
-    const part = (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
-    const names = new Set(part.toUpperCase().match(/\w+/g));
+    const partText = (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
+    const names = new Set(partText.toUpperCase().match(/\w+/g));
     const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${name} ${value}`);
-    return [text('looked_back_at', { seconds, line, part }), ...values, ...why].join('   ');
+    return [text('looked_back_at', { seconds, line, part: partText }), ...values, ...reasons].join('   ');
   }
 
   /** Why it was there: what was asked, with the values that the program had read, and whose motors they were. @param {RobotState} state */
-  #whySaid(state) {
+  #whyText(state) {
     const { run } = this.#timeLine, { places, variables } = run.program;
-    const at = state.fault ? state.fault_at : state.at;
-    if (at === null) return text('why_nothing');
+    const offset = state.fault ? state.fault_at : state.at;
+    if (offset === null) return text('why_nothing');
     const values = new Map(variables.map(({ name, is_yes_no }, k) => [name, variableText(state.variables[k], is_yes_no)]));
-    const asked = conditionsAt(run.of.text, places, at, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
-    const said = asked.map(({ line, condition, values: with_values, is }) => text(is === null ? 'why_asks' : is ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
-    const { driver } = state, tasks = blocksOf(run.of.text, places, /^(?:TASK|WHEN)\b/i);
+    const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
+    const sentences = conditions.map(({ line, condition, values: with_values, is }) => text(is === null ? 'why_asks' : is ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
+    const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
     const task = driver === null ? undefined : tasks.find(({ has }) => has(driver));
-    if (driver !== null && tasks.length) said.push(task ? text('why_task', { line: task.line }) : text('why_main'));
-    return said.join(' ') || text('why_nothing');
+    if (driver !== null && tasks.length) sentences.push(task ? text('why_task', { line: task.line }) : text('why_main'));
+    return sentences.join(' ') || text('why_nothing');
   }
 
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */
   #valuesOf(state) {
     return [
-      ...devicesOf(this.#robotSeen, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
-      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, variableText(state.variables[k], is_yes_no)])),
+      ...devicesOf(this.#shownRobot, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
+      ...this.#shownVariables.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, variableText(state.variables[k], is_yes_no)])),
     ];
   }
 
   /** What is to be done in this world, if there is such a thing. */
-  #task() {
-    const { flags, seconds, rings, rivals } = this.#shapes;
+  #taskText() {
+    const { flags, seconds, rings, rivals } = this.#shownWorld;
     if (rings.length && rivals.length && !flags.length) return text(seconds ? 'task_sumo_in_time' : 'task_sumo', { seconds });
     if (!flags.length) return '';
     return text(seconds ? 'task_in_time' : 'task', { count: flags.length, seconds });
@@ -742,35 +742,35 @@ export class SimulatorPanel {
 
   /** @param {import('../python.js').RobotState['score']} score */
   #showScore(score) {
-    const place = element('score', HTMLElement);
-    hide(place, !score);
+    const scoreElement = element('score', HTMLElement);
+    hide(scoreElement, !score);
     if (!score) return;
-    const { taken, of, pushed, rivals, points, stars } = score;
-    const done = [of && `⚑ ${taken}/${of}`, rivals && `⇥ ${pushed}/${rivals}`].filter(Boolean).join('  ');
-    say(place, `${done}   ${points}   ${starsShown(stars)}`);
-    place.classList.toggle('whole', stars > 0);
+    const { taken: takenFlags, of: flagCount, pushed: pushedRivals, rivals: rivalCount, points, stars } = score;
+    const parts = [flagCount && `⚑ ${takenFlags}/${flagCount}`, rivalCount && `⇥ ${pushedRivals}/${rivalCount}`].filter(Boolean).join('  ');
+    say(scoreElement, `${parts}   ${points}   ${starsText(stars)}`);
+    scoreElement.classList.toggle('whole', stars > 0);
   }
 
   #showValues() {
-    const state = this.#state;
+    const state = this.#shownState;
     const rows = [
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(this.#robotSeen, 'sensor').map((device, k) => [deviceName(device), state ? readingText(device, state.readings[k]?.text ?? '') : '–', percentOfRange(device, state?.readings[k]?.value)]),
-      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => [name, variableText(state?.variables[k], is_yes_no)]),
-      ...(this.#timeLine.seen ? this.#seenShows : this.#shown),
+      ...devicesOf(this.#shownRobot, 'sensor').map((device, k) => [deviceName(device), state ? readingText(device, state.readings[k]?.text ?? '') : '–', percentOfRange(device, state?.readings[k]?.value)]),
+      ...this.#shownVariables.map(({ name, is_yes_no }, k) => [name, variableText(state?.variables[k], is_yes_no)]),
+      ...(this.#timeLine.seenState ? this.#pastShownValues : this.#shownValues),
     ];
     showRows(element('values', HTMLElement), rows);
   }
 }
 
 /** Where a recorded run and the one that was played part, in words. @param {import('../python.js').Parting} parting */
-function partingSaid({ what, agreed, line, robot, virtual, sensor, began_ms }) {
+function partingText({ what: key, agreed, line, robot, virtual, sensor, began_ms }) {
   /** @param {{ms: number, event: string} | null} row */
-  const told = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
-  const place = line ? text('line', { line }) : text('record_end');
-  return text(textKey(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual), sensor });
+  const rowText = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
+  const placeText = line ? text('line', { line }) : text('record_end');
+  return text(textKey(`record_${key}`), { count: agreed, line, place: placeText, robot: rowText(robot), virtual: rowText(virtual), sensor });
 }
 
 /** How long the program has run. @param {import('../python.js').RobotState} state */

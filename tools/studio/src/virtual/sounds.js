@@ -13,33 +13,33 @@ export class Sounds {
   isMuted = false;
   /** @type {AudioContext | null} */
   #context = null;
-  #free_s = 0; // when the last tone has ended
+  #lastEnd_s = 0; // when the last tone has ended
   /** What sounds, or is going to. @type {Set<OscillatorNode>} */
-  #playing = new Set();
-  #closing = 0;
+  #playingTones = new Set();
+  #closeTimer = 0;
 
   /** Makes the computer's sound ready before a run, whose picture would wait for it; nothing of the one before sounds any more. */
   begin() {
     this.silence();
-    const context = this.#awake();
-    if (context) this.#rest(context);
+    const context = this.#openContext();
+    if (context) this.#closeLater(context);
   }
 
   /** @param {number} hertz @param {number} duration_s of this computer's time */
   beep(hertz, duration_s) {
-    const context = this.#awake();
+    const context = this.#openContext();
     if (!context) return;
-    const begin_s = Math.max(context.currentTime, this.#free_s);
+    const begin_s = Math.max(context.currentTime, this.#lastEnd_s);
     if (begin_s - context.currentTime > LATE_S) return;
-    this.#free_s = begin_s + duration_s;
-    const tone = this.#tone(context, 'square', begin_s, duration_s, VOLUME);
+    this.#lastEnd_s = begin_s + duration_s;
+    const tone = this.#startTone(context, 'square', begin_s, duration_s, VOLUME);
     tone.frequency.value = Math.max(LOWEST_HZ, Math.min(HIGHEST_HZ, hertz));
   }
 
   crash() {
-    const context = this.#awake();
+    const context = this.#openContext();
     if (!context) return;
-    const tone = this.#tone(context, 'triangle', context.currentTime, 0.18, 4 * VOLUME);
+    const tone = this.#startTone(context, 'triangle', context.currentTime, 0.18, 4 * VOLUME);
     tone.frequency.setValueAtTime(170, context.currentTime);
     tone.frequency.exponentialRampToValueAtTime(45, context.currentTime + 0.18);
   }
@@ -51,9 +51,9 @@ export class Sounds {
   }
 
   silence() {
-    for (const tone of this.#playing) tone.stop();
-    this.#playing.clear();
-    this.#free_s = 0;
+    for (const tone of this.#playingTones) tone.stop();
+    this.#playingTones.clear();
+    this.#lastEnd_s = 0;
   }
 
   /** @param {boolean} isMuted */
@@ -63,9 +63,9 @@ export class Sounds {
   }
 
   /** Browsers let a page sound once somebody has touched it, and say so of one that tries before. */
-  #awake() {
+  #openContext() {
     if (this.isMuted || !('AudioContext' in window) || navigator.userActivation?.hasBeenActive === false) return null;
-    clearTimeout(this.#closing);
+    clearTimeout(this.#closeTimer);
     try {
       this.#context ??= new AudioContext();
     } catch {
@@ -82,7 +82,7 @@ export class Sounds {
    * @param {number} duration_s
    * @param {number} volume
    */
-  #tone(context, type, begin_s, duration_s, volume) {
+  #startTone(context, type, begin_s, duration_s, volume) {
     const tone = context.createOscillator(), gain = context.createGain();
     const end_s = begin_s + Math.max(duration_s, 2 * EDGE_S);
     tone.type = type;
@@ -93,17 +93,17 @@ export class Sounds {
     tone.connect(gain).connect(context.destination);
     tone.start(begin_s);
     tone.stop(end_s);
-    this.#playing.add(tone);
+    this.#playingTones.add(tone);
     tone.addEventListener('ended', () => {
-      this.#playing.delete(tone);
-      this.#rest(context);
+      this.#playingTones.delete(tone);
+      this.#closeLater(context);
     });
     return tone;
   }
 
   /** Closes it after a while: an open one works without a sound, too. @param {AudioContext} context */
-  #rest(context) {
-    clearTimeout(this.#closing);
-    if (!this.#playing.size) this.#closing = window.setTimeout(() => context.suspend(), OPEN_MS);
+  #closeLater(context) {
+    clearTimeout(this.#closeTimer);
+    if (!this.#playingTones.size) this.#closeTimer = window.setTimeout(() => context.suspend(), OPEN_MS);
   }
 }

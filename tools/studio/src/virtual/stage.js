@@ -8,45 +8,45 @@ import { text } from '../page/texts.js';
 /** @typedef {import('./arena.js').Camera} Camera */
 
 const CAMERAS = /** @type {Camera[]} */ (['whole', 'near', 'behind']);
-const LOOKS = { // of a button
+const CAMERA_PATHS = { // of a button
   whole: 'M3 5h18v14H3zM10 12a2 2 0 1 0 4 0 2 2 0 1 0-4 0z',
   near: 'M3 5h18v14H3zM7 12a5 5 0 1 0 10 0 5 5 0 1 0-10 0z',
   behind: 'M8 5h8l5 14H3zM9 15a3 3 0 1 0 6 0 3 3 0 1 0-6 0z',
 };
-const FULL = 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5';
-const TYPED = 'input, textarea, select, [contenteditable=true], dialog';
+const FULL_PATH = 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5';
+const TYPING_SELECTOR = 'input, textarea, select, [contenteditable=true], dialog';
 const { documentElement: root } = document;
 
 export class Stage {
   #page;
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
-  #chosen = '';
-  #isReal = false; // the browser has filled the screen, too
-  #path = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
-  #camera = makeButton('', () => this.#turn(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#path));
-  #full = makeButton('', () => this.#fill(!this.isFull), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' },
-    makeSvg('path', { d: FULL, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.6, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })));
+  #chosenCamera = '';
+  #isScreenFilled = false; // the browser has filled the screen, too
+  #cameraPath = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
+  #cameraButton = makeButton('', () => this.#turnCamera(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#cameraPath));
+  #fullButton = makeButton('', () => this.#setFull(!this.isFull), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' },
+    makeSvg('path', { d: FULL_PATH, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.6, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })));
 
   /** @param {{look: (camera: Camera) => void, stop: () => void}} page shows the robot from there; stops it */
   constructor(page) {
     this.#page = page;
-    this.#camera.id = 'camera';
-    this.#full.id = 'full';
-    element('runs_open', HTMLButtonElement).before(this.#camera, this.#full);
+    this.#cameraButton.id = 'camera';
+    this.#fullButton.id = 'full';
+    element('runs_open', HTMLButtonElement).before(this.#cameraButton, this.#fullButton);
     addEventListener('keydown', (event) => {
-      const isTyped = event.composedPath().some((each) => each instanceof Element && each.matches(TYPED));
+      const isTyped = event.composedPath().some((target) => target instanceof Element && target.matches(TYPING_SELECTOR));
       if (event.key.toLowerCase() !== 'f' || event.ctrlKey || event.metaKey || event.altKey || isTyped) return;
-      if (this.isFull || this.#full.checkVisibility()) this.#fill(!this.isFull);
+      if (this.isFull || this.#fullButton.checkVisibility()) this.#setFull(!this.isFull);
     });
     addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.#fill(false);
+      if (event.key === 'Escape') this.#setFull(false);
     });
     document.addEventListener('fullscreenchange', () => {
-      const isReal = document.fullscreenElement !== null, wasReal = this.#isReal;
-      this.#isReal = isReal;
-      if (isReal && !this.isFull) document.exitFullscreen().catch(() => {}); // it came late
-      if (isReal || !wasReal || !this.isFull) return;
-      this.#fill(false); // by Escape, of which the page hears nothing else
+      const isFilled = document.fullscreenElement !== null, wasFilled = this.#isScreenFilled;
+      this.#isScreenFilled = isFilled;
+      if (isFilled && !this.isFull) document.exitFullscreen().catch(() => {}); // it came late
+      if (isFilled || !wasFilled || !this.isFull) return;
+      this.#setFull(false); // by Escape, of which the page hears nothing else
       page.stop();
     });
     // Whoever goes on writing has the room for it again.
@@ -59,13 +59,13 @@ export class Stage {
     });
     pageState.screen.subscribe((screen) => {
       if (screen !== 'start') return;
-      this.#fill(false);
+      this.#setFull(false);
       this.#shrink();
     });
-    let seen = pageState.sideId.value;
+    let seenSide = pageState.sideId.value;
     pageState.sideId.subscribe((side) => {
-      if (side !== seen) this.#fill(false); // a phone's Run shows the side that is seen
-      seen = side;
+      if (side !== seenSide) this.#setFull(false); // a phone's Run shows the side that is seen
+      seenSide = side;
     });
     pageState.language.subscribe(() => this.#show());
     this.#show();
@@ -94,11 +94,11 @@ export class Stage {
   }
 
   /** @param {boolean} isFull */
-  #fill(isFull) {
+  #setFull(isFull) {
     if (isFull === this.isFull) return;
     if (isFull) {
       root.dataset['full'] = '';
-      this.#isReal = false;
+      this.#isScreenFilled = false;
       root.requestFullscreen?.().catch(() => {}); // the page alone is filled, then
     } else {
       delete root.dataset['full'];
@@ -107,23 +107,23 @@ export class Stage {
     this.#show();
   }
 
-  #turn() {
-    this.#chosen = CAMERAS[(CAMERAS.indexOf(this.#now) + 1) % CAMERAS.length] ?? 'whole';
+  #turnCamera() {
+    this.#chosenCamera = CAMERAS[(CAMERAS.indexOf(this.#currentCamera) + 1) % CAMERAS.length] ?? 'whole';
     this.#show();
   }
 
   /** @returns {Camera} */
-  get #now() {
-    return this.#chosen || (this.isFull || 'big' in root.dataset ? 'near' : 'whole');
+  get #currentCamera() {
+    return this.#chosenCamera || (this.isFull || 'big' in root.dataset ? 'near' : 'whole');
   }
 
   #show() {
     if (!pageState.language.value) return;
-    const camera = this.#now;
-    this.#path.setAttribute('d', LOOKS[camera]);
-    this.#camera.title = this.#camera.ariaLabel = text(`camera_${camera}`);
-    this.#full.title = this.#full.ariaLabel = `${text('full')} (F)`;
-    this.#full.setAttribute('aria-pressed', String(this.isFull));
+    const camera = this.#currentCamera;
+    this.#cameraPath.setAttribute('d', CAMERA_PATHS[camera]);
+    this.#cameraButton.title = this.#cameraButton.ariaLabel = text(`camera_${camera}`);
+    this.#fullButton.title = this.#fullButton.ariaLabel = `${text('full')} (F)`;
+    this.#fullButton.setAttribute('aria-pressed', String(this.isFull));
     this.#page.look(camera);
   }
 }

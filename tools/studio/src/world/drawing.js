@@ -315,7 +315,7 @@ export class WorldDrawing {
     const { before, base, from } = drag;
     if (drag.how === 'draw') {
       drag.way.push(onFloor(place, before));
-      this.#arena.mark({ points: drag.way, point: -1, handle: null });
+      this.#arena.setMark({ points: drag.way, pointIndex: -1, handle: null });
       this.#page.tell();
       return;
     }
@@ -389,7 +389,7 @@ export class WorldDrawing {
 
   #mark() {
     const world = this.#page.world();
-    this.#arena.mark(this.isOn ? { points: pointsOf(world, this.#chosen), point: this.#point, handle: handleOf(world, this.#chosen) } : null);
+    this.#arena.setMark(this.isOn ? { points: pointsOf(world, this.#chosen), pointIndex: this.#point, handle: handleOf(world, this.#chosen) } : null);
     this.#page.tell();
   }
 
