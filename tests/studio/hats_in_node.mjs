@@ -1,7 +1,7 @@
 // node hats_in_node.mjs SOURCES SEEDS: random programs with hats, some of which are moved or new. Prints a JSON row
 // for each seed: how many DEFs had to move up, and the first law that does not hold of the order in the text.
 
-const { calledEarly, inTextOrder } = await import(`${process.argv[2]}/blocks/hats.js`);
+const { findEarlyDefs, inTextOrder } = await import(`${process.argv[2]}/blocks/hats.js`);
 
 function chanceOf(seed) {
   let state = seed;
@@ -35,7 +35,7 @@ function row(seed) {
   const program = text.filter((each) => !isHat(each));
   const placed = text.filter(isHat).map((hat) => ({ ...hat, x: below(5), y: below(500),
     gap: text.slice(0, text.indexOf(hat)).filter((each) => !isHat(each)).length }));
-  const excused = calledEarly(text.map(({ block }) => block));
+  const excused = findEarlyDefs(text.map(({ block }) => block));
   const ids = (items) => items.map((each) => each.ids[0]);
   const wrong = [];
   const check = (is, what) => is || wrong.push(what);
@@ -55,7 +55,7 @@ function row(seed) {
   const callsOf = (word) => words.filter((other) => order.some(({ block }) => block.kind === 'def' && block.word === word && calls(block, other)));
   const isRound = (word, seen = [word]) => callsOf(word).some((next) => next === seen[0] || (!seen.includes(next) && isRound(next, [...seen, next])));
   if (!words.some((word) => isRound(word)) && new Set(words).size === words.length) {
-    const early = calledEarly(order.map(({ block }) => block));
+    const early = findEarlyDefs(order.map(({ block }) => block));
     for (const word of early) check(excused.has(word), `${word} is called before it`);
   }
   return { hats: hats.length, moved: moved.length, excused: excused.size, wrong: wrong[0] ?? '' };

@@ -28,7 +28,7 @@ ROUND = """async ({name, forms}) => {
   const place = document.createElement('div');
   place.hidden = true;  // nothing is measured
   document.body.append(place);
-  const blocks = new Blocks(place, 'tinibot', 'all', {changed() {}});
+  const blocks = new Blocks(place, 'tinibot', 'all', {onChange() {}});
   const found = forms.map((form) => { blocks.show(form); return blocks.read().form; });
   place.remove();
   return found;

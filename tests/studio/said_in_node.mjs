@@ -15,6 +15,6 @@ for (const line of readFileSync(0, 'utf-8').split('\n').filter(Boolean)) {
     if (!part.startsWith('`')) return [false, part];
     const code = part.slice(1, -1), block = spoken[code];
     const label = block ? labelOfBlock(block) : labelOfWord(code);
-    return [label !== null, label?.said ?? code];
+    return [label !== null, label?.text ?? code];
   })));
 }

@@ -226,8 +226,8 @@ const PARTS = {
     let story = null;
     class Blocks {
       constructor() { if (story.breaks()) throw new Broken(); }
-      showWords() {}
-      async pictureOf(form) {
+      updateLanguage() {}
+      async pictureOfForm(form) {
         await later(20);
         if (story.breaks()) throw new Broken();
         return form.text;
@@ -257,7 +257,7 @@ const PARTS = {
       for (let k = 0; k < count; k += 1) {
         const owner = chance.below(4);
         const text = isGood || chance() < 0.9 ? `program ${k}` : '';
-        pictures.want(`${stories} ${owner}`, { text, robot: 'tinibot' }, (address) => {
+        pictures.request(`${stories} ${owner}`, { text, robot: 'tinibot' }, (address) => {
           came[owner] = [address, now() - began_ms];
           ends.push(address ? 'made' : 'none');
         });
@@ -752,8 +752,8 @@ const PARTS = {
       generate: () => ({ toCanvas() {} }), correction: {},
       Blocks: class {
         words = 'words';
-        showWords() { this.words = `words ${languages}`; }
-        async pictureOf({ text }) { await later(20); return `${text} ${this.words}`; }
+        updateLanguage() { this.words = `words ${languages}`; }
+        async pictureOfForm({ text }) { await later(20); return `${text} ${this.words}`; }
       },
     });
     let languages = 0;

@@ -3,18 +3,18 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, isLoose, formOfOne, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
-import { follow, labelCalls } from './own_words.js';
+import { clearWorkspace, drawForm, formOf, isLoose, formOfOne, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
+import { updateCalls, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
-import { Checker, defineBlocks, setNarrow, setNew, setRobot } from './shapes.js';
-import { letHear } from './fields.js';
+import { Checker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shapes.js';
+import { setTonePlayer } from './fields.js';
 import { insert } from './insert.js';
 import { pictureOf } from './picture.js';
 import { Search } from './search.js';
-import { look } from './styles.js';
-import { found, levelOf, toolbox } from './toolbox.js';
-import { Sight } from './sight.js';
-import { zoomOf } from './zoom.js';
+import { blocklyOptions } from './styles.js';
+import { findItems, levelOf, makeToolbox } from './toolbox.js';
+import { RunFollower } from './sight.js';
+import { makeZoomButtons } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Form, Range } from './form.js' */
@@ -22,89 +22,89 @@ import { text, textsOf } from '../page/texts.js';
 /** @typedef {import('../python.js').Finding} Finding */
 /** @typedef {import('../page/page_state.js').TaughtBlocks} Taught */
 /**
- * @typedef {object} Told who is told of what is done to blocks
- * @property {() => void} changed
- * @property {(place: {line: number, column: number}) => void} toggle
+ * @typedef {object} BlocksListener who is told of what is done to blocks
+ * @property {() => void} onChange
+ * @property {(place: {line: number, column: number}) => void} toggleBreakpoint
  * @property {(form: Form, isAsked: boolean) => Promise<void>} tryAlone a part of the program, until it has run; whoever only touched it wants nothing else to end for it
- * @property {(hertz: number) => void} hear
+ * @property {(hertz: number) => void} playTone
  */
 
-const NARROW = 700; // pixels of width, below which questions are folded
-const SCALE = 0.75; // at which letters are 12 pixels high, and what is pressed is 24
-const LONGEST_TIP = 30; // about so many characters are in a line of a message at a block
-const SNAPS = 48; // units of a workspace: how far off a block may be dropped
-const STAYS = 68; // the same while it is shown where it would go
-const NOTCH = 8; // of a block, in the one below it
-const BESIDE = 24; // units between a block and its message
-const BELOW = 12; // the same, where it stands below
-const LOW = 240; // pixels of height: in less, a message is seen when somebody asks
-const MOST_STOOD = 200; // stacks whose places are known
+const NARROW_PX = 700; // pixels of width, below which questions are folded
+const START_SCALE = 0.75; // at which letters are 12 pixels high, and what is pressed is 24
+const MOST_TIP_CHARACTERS = 30; // about so many characters are in a line of a message at a block
+const SNAP_RADIUS = 48; // units of a workspace: how far off a block may be dropped
+const STAY_RADIUS = 68; // the same while it is shown where it would go
+const NOTCH_HEIGHT = 8; // of a block, in the one below it
+const BUBBLE_GAP_BESIDE = 24; // units between a block and its message
+const BUBBLE_GAP_BELOW = 12; // the same, where it stands below
+const LEAST_HEIGHT_PX = 240; // pixels of height: in less, a message is seen when somebody asks
+const MOST_KNOWN_STACKS = 200; // stacks whose places are known
 
 export class Blocks {
-  #place;
-  #told;
-  #looks = look();
+  #container;
+  #listener;
+  #options = blocklyOptions();
   /** @type {Blockly.WorkspaceSvg} */
   #workspace;
   /** @type {Level} */
   #level = 'few';
-  /** @type {import('./toolbox.js').Used} */
-  #used = { names: [], words: [] };
+  /** @type {import('./toolbox.js').UsedNames} */
+  #usedNames = { names: [], words: [] };
   /** @type {string[]} */
-  #taught = [];
+  #taughtBlocks = [];
   /** Blocks that are the newest of the open lesson. @type {string[]} */
-  #new = [];
+  #newBlocks = [];
   /** Blocks that somebody has used. @type {Set<string>} */
-  #tried = new Set();
+  #triedBlocks = new Set();
   /** Those of the program that the page has brought. @type {string[]} */
-  #given = [];
+  #givenBlocks = [];
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
-  /** @type {import('./form.js').Stood} */
-  #stood = new Map();
-  /** Where the next blocks stand, whatever is known of those before. @type {import('./form.js').Stood | null} */
-  #next = null;
+  /** @type {import('./form.js').StackPlaces} */
+  #stackPlaces = new Map();
+  /** Where the next blocks stand, whatever is known of those before. @type {import('./form.js').StackPlaces | null} */
+  #nextPlaces = null;
   /** @type {Blockly.icons.WarningIcon | null} */
-  #opening = null;
-  #closed = ''; // the message that somebody has put away
+  #openingBadge = null;
+  #closedMessage = ''; // the message that somebody has put away
   /** The ids of the blocks with each look. @type {Record<string, Set<string>>} */
-  #marked = {};
-  #fault = { id: '', said: '' };
+  #markedIds = {};
+  #faultAt = { id: '', said: '' };
   /** @type {Search | null} */
   #search = null;
   /** @type {HTMLElement | null} */
-  #zoom = null;
+  #zoomButtons = null;
   /** @type {Finding[]} */
   #findings = [];
   /** @type {SVGElement[]} */
-  #mates = [];
-  /** Has what runs be seen. @type {Sight | null} */
+  #mateMarks = [];
+  /** Has what runs be seen. @type {RunFollower | null} */
   #sight = null;
 
   /**
-   * @param {HTMLElement} place
-   * @param {string} robot
+   * @param {HTMLElement} container
+   * @param {string} robotName
    * @param {Level} level
-   * @param {Told | null} told null of blocks that are only drawn
+   * @param {BlocksListener | null} listener null of blocks that are only drawn
    */
-  constructor(place, robot, level, told = null) {
-    this.#place = place;
-    this.#told = told;
+  constructor(container, robotName, level, listener = null) {
+    this.#container = container;
+    this.#listener = listener;
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
-    Object.assign(Blockly.config, { snapRadius: SNAPS, connectingSnapRadius: STAYS });
-    this.#leaveOut();
-    if (told) {
-      letHear(told.hear);
-      this.#offerBreakpoints(told);
-      this.#offerTrying(told);
+    Object.assign(Blockly.config, { snapRadius: SNAP_RADIUS, connectingSnapRadius: STAY_RADIUS });
+    this.#removeBlocklyActions();
+    if (listener) {
+      setTonePlayer(listener.playTone);
+      this.#offerBreakpoints(listener);
+      this.#offerTrying(listener);
     }
-    setRobot(robot);
-    setActuators(robot);
-    this.#workspace = this.#begin();
-    for (const kind of ['pointerdown', 'wheel', 'keydown']) {
-      place.addEventListener(kind, () => {
+    setRobot(robotName);
+    setActuators(robotName);
+    this.#workspace = this.#makeWorkspace();
+    for (const eventName of ['pointerdown', 'wheel', 'keydown']) {
+      container.addEventListener(eventName, () => {
         this.#isTouched = true;
         this.#sight?.leave();
       }, { capture: true, passive: true });
@@ -112,7 +112,7 @@ export class Blocks {
   }
 
   /** Undo and redo are those of the text, which is what changes: the page has their keys. */
-  #leaveOut() {
+  #removeBlocklyActions() {
     for (const name of ['undoWorkspace', 'redoWorkspace', 'blockDisable', 'blockInline', 'blockCollapseExpand', 'collapseWorkspace', 'expandWorkspace', 'blockHelp']) {
       if (Blockly.ContextMenuRegistry.registry.getItem(name)) Blockly.ContextMenuRegistry.registry.unregister(name);
     }
@@ -121,11 +121,11 @@ export class Blocks {
   }
 
   /** In the menu of a block, and by F9. */
-  #offerBreakpoints(/** @type {Told} */ told) {
+  #offerBreakpoints(/** @type {BlocksListener} */ listener) {
     const toggle = (/** @type {any} */ block) => {
-      const place = block && this.#places.find(([id]) => id === block.id)?.[1];
-      if (place?.[0]) told.toggle({ line: place[0], column: place[1] });
-      return Boolean(place?.[0]);
+      const range = block && this.#places.find(([id]) => id === block.id)?.[1];
+      if (range?.[0]) listener.toggleBreakpoint({ line: range[0], column: range[1] });
+      return Boolean(range?.[0]);
     };
     if (Blockly.ContextMenuRegistry.registry.getItem('breakpoint')) return; // a page has its blocks once
     Blockly.ContextMenuRegistry.registry.register({
@@ -139,14 +139,14 @@ export class Blocks {
     Blockly.ShortcutRegistry.registry.register({
       name: 'breakpoint',
       keyCodes: [Blockly.utils.KeyCodes.F9],
-      callback: () => toggle(this.#focused()),
+      callback: () => toggle(this.#focusedBlock()),
     });
   }
 
-  /** In the menu of a block, by Shift and Enter, and by a click. @param {Told} told */
-  #offerTrying(told) {
-    const act = (/** @type {any} */ block) => {
-      if (block) this.#try(told, block, true);
+  /** In the menu of a block, by Shift and Enter, and by a click. @param {BlocksListener} listener */
+  #offerTrying(listener) {
+    const tryBlock = (/** @type {any} */ block) => {
+      if (block) this.#tryAlone(listener, block, true);
       return Boolean(block);
     };
     if (Blockly.ContextMenuRegistry.registry.getItem('try')) return;
@@ -156,94 +156,94 @@ export class Blocks {
       scopeType: Blockly.ContextMenuRegistry.ScopeType.BLOCK,
       displayText: () => text('try_block'),
       preconditionFn: ({ block }) => (block && !block.isInFlyout ? 'enabled' : 'hidden'),
-      callback: ({ block }) => act(block),
+      callback: ({ block }) => tryBlock(block),
     });
     const { SHIFT, ENTER } = Blockly.utils.KeyCodes;
     Blockly.ShortcutRegistry.registry.register({
       name: 'try',
       keyCodes: [Blockly.ShortcutRegistry.registry.createSerializedKey(ENTER, [SHIFT])],
-      callback: () => act(this.#focused()),
+      callback: () => tryBlock(this.#focusedBlock()),
     });
   }
 
-  /** @param {Told} told @param {Blockly.Block} block @param {boolean} isAsked and not only touched */
-  async #try(told, block, isAsked) {
-    let whole = block;
-    while (whole.isShadow()) whole = whole.getParent() ?? whole;
-    this.#mark('alone', [whole.id]);
+  /** @param {BlocksListener} listener @param {Blockly.Block} block @param {boolean} isAsked and not only touched */
+  async #tryAlone(listener, block, isAsked) {
+    let triedBlock = block;
+    while (triedBlock.isShadow()) triedBlock = triedBlock.getParent() ?? triedBlock;
+    this.#setMarked('alone', [triedBlock.id]);
     try {
-      await told.tryAlone(formOfOne(whole), isAsked);
+      await listener.tryAlone(formOfOne(triedBlock), isAsked);
     } finally {
-      if (this.#marked['alone']?.has(whole.id)) this.#mark('alone', []);
+      if (this.#markedIds['alone']?.has(triedBlock.id)) this.#setMarked('alone', []);
     }
   }
 
   /** Whoever chooses a block of a list with the keyboard has it where the focus was. @param {Blockly.WorkspaceSvg} workspace */
   #insertByKeys(workspace) {
     /** @type {Blockly.BlockSvg | null} */
-    let last = null; // that had the focus of the program
-    this.#place.addEventListener('focusin', ({ target }) => {
-      const drawn = /** @type {Element} */ (target).closest('.blocklyBlock');
-      last = workspace.getBlockById(drawn?.getAttribute('data-id') ?? '') ?? last;
+    let lastFocused = null; // that had the focus of the program
+    this.#container.addEventListener('focusin', ({ target }) => {
+      const blockElement = /** @type {Element} */ (target).closest('.blocklyBlock');
+      lastFocused = workspace.getBlockById(blockElement?.getAttribute('data-id') ?? '') ?? lastFocused;
     });
-    this.#place.addEventListener('keydown', (event) => {
-      const taken = Blockly.getFocusManager().getFocusedNode();
-      const isTaken = taken instanceof Blockly.BlockSvg && taken.isInFlyout && workspace === this.#workspace && workspace === taken.workspace.targetWorkspace;
-      if (!isTaken || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
-      const isThere = last && workspace.getBlockById(last.id) === last;
-      const block = insert(/** @type {Blockly.BlockSvg} */ (taken.getRootBlock()), workspace, isThere ? last : null);
+    this.#container.addEventListener('keydown', (event) => {
+      const listBlock = Blockly.getFocusManager().getFocusedNode();
+      const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && workspace === this.#workspace && workspace === listBlock.workspace.targetWorkspace;
+      if (!isInList || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
+      const isLastThere = lastFocused && workspace.getBlockById(lastFocused.id) === lastFocused;
+      const block = insert(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), workspace, isLastThere ? lastFocused : null);
       if (!block) return; // Blockly lets it be moved to a place
       event.preventDefault();
       event.stopPropagation();
-      this.#search?.clear();
+      this.#search?.clearSearch();
       workspace.hideChaff();
       workspace.getFlyout()?.hide();
       Blockly.getFocusManager().focusNode(block);
     }, { capture: true });
   }
 
-  #begin() {
-    const { common } = Blockly, before = this.#told ? null : common.getMainWorkspace(); // keys are those of the blocks that are seen
+  #makeWorkspace() {
+    const { common } = Blockly, mainWorkspace = this.#listener ? null : common.getMainWorkspace(); // keys are those of the blocks that are seen
     Blockly.setLocale(textsOf('blockly'));
-    const isNarrow = innerWidth < NARROW;
-    setNarrow(isNarrow && this.#told !== null);
+    const isNarrow = innerWidth < NARROW_PX;
+    setNarrow(isNarrow && this.#listener !== null);
     defineBlocks();
-    const workspace = withoutSound(() => Blockly.inject(this.#place, {
-      ...this.#looks,
+    const workspace = withoutSound(() => Blockly.inject(this.#container, {
+      ...this.#options,
       plugins: { connectionChecker: 'tiniscript' },
-      ...(this.#told ? { toolbox: this.#offered() } : {}),
-      trashcan: Boolean(this.#told) && !isNarrow,
+      ...(this.#listener ? { toolbox: this.#makeToolbox() } : {}),
+      trashcan: Boolean(this.#listener) && !isNarrow,
       comments: false,
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: false, wheel: Boolean(this.#told), pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: false, wheel: Boolean(this.#listener), pinch: true, startScale: START_SCALE, minScale: 0.4, maxScale: 1.6 },
     }));
-    if (before) common.setMainWorkspace(before);
-    if (this.#told) {
-      this.#search?.place.remove();
-      this.#search = new Search(workspace, (words) => found(words, this.#used));
-      this.#place.prepend(this.#search.place);
-      this.#search.fit();
-      this.#zoom?.remove();
-      this.#zoom = zoomOf(workspace, SCALE);
-      this.#place.append(this.#zoom);
-      this.#sight = new Sight(workspace);
+    if (mainWorkspace) common.setMainWorkspace(mainWorkspace);
+    if (this.#listener) {
+      this.#search?.element.remove();
+      this.#search = new Search(workspace, (words) => findItems(words, this.#usedNames));
+      this.#container.prepend(this.#search.element);
+      this.#search.fitWidth();
+      this.#zoomButtons?.remove();
+      this.#zoomButtons = makeZoomButtons(workspace, START_SCALE);
+      this.#container.append(this.#zoomButtons);
+      this.#sight = new RunFollower(workspace);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
-    hideMeasure();
-    hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
+    hideTextMeasure();
+    hideConnectionsFromReaders(workspace.getFlyout()?.getWorkspace().getCanvas());
     workspace.addChangeListener((event) => {
-      if (this.#told && event instanceof Blockly.Events.Click && event.targetType === 'block') {
+      if (this.#listener && event instanceof Blockly.Events.Click && event.targetType === 'block') {
         const block = workspace.getBlockById(event.blockId ?? '');
-        if (block) this.#try(this.#told, block, false);
+        if (block) this.#tryAlone(this.#listener, block, false);
       }
-      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSeen(workspace);
-      if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
+      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSmallStacksSeen(workspace);
+      if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closedMessage = this.#messageAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
-      follow(workspace, event);
-      this.#told?.changed();
+      updateCalls(workspace, event);
+      this.#listener?.onChange();
     });
     return workspace;
   }
@@ -260,22 +260,22 @@ export class Blocks {
 
   /** The line of the text whose block has the focus, or 0. */
   get chosenLine() {
-    const id = this.hasFocus || this.isOpen || this.isBusy ? this.#focused()?.id : '';
-    return this.#places.find(([each]) => each === id)?.[1][0] ?? 0;
+    const id = this.hasFocus || this.isOpen || this.isBusy ? this.#focusedBlock()?.id : '';
+    return this.#places.find(([blockId]) => blockId === id)?.[1][0] ?? 0;
   }
 
   /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').MatePlace[]} places */
   showMates(places) {
     const { createSvgElement } = Blockly.utils.dom;
-    for (const each of this.#mates) each.remove();
-    this.#mates = places.flatMap(({ line, color, said }) => {
-      const block = this.#workspace.getBlockById(this.#places.find(([, [first]]) => first === line)?.[0] ?? '');
+    for (const mark of this.#mateMarks) mark.remove();
+    this.#mateMarks = places.flatMap(({ line, color, said }) => {
+      const block = this.#workspace.getBlockById(this.#places.find(([, [firstLine]]) => firstLine === line)?.[0] ?? '');
       if (!block) return [];
       const { width, height } = block.getHeightWidth();
-      const own = block.getBoundingRectangleWithoutChildren();
+      const bounds = block.getBoundingRectangleWithoutChildren();
       const mark = createSvgElement('g', { class: 'mate_mark' }, block.getSvgRoot());
       mark.style.setProperty('--mate', color);
-      createSvgElement('rect', { x: -5, y: 0, width: 5, height: own.getHeight() || height }, mark);
+      createSvgElement('rect', { x: -5, y: 0, width: 5, height: bounds.getHeight() || height }, mark);
       createSvgElement('text', { x: width + 8, y: 18 }, mark).textContent = said;
       return [mark];
     });
@@ -287,68 +287,68 @@ export class Blocks {
   }
 
   get hasFocus() {
-    return this.#place.contains(document.activeElement);
+    return this.#container.contains(document.activeElement);
   }
 
   /** The words on blocks are others: of another language, or of the text, too. */
-  showWords() {
+  updateLanguage() {
     const { form } = formOf(this.#workspace);
     const places = this.#places.map(([, place]) => place);
     const { scrollX, scrollY, scale } = this.#workspace;
-    const known = knownPlaces(this.#workspace, this.#stood);
+    const knownStacks = knownPlaces(this.#workspace, this.#stackPlaces);
     this.#workspace.dispose();
-    this.#workspace = this.#begin();
+    this.#workspace = this.#makeWorkspace();
     this.#workspace.setScale(scale);
-    this.show(form, known);
+    this.show(form, knownStacks);
     if (this.#isTouched) this.#workspace.scroll(scrollX, scrollY);
-    this.placed(this.#places.map(([id]) => id), places);
+    this.setRanges(this.#places.map(([id]) => id), places);
   }
 
-  /** @param {string} robot */
-  setRobot(robot) {
-    setRobot(robot);
-    setActuators(robot);
-    this.#offer();
+  /** @param {string} robotName */
+  setRobot(robotName) {
+    setRobot(robotName);
+    setActuators(robotName);
+    this.#updateToolbox();
   }
 
   /** @param {Level} level */
   setLevel(level) {
     this.#level = level;
-    this.#offer();
+    this.#updateToolbox();
   }
 
   /** No lesson takes away what another one has offered. @param {Taught} taught what the open lesson speaks of */
   setTaught({ offered, fresh }) {
-    this.#taught = [...new Set([...this.#taught, ...offered])];
-    this.#new = fresh;
-    this.#offer();
+    this.#taughtBlocks = [...new Set([...this.#taughtBlocks, ...offered])];
+    this.#newBlocks = fresh;
+    this.#updateToolbox();
   }
 
   /** @param {string[]} kinds @returns {Level} the lowest one that offers them all */
   levelOf(kinds) {
-    return levelOf(kinds, this.#used);
+    return levelOf(kinds, this.#usedNames);
   }
 
-  #offered() {
-    const fresh = this.#new.filter((item) => !this.#tried.has(item));
-    setNew(fresh);
-    this.#place.style.setProperty('--new', JSON.stringify(text('block_new')));
-    return toolbox(this.#level, this.#used, this.#taught, fresh);
+  #makeToolbox() {
+    const untriedBlocks = this.#newBlocks.filter((piece) => !this.#triedBlocks.has(piece));
+    setNewPieces(untriedBlocks);
+    this.#container.style.setProperty('--new', JSON.stringify(text('block_new')));
+    return makeToolbox(this.#level, this.#usedNames, this.#taughtBlocks, untriedBlocks);
   }
 
-  #offer() {
-    if (!this.#told) return;
-    this.#workspace.updateToolbox(this.#offered());
-    this.#search?.fit();
+  #updateToolbox() {
+    if (!this.#listener) return;
+    this.#workspace.updateToolbox(this.#makeToolbox());
+    this.#search?.fitWidth();
   }
 
-  /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robot @param {number} most pixels */
-  async pictureOf(form, robot, most) {
-    setRobot(robot);
-    setActuators(robot);
+  /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robotName @param {number} mostPixels pixels */
+  async pictureOfForm(form, robotName, mostPixels) {
+    setRobot(robotName);
+    setActuators(robotName);
     await drawForm(this.#workspace, form);
-    const picture = await pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox(), most);
-    clear(this.#workspace);
+    const picture = await pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox(), mostPixels);
+    clearWorkspace(this.#workspace);
     return picture;
   }
 
@@ -358,65 +358,65 @@ export class Blocks {
   }
 
   resize() {
-    if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
+    if (!this.#container.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
-    this.#search?.fit();
+    this.#search?.fitWidth();
     if (!this.isBusy) makeRoom(this.#workspace, true);
-    this.#seeBeginning();
-    this.#sight?.keep();
-    for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
+    this.#scrollToBeginning();
+    this.#sight?.keepInView();
+    for (const [id] of this.#places) if (!this.#placeBubble(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
 
   /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
-  #seeBeginning() {
+  #scrollToBeginning() {
     if (!this.#isTouched) this.#workspace.scroll(0, 0);
   }
 
   /** What is shown next has been brought by the page, so nobody has used its blocks. @param {Form | null} form null where somebody made it */
   setGiven(form) {
-    this.#given = form ? piecesIn(blocksOf(form)) : [];
+    this.#givenBlocks = form ? piecesIn(blocksOf(form)) : [];
   }
 
   /** The next blocks are of another program, which is seen from its beginning. */
   begin() {
     this.#isTouched = false;
-    this.#stood.clear();
-    this.#next = null;
+    this.#stackPlaces.clear();
+    this.#nextPlaces = null;
   }
 
   /**
    * Replaces the blocks: what stays the same stays in its place, and the focus, too.
    * @param {Form} form
-   * @param {import('./form.js').Stood} known
+   * @param {import('./form.js').StackPlaces} knownStacks
    */
-  show(form, known = this.#next ?? knownPlaces(this.#workspace, this.#stood)) {
-    this.#next = null;
+  show(form, knownStacks = this.#nextPlaces ?? knownPlaces(this.#workspace, this.#stackPlaces)) {
+    this.#nextPlaces = null;
     const workspace = this.#workspace;
     const { scrollX, scrollY } = workspace;
-    const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
-    if (focus !== null) Blockly.getFocusManager().focusNode(workspace); // else a block that goes gives it to a neighbour, later
+    const focusIndex = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focusedBlock()?.id) : null;
+    if (focusIndex !== null) Blockly.getFocusManager().focusNode(workspace); // else a block that goes gives it to a neighbour, later
     Blockly.hideChaff();
-    this.#marked = {};
-    this.#fault = { id: '', said: '' };
-    const ids = showForm(this.#workspace, form, known);
+    this.#markedIds = {};
+    this.#faultAt = { id: '', said: '' };
+    const ids = showForm(this.#workspace, form, knownStacks);
     labelCalls(this.#workspace);
-    this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
-    this.#use(form);
-    this.#greyLoose();
-    const block = focus === null ? null : this.#workspace.getBlockById(ids[Math.min(focus, ids.length - 1)] ?? '');
+    this.setRanges(ids, flattened(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
+    this.#noteUse(form);
+    this.#markLoose();
+    const block = focusIndex === null ? null : this.#workspace.getBlockById(ids[Math.min(focusIndex, ids.length - 1)] ?? '');
     if (block) Blockly.getFocusManager().focusNode(block);
-    else if (focus !== null) Blockly.getFocusManager().focusTree(workspace);
-    const stay = () => {
+    else if (focusIndex !== null) Blockly.getFocusManager().focusTree(workspace);
+    const scrollBack = () => {
       if (workspace !== this.#workspace) return;
       workspace.scroll(scrollX, scrollY);
-      this.#seeBeginning();
+      this.#scrollToBeginning();
     };
-    stay();
-    if (focus !== null) Blockly.renderManagement.finishQueuedRenders().then(stay); // Blockly scrolls to what gets the focus
+    scrollBack();
+    if (focusIndex !== null) Blockly.renderManagement.finishQueuedRenders().then(scrollBack); // Blockly scrolls to what gets the focus
   }
 
   /** @returns {Blockly.Block | null} the block of the text that has the focus, or is around what has it */
-  #focused() {
+  #focusedBlock() {
     let node = Blockly.getFocusManager().getFocusedNode();
     while (node && !(node instanceof Blockly.BlockSvg)) node = /** @type {any} */ (node).getSourceBlock?.() ?? null;
     let block = /** @type {Blockly.BlockSvg | null} */ (node);
@@ -427,86 +427,86 @@ export class Blocks {
   /** @returns {{form: Form, ids: string[]}} */
   read() {
     makeRoom(this.#workspace);
-    const found = formOf(this.#workspace);
-    this.#use(found.form);
-    this.#greyLoose();
-    return found;
+    const result = formOf(this.#workspace);
+    this.#noteUse(result.form);
+    this.#markLoose();
+    return result;
   }
 
   /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').Stand} */
   get stand() {
-    /** @type {import('./form.js').Stood} */
-    const stood = new Map();
-    keepPlaces(this.#workspace, stood);
-    return JSON.stringify([...stood].sort(([a], [b]) => (a < b ? -1 : 1)));
+    /** @type {import('./form.js').StackPlaces} */
+    const stackPlaces = new Map();
+    keepPlaces(this.#workspace, stackPlaces);
+    return JSON.stringify([...stackPlaces].sort(([a], [b]) => (a < b ? -1 : 1)));
   }
 
   /** Has the next blocks stand there again. @param {import('../writing/editor.js').Stand} stand */
   set stand(stand) {
     /** @type {[string, {x: number, y: number}[]][]} */
-    const stood = JSON.parse(stand);
-    this.#next = new Map(stood.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
+    const stackPlaces = JSON.parse(stand);
+    this.#nextPlaces = new Map(stackPlaces.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
   }
 
   /** What is not joined to the program looks it, and is found where it is now. */
-  #greyLoose() {
-    this.#mark('loose', this.#workspace.getTopBlocks(false).filter(isLoose).map(({ id }) => id));
-    if (this.#stood.size > MOST_STOOD) this.#stood.clear();
-    keepPlaces(this.#workspace, this.#stood);
+  #markLoose() {
+    this.#setMarked('loose', this.#workspace.getTopBlocks(false).filter(isLoose).map(({ id }) => id));
+    if (this.#stackPlaces.size > MOST_KNOWN_STACKS) this.#stackPlaces.clear();
+    keepPlaces(this.#workspace, this.#stackPlaces);
   }
 
   /**
    * @param {string[]} ids
    * @param {Range[]} places
    */
-  placed(ids, places) {
+  setRanges(ids, places) {
     this.#places = ids.map((id, k) => [id, places[k] ?? [0, 0, 0, 0]]);
   }
 
   /** Offers the names that the program has. @param {Form} form */
-  #use(form) {
+  #noteUse(form) {
     const blocks = blocksOf(form);
-    const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
-    const counts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
-    const used = { names: of('assign'), words: [...counts].sort() };
-    const items = piecesIn(blocks);
-    const tried = [...new Set(items)].filter((item) => !this.#tried.has(item) && countOf(items, item) > countOf(this.#given, item));
-    for (const item of tried) this.#tried.add(item);
-    const isTried = tried.some((item) => this.#new.includes(item));
-    if (!isTried && JSON.stringify(used) === JSON.stringify(this.#used)) return;
-    this.#used = used;
-    if (!this.#workspace.isDragging()) this.#offer();
+    const wordsOfKind = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
+    const valueCounts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
+    const used = { names: wordsOfKind('assign'), words: [...valueCounts].sort() };
+    const pieces = piecesIn(blocks);
+    const newlyTried = [...new Set(pieces)].filter((piece) => !this.#triedBlocks.has(piece) && countOf(pieces, piece) > countOf(this.#givenBlocks, piece));
+    for (const piece of newlyTried) this.#triedBlocks.add(piece);
+    const isNewTried = newlyTried.some((piece) => this.#newBlocks.includes(piece));
+    if (!isNewTried && JSON.stringify(used) === JSON.stringify(this.#usedNames)) return;
+    this.#usedNames = used;
+    if (!this.#workspace.isDragging()) this.#updateToolbox();
   }
 
   /** Says at each block what the compiler says of it. @param {Finding[]} findings */
   showFindings(findings) {
     this.#findings = findings;
     /** @type {Map<string, string[]>} */
-    const said = new Map();
+    const messages = new Map();
     /** @type {Set<string>} */
-    const wrong = new Set();
-    if (this.#fault.id) said.set(this.#fault.id, [this.#fault.said]);
+    const wrongIds = new Set();
+    if (this.#faultAt.id) messages.set(this.#faultAt.id, [this.#faultAt.said]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
-      const whole = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
-      said.set(id, [...(said.get(id) ?? []), whole]);
-      if (finding.severity === 'mistake') wrong.add(id);
+      const message = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
+      messages.set(id, [...(messages.get(id) ?? []), message]);
+      if (finding.severity === 'mistake') wrongIds.add(id);
     }
     Blockly.Events.disable();
     try {
       for (const block of this.#workspace.getAllBlocks(false)) {
         if (block.isShadow()) continue;
         const id = block.type === 'program' ? '' : block.id;
-        block.setWarningText(said.get(id)?.map(folded).join('\n\n') ?? null);
-        if (wrong.has(id)) block.addClass('wrong');
+        block.setWarningText(messages.get(id)?.map(wrapped).join('\n\n') ?? null);
+        if (wrongIds.has(id)) block.addClass('wrong');
         else block.removeClass('wrong');
       }
     } finally {
       Blockly.Events.enable();
     }
-    const [first] = wrong;
-    if (!first) this.#closed = ''; // whoever makes the mistake again is told again
-    else if (this.#saidAt(first) !== this.#closed) this.#open(first);
+    const [firstWrongId] = wrongIds;
+    if (!firstWrongId) this.#closedMessage = ''; // whoever makes the mistake again is told again
+    else if (this.#messageAt(firstWrongId) !== this.#closedMessage) this.#openMessage(firstWrongId);
   }
 
   /** @param {string | undefined} id @returns {Blockly.icons.WarningIcon | null} */
@@ -515,82 +515,82 @@ export class Blocks {
   }
 
   /** @param {string | undefined} id @returns {string} */
-  #saidAt(id) {
+  #messageAt(id) {
     return this.#badgeOf(id)?.getText() ?? '';
   }
 
   /** Shows the message of a block, where there is room. @param {string} id */
-  async #open(id) {
+  async #openMessage(id) {
     const badge = this.#badgeOf(id);
-    if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
-    this.#opening = badge; // asked twice, Blockly would show it twice
+    if (!badge || badge === this.#openingBadge || this.#container.clientHeight < LEAST_HEIGHT_PX) return;
+    this.#openingBadge = badge; // asked twice, Blockly would show it twice
     await badge.setBubbleVisible(true);
-    this.#opening = null;
+    this.#openingBadge = null;
     if (badge !== this.#badgeOf(id)) badge.getBubble()?.dispose(); // that block is gone
-    else if (!this.#put(id)) badge.setBubbleVisible(false); // the list below has it
+    else if (!this.#placeBubble(id)) badge.setBubbleVisible(false); // the list below has it
   }
 
   /**
    * Has an open message beside its block, as near as it stands on no other one: level with it, or higher or lower; else below
    * all blocks. A line leads to the block. @param {string} id @returns {boolean} whether there is room
    */
-  #put(id) {
+  #placeBubble(id) {
     const block = this.#workspace.getBlockById(id);
     const bubble = this.#badgeOf(id)?.getBubble();
     if (!block || !bubble) return true;
-    const own = block.getBoundingRectangleWithoutChildren();
+    const blockBounds = block.getBoundingRectangleWithoutChildren();
     const view = this.#workspace.getMetricsManager().getViewMetrics(true);
-    const size = bubble.getBoundingRectangle();
-    const all = block.getRootBlock().getBoundingRectangle();
-    const beside = this.#workspace.getAllBlocks(false).map((each) => each.getBoundingRectangleWithoutChildren());
+    const bubbleBounds = bubble.getBoundingRectangle();
+    const stackBounds = block.getRootBlock().getBoundingRectangle();
+    const otherBounds = this.#workspace.getAllBlocks(false).map((other) => other.getBoundingRectangleWithoutChildren());
     const { Coordinate } = Blockly.utils;
-    const places = [own.top, own.bottom - size.getHeight(), (own.top + own.bottom - size.getHeight()) / 2]
-      .filter((top) => top >= view.top && top + size.getHeight() <= view.top + view.height)
+    const places = [blockBounds.top, blockBounds.bottom - bubbleBounds.getHeight(), (blockBounds.top + blockBounds.bottom - bubbleBounds.getHeight()) / 2]
+      .filter((top) => top >= view.top && top + bubbleBounds.getHeight() <= view.top + view.height)
       .map((top) => {
-        const inWay = beside.filter((each) => each.top < top + size.getHeight() && each.bottom - NOTCH > top && each.right > own.left);
-        return { top, edge: Math.max(own.right, ...inWay.map((each) => each.right)) };
+        const obstacles = otherBounds.filter((other) => other.top < top + bubbleBounds.getHeight() && other.bottom - NOTCH_HEIGHT > top && other.right > blockBounds.left);
+        return { top, edge: Math.max(blockBounds.right, ...obstacles.map((other) => other.right)) };
       })
-      .filter(({ edge }) => edge + BESIDE + size.getWidth() <= view.left + view.width)
+      .filter(({ edge }) => edge + BUBBLE_GAP_BESIDE + bubbleBounds.getWidth() <= view.left + view.width)
       .sort((a, b) => a.edge - b.edge);
-    const isBelow = all.bottom + BELOW + size.getHeight() <= view.top + view.height;
-    const fits = own.right + BESIDE + size.getWidth() <= view.left + view.width;
-    const [place] = places.length || isBelow || !fits ? places : [{ top: own.top, edge: own.right }];
-    /** @type {any} */ (bubble).setAnchorLocation(new Coordinate(own.right, (own.top + own.bottom) / 2)); // else its line would go across the block
-    if (place) bubble.moveDuringDrag(new Coordinate(place.edge + BESIDE, place.top));
-    else if (isBelow) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
-    return Boolean(place) || isBelow;
+    const isBelow = stackBounds.bottom + BUBBLE_GAP_BELOW + bubbleBounds.getHeight() <= view.top + view.height;
+    const fitsBeside = blockBounds.right + BUBBLE_GAP_BESIDE + bubbleBounds.getWidth() <= view.left + view.width;
+    const [firstPlace] = places.length || isBelow || !fitsBeside ? places : [{ top: blockBounds.top, edge: blockBounds.right }];
+    /** @type {any} */ (bubble).setAnchorLocation(new Coordinate(blockBounds.right, (blockBounds.top + blockBounds.bottom) / 2)); // else its line would go across the block
+    if (firstPlace) bubble.moveDuringDrag(new Coordinate(firstPlace.edge + BUBBLE_GAP_BESIDE, firstPlace.top));
+    else if (isBelow) bubble.moveDuringDrag(new Coordinate(stackBounds.left, stackBounds.bottom + BUBBLE_GAP_BELOW));
+    return Boolean(firstPlace) || isBelow;
   }
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
   showRunning(ranges) {
     const ids = ranges.map(({ line, column }) => this.#blockAt(line, column) ?? '');
-    this.#mark('running', ids);
-    this.#sight?.see(ids);
+    this.#setMarked('running', ids);
+    this.#sight?.showRunning(ids);
   }
 
-  /** Gives a look to these blocks, and to no others. @param {string} look @param {string[]} ids */
-  #mark(look, ids) {
-    const before = this.#marked[look] ?? new Set(), now = new Set(ids);
-    for (const id of before) if (!now.has(id)) this.#workspace.getBlockById(id)?.removeClass(look);
-    for (const id of now) if (!before.has(id)) this.#workspace.getBlockById(id)?.addClass(look);
-    this.#marked[look] = now;
+  /** Gives a look to these blocks, and to no others. @param {string} className @param {string[]} ids */
+  #setMarked(className, ids) {
+    const idsBefore = this.#markedIds[className] ?? new Set(), idsNow = new Set(ids);
+    for (const id of idsBefore) if (!idsNow.has(id)) this.#workspace.getBlockById(id)?.removeClass(className);
+    for (const id of idsNow) if (!idsBefore.has(id)) this.#workspace.getBlockById(id)?.addClass(className);
+    this.#markedIds[className] = idsNow;
   }
 
   /** @param {{line: number, column: number}[]} breakpoints */
   showBreakpoints(breakpoints) {
-    this.#mark('breakpoint', breakpoints.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+    this.#setMarked('breakpoint', breakpoints.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
   }
 
   /**
    * Says at a block which fault it had, or that there is none.
    * @param {{line: number, column: number} | null} range
-   * @param {string} said
+   * @param {string} message
    */
-  showFault(range, said) {
+  showFault(range, message) {
     const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
-    if (id === this.#fault.id && said === this.#fault.said) return;
-    this.#mark('fault', [id]);
-    this.#fault = { id, said };
+    if (id === this.#faultAt.id && message === this.#faultAt.said) return;
+    this.#setMarked('fault', [id]);
+    this.#faultAt = { id, said: message };
     this.showFindings(this.#findings);
   }
 
@@ -601,7 +601,7 @@ export class Blocks {
     this.#isTouched = true;
     this.#workspace.centerOnBlock(block.id);
     Blockly.getFocusManager().focusNode(block);
-    this.#open(block.id);
+    this.#openMessage(block.id);
   }
 
   /**
@@ -610,44 +610,44 @@ export class Blocks {
    * @returns {string | undefined} the innermost block there
    */
   #blockAt(line, column) {
-    const found = this.#places.findLast(([, [first, from, last, to]]) =>
-      (line > first || (line === first && column >= from)) && (line < last || (line === last && column < to)));
-    return (found ?? this.#places.findLast(([, [first]]) => first === line))?.[0];
+    const innermost = this.#places.findLast(([, [firstLine, firstColumn, lastLine, endColumn]]) =>
+      (line > firstLine || (line === firstLine && column >= firstColumn)) && (line < lastLine || (line === lastLine && column < endColumn)));
+    return (innermost ?? this.#places.findLast(([, [first]]) => first === line))?.[0];
   }
 }
 
 /** @param {import('./form.js').FormBlock[]} blocks @returns {import('./form.js').FormBlock[]} */
-function inOrder(blocks) {
-  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(inOrder)]);
+function flattened(blocks) {
+  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(flattened)]);
 }
 
 /** Blockly brings what is touched to the front: smaller piles that it would hide stay before it. @param {Blockly.WorkspaceSvg} workspace */
-function keepSeen(workspace) {
-  const front = Blockly.getFocusManager().getFocusedNode();
-  const pile = front instanceof Blockly.BlockSvg && front.workspace === workspace && !workspace.isDragging() ? front.getRootBlock() : null;
-  if (!pile) return;
-  const whole = pile.getBoundingRectangle(), size = (/** @type {Blockly.utils.Rect} */ rect) => rect.getWidth() * rect.getHeight();
+function keepSmallStacksSeen(workspace) {
+  const focusedNode = Blockly.getFocusManager().getFocusedNode();
+  const stack = focusedNode instanceof Blockly.BlockSvg && focusedNode.workspace === workspace && !workspace.isDragging() ? focusedNode.getRootBlock() : null;
+  if (!stack) return;
+  const stackRect = stack.getBoundingRectangle(), areaOf = (/** @type {Blockly.utils.Rect} */ rect) => rect.getWidth() * rect.getHeight();
   for (const other of workspace.getTopBlocks(false)) {
     const rect = other.getBoundingRectangle();
-    if (other !== pile && size(rect) < size(whole) && rect.intersects(whole)) workspace.getCanvas().append(other.getSvgRoot());
+    if (other !== stack && areaOf(rect) < areaOf(stackRect) && rect.intersects(stackRect)) workspace.getCanvas().append(other.getSvgRoot());
   }
 }
 
 /** @param {string} message */
-function folded(message) {
-  return Blockly.utils.string.wrap(message, LONGEST_TIP);
+function wrapped(message) {
+  return Blockly.utils.string.wrap(message, MOST_TIP_CHARACTERS);
 }
 
 /** In a list of blocks to take there is nothing else: where they would be joined is no part of it. @param {SVGElement | undefined} list */
-function hideConnections(list) {
+function hideConnectionsFromReaders(list) {
   if (!list) return;
   new MutationObserver(() => {
-    for (const each of list.querySelectorAll('.blocklyHighlightedConnectionPath')) each.setAttribute('aria-hidden', 'true');
+    for (const path of list.querySelectorAll('.blocklyHighlightedConnectionPath')) path.setAttribute('aria-hidden', 'true');
   }).observe(list, { childList: true, subtree: true });
 }
 
 /** Hides what Blockly measures texts with, which it makes when it first needs it. */
-function hideMeasure() {
+function hideTextMeasure() {
   new MutationObserver((_, observer) => {
     const canvas = document.querySelector('.blocklyComputeCanvas');
     if (!canvas) return;
@@ -664,22 +664,22 @@ function hideMeasure() {
  * @param {() => T} make
  */
 function withoutSound(make) {
-  const page = /** @type {{AudioContext: unknown}} */ (window);
-  const { AudioContext } = page;
-  page.AudioContext = undefined;
+  const audioWindow = /** @type {{AudioContext: unknown}} */ (window);
+  const { AudioContext } = audioWindow;
+  audioWindow.AudioContext = undefined;
   try {
     return make();
   } finally {
-    page.AudioContext = AudioContext;
+    audioWindow.AudioContext = AudioContext;
   }
 }
 
 /** @param {Form} form @returns {import('./form.js').FormBlock[]} */
 function blocksOf(form) {
-  return inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+  return flattened([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
 }
 
-/** @param {string[]} items @param {string} wanted */
-function countOf(items, wanted) {
-  return items.filter((item) => item === wanted).length;
+/** @param {string[]} pieces @param {string} wantedPiece */
+function countOf(pieces, wantedPiece) {
+  return pieces.filter((piece) => piece === wantedPiece).length;
 }

@@ -6,11 +6,11 @@
 import { ROBOTS } from '../page/words.js';
 
 /** @typedef {{text: string, robot: string}} Program */
-/** @typedef {{key: string, program: Program, done: (address: string) => void}} Wish */
+/** @typedef {{owner: string, program: Program, onDone: (address: string) => void}} PictureRequest */
 
-const REST_MS = 80; // between two pictures
-const AGAIN_MS = 1000; // between two of one pupil
-const FIRST = 150; // blocks
+const PAUSE_MS = 80; // between two pictures
+const OWNER_INTERVAL_MS = 1000; // between two of one pupil
+const MOST_BLOCKS = 150; // blocks
 const MOST_PIXELS = 1_200_000;
 const NO_PICTURE = ''; // of a program that is empty
 
@@ -18,78 +18,78 @@ export class Pictures {
   #python;
   /** @type {Promise<import('./blocks.js').Blocks> | null} */
   #blocks = null;
-  /** What is wanted, the oldest first; each owner wants its newest program alone. @type {Map<string, Wish>} */
-  #wanted = new Map();
+  /** What is wanted, the oldest first; each owner wants its newest program alone. @type {Map<string, PictureRequest>} */
+  #pendingRequests = new Map();
   /** When each owner's newest picture was begun. @type {Map<string, number>} */
-  #begun = new Map();
+  #begunTimes_ms = new Map();
   #isBusy = false;
-  #areWordsOld = false;
-  #place = document.createElement('div');
+  #isLanguageOld = false;
+  #container = document.createElement('div');
 
   /** @param {import('../python.js').Python} python @param {string} id of where they are made; its width is that of their room */
   constructor(python, id) {
     this.#python = python;
-    Object.assign(this.#place, { id, className: 'drawn_blocks', inert: true });
-    document.body.append(this.#place);
+    Object.assign(this.#container, { id, className: 'drawn_blocks', inert: true });
+    document.body.append(this.#container);
   }
 
   /**
    * Calls `done` with the address of a picture, or with nothing where there is none.
-   * @param {string} owner @param {Program} program @param {(address: string) => void} done
+   * @param {string} owner @param {Program} program @param {(address: string) => void} onDone
    */
-  want(owner, program, done) {
-    this.#wanted.set(owner, { key: owner, program, done });
-    this.#work();
+  request(owner, program, onDone) {
+    this.#pendingRequests.set(owner, { owner: owner, program, onDone });
+    this.#drawAll();
   }
 
   /** @param {string} owner */
   forget(owner) {
-    this.#wanted.delete(owner);
-    this.#begun.delete(owner);
+    this.#pendingRequests.delete(owner);
+    this.#begunTimes_ms.delete(owner);
   }
 
-  async #work() {
+  async #drawAll() {
     if (this.#isBusy) return;
     this.#isBusy = true;
-    while (this.#wanted.size) {
-      const next = this.#next();
-      if (next) {
-        next.done(await this.#picture(next.program).catch(() => NO_PICTURE));
+    while (this.#pendingRequests.size) {
+      const request = this.#takeNext();
+      if (request) {
+        request.onDone(await this.#drawPicture(request.program).catch(() => NO_PICTURE));
       }
-      await new Promise((resolve) => setTimeout(resolve, REST_MS));
+      await new Promise((resolve) => setTimeout(resolve, PAUSE_MS));
     }
     this.#isBusy = false;
   }
 
   /** The oldest wish of whom no picture was begun just now. */
-  #next() {
-    const now = performance.now();
-    const next = [...this.#wanted.values()].find(({ key }) => now - (this.#begun.get(key) ?? -AGAIN_MS) >= AGAIN_MS);
-    if (next) {
-      this.#wanted.delete(next.key);
-      this.#begun.set(next.key, now);
+  #takeNext() {
+    const now_ms = performance.now();
+    const request = [...this.#pendingRequests.values()].find(({ owner: key }) => now_ms - (this.#begunTimes_ms.get(key) ?? -OWNER_INTERVAL_MS) >= OWNER_INTERVAL_MS);
+    if (request) {
+      this.#pendingRequests.delete(request.owner);
+      this.#begunTimes_ms.set(request.owner, now_ms);
     }
-    return next;
+    return request;
   }
 
   /** @param {Program} program */
-  async #picture({ text, robot }) {
+  async #drawPicture({ text, robot }) {
     if (!text.trim()) return NO_PICTURE;
     await this.#python.ready;
-    const form = await this.#python.ask({ do: 'blocks', robot, first: FIRST }, new TextEncoder().encode(text));
-    this.#blocks ??= import('./blocks.js').then(({ Blocks }) => new Blocks(this.#place, ROBOTS[0]?.name ?? '', 'few'));
-    const blocks = await this.#blocks.catch((why) => {
+    const form = await this.#python.ask({ do: 'blocks', robot, first: MOST_BLOCKS }, new TextEncoder().encode(text));
+    this.#blocks ??= import('./blocks.js').then(({ Blocks }) => new Blocks(this.#container, ROBOTS[0]?.name ?? '', 'few'));
+    const blocks = await this.#blocks.catch((error) => {
       this.#blocks = null; // the next picture tries again
-      throw why;
+      throw error;
     });
-    if (this.#areWordsOld) blocks.showWords();
-    this.#areWordsOld = false;
-    const file = await blocks.pictureOf(form, robot, MOST_PIXELS);
+    if (this.#isLanguageOld) blocks.updateLanguage();
+    this.#isLanguageOld = false;
+    const file = await blocks.pictureOfForm(form, robot, MOST_PIXELS);
     return file ? URL.createObjectURL(file) : NO_PICTURE;
   }
 
   /** The next pictures' words are those of another language; one that is being made stays as it is. */
   updateLanguage() {
-    this.#areWordsOld = true;
+    this.#isLanguageOld = true;
   }
 }

@@ -3,29 +3,29 @@
 import * as Blockly from 'blockly/core';
 import { Piano } from './piano.js';
 import { rangeAt } from './places.js';
-import { noteAt, stepFrom } from './tones.js';
+import { hertzOfKey, nextKeyFrom } from './tones.js';
 import { blockLabel } from '../page/words.js';
 
-export const WAY = 'way'; // not for so long, but so far
+export const WAY_UNIT = 'way'; // not for so long, but so far
 
 /** @type {(hertz: number) => void} */
-let hear = () => {};
+let playTone = () => {};
 
-/** @param {(hertz: number) => void} act sounds a tone, for who chooses one */
-export function letHear(act) {
-  hear = act;
+/** @param {(hertz: number) => void} player sounds a tone, for who chooses one */
+export function setTonePlayer(player) {
+  playTone = player;
 }
 
 /**
  * Blockly does not tell that Escape has taken back what was typed.
  * @param {any} field
- * @param {() => void} act what a key does in it
+ * @param {() => void} onKey what a key does in it
  */
-function tellTakenBack(field, act) {
-  const typed = field.getValue();
-  act();
+function reportTakenBack(field, onKey) {
+  const valueBefore = field.getValue();
+  onKey();
   const value = field.getValue();
-  if (value !== typed) Blockly.Events.fire(new Blockly.Events.BlockChange(field.getSourceBlock(), 'field', field.name ?? null, typed, value));
+  if (value !== valueBefore) Blockly.Events.fire(new Blockly.Events.BlockChange(field.getSourceBlock(), 'field', field.name ?? null, valueBefore, value));
 }
 
 /** A number with at most three decimals; what a person types is made to fit, what a text says stays. */
@@ -38,16 +38,16 @@ export class NumberField extends Blockly.FieldNumber {
 
   /** @param {any} value */
   doClassValidation_(value) {
-    const found = super.doClassValidation_(value);
-    if (found === null || !this.isBeingEdited_) return found;
+    const valid = super.doClassValidation_(value);
+    if (valid === null || !this.isBeingEdited_) return valid;
     const { low, high } = rangeAt(this.getSourceBlock());
-    return Math.min(high, Math.max(low, found));
+    return Math.min(high, Math.max(low, valid));
   }
 
   /** Whether it is how high a tone is. */
   get isPitch() {
-    const block = this.getSourceBlock(), beep = block?.getParent();
-    return beep?.type === 'beep' && beep.getInput('V1')?.connection?.targetBlock() === block;
+    const block = this.getSourceBlock(), parent = block?.getParent();
+    return parent?.type === 'beep' && parent.getInput('V1')?.connection?.targetBlock() === block;
   }
 
   /**
@@ -61,37 +61,37 @@ export class NumberField extends Blockly.FieldNumber {
       return;
     }
     super.showEditor_(event, isQuiet || matchMedia('(pointer: coarse)').matches);
-    const piano = new Piano((hertz) => this.choose(hertz));
+    const piano = new Piano((hertz) => this.choosePitch(hertz));
     piano.show(Number(this.getValue()));
     const { DropDownDiv } = Blockly;
     DropDownDiv.clearContent();
-    DropDownDiv.getContentDiv().append(piano.place);
+    DropDownDiv.getContentDiv().append(piano.element);
     DropDownDiv.setColour('#fff', '#c8d2dc');
     DropDownDiv.showPositionedByField(this, () => { this.piano = null; }, undefined, false);
     this.piano = piano;
   }
 
   /** @param {number} hertz */
-  choose(hertz) {
+  choosePitch(hertz) {
     /** @type {any} */ (this).setEditorValue_(hertz);
     this.piano?.show(hertz);
-    hear(hertz);
+    playTone(hertz);
   }
 
   /** Up and down go to the next tone of a piano. @param {KeyboardEvent} event */
   onHtmlInputKeyDown_(event) {
-    const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
-    if (!this.isPitch || !way) {
-      tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+    const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (!this.isPitch || !direction) {
+      reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
       return;
     }
     event.preventDefault();
     event.stopPropagation();
-    this.choose(noteAt(stepFrom(Number(this.getValue()), way)));
+    this.choosePitch(hertzOfKey(nextKeyFrom(Number(this.getValue()), direction)));
   }
 
   /** Without an exponent, which the language does not know. @returns {string} */
-  written() {
+  textValue() {
     return Number(this.getValue()).toFixed(3).replace(/\.?0+$/, '');
   }
 }
@@ -102,23 +102,23 @@ const ARROWS = {
   L: 'M7 1v4h3.500a5.500 5.500 0 0 1 5.500 5.500V17h-4.500v-6.500a1 1 0 0 0-1-1H7v4L.5 7.250z',
   R: 'M11 1v4H7.500A5.500 5.500 0 0 0 2 10.500V17h4.500v-6.500a1 1 0 0 1 1-1H11v4l6.500-6.250z',
 };
-const ARROW = 18;
+const ARROW_PX = 18;
 
 /** An arrow before the words of a move. */
 export class ArrowField extends Blockly.FieldLabel {
   constructor() {
     super('');
-    this.size_ = new Blockly.utils.Size(ARROW, ARROW);
+    this.size_ = new Blockly.utils.Size(ARROW_PX, ARROW_PX);
   }
 
   initView() {
     const { dom, Svg } = Blockly.utils;
-    this.path = dom.createSvgElement(Svg.PATH, { class: 'arrow', fill: '#fff', 'aria-hidden': 'true' }, this.fieldGroup_);
+    this.arrowPath = dom.createSvgElement(Svg.PATH, { class: 'arrow', fill: '#fff', 'aria-hidden': 'true' }, this.fieldGroup_);
   }
 
   render_() {
-    this.path?.setAttribute('d', ARROWS[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '');
-    this.size_ = new Blockly.utils.Size(ARROW, ARROW);
+    this.arrowPath?.setAttribute('d', ARROWS[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '');
+    this.size_ = new Blockly.utils.Size(ARROW_PX, ARROW_PX);
   }
 }
 
@@ -127,13 +127,13 @@ export class NameField extends Blockly.FieldTextInput {
   /** @param {any} value */
   doClassValidation_(value) {
     const text = String(value ?? '').normalize('NFC').replace(/ñ/gi, 'NI').normalize('NFD').replace(/[\u0300-\u036f]/g, '');
-    const plain = text.toUpperCase().trim().replace(/\W+/g, '_').replace(/^[^A-Z]+/, '');
-    return plain || null;
+    const name = text.toUpperCase().trim().replace(/\W+/g, '_').replace(/^[^A-Z]+/, '');
+    return name || null;
   }
 
   /** @param {KeyboardEvent} event */
   onHtmlInputKeyDown_(event) {
-    tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+    reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
   }
 }
 
@@ -143,7 +143,7 @@ export class UnitField extends Blockly.FieldDropdown {
   constructor(units) {
     /** @this {any} */
     super(function () {
-      return [[blockLabel('seconds'), 'seconds'], [blockLabel(/** @type {any} */ (this).unit?.() ?? ''), WAY]];
+      return [[blockLabel('seconds'), 'seconds'], [blockLabel(/** @type {any} */ (this).unit?.() ?? ''), WAY_UNIT]];
     });
     this.units = units;
   }
@@ -153,12 +153,12 @@ export class UnitField extends Blockly.FieldDropdown {
   }
 
   /** @returns {string} the unit as the text has it: none for seconds */
-  written() {
-    return this.getValue() === WAY ? this.unit() : '';
+  textValue() {
+    return this.getValue() === WAY_UNIT ? this.unit() : '';
   }
 
   getText_() {
-    return blockLabel(this.written() || 'seconds');
+    return blockLabel(this.textValue() || 'seconds');
   }
 }
 
@@ -171,6 +171,6 @@ export class LineField extends Blockly.FieldTextInput {
 
   /** @param {KeyboardEvent} event */
   onHtmlInputKeyDown_(event) {
-    tellTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+    reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
   }
 }

@@ -3,11 +3,11 @@
 // Goes along the blocks with lists of its own: a long program must not exhaust the stack.
 
 import * as Blockly from 'blockly/core';
-import { WAY } from './fields.js';
-import { calledEarly, inTextOrder } from './hats.js';
-import { wordOf, wordOn } from './places.js';
+import { WAY_UNIT } from './fields.js';
+import { findEarlyDefs, inTextOrder } from './hats.js';
+import { impliedWordOf, wordOnBlock } from './places.js';
 import { Checker } from './shapes.js';
-import { atOnce, slowly } from './slices.js';
+import { runAtOnce, runInSlices } from './slices.js';
 import { KINDS, pieceOf } from '../page/words.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
@@ -28,20 +28,20 @@ import { KINDS, pieceOf } from '../page/words.js';
 /** @typedef {{start: string, note: string, is_one_line: boolean, body: FormBlock[], loose: {body: FormBlock[], value: Value}[]}} Form */
 
 /** The kind of block of each part of an expression. */
-const KIND_OF = new Map(Object.entries(KINDS).flatMap(([kind, { part, words }]) => [part, ...words].map((each) => [each, kind])));
-const CORNER = 32; // where the program begins
-const DISTANCE = 64; // between stacks: Blockly pushes what is nearer than it would join
+const KIND_OF_PART = new Map(Object.entries(KINDS).flatMap(([kind, { part, words }]) => [part, ...words].map((word) => [word, kind])));
+const CORNER_UNITS = 32; // where the program begins
+const STACK_GAP = 64; // between stacks: Blockly pushes what is nearer than it would join
 
 /**
  * What is known of blocks since they were made of a text.
- * @typedef {object} Shown
+ * @typedef {object} ShownBlocks
  * @property {string[]} program ids of its blocks
- * @property {Map<string, {before: number, x: number, y: number, isOwn: boolean}>} hats by their ids in the order of
+ * @property {Map<string, {blocksBefore: number, x: number, y: number, isMoved: boolean}>} hats by their ids in the order of
  *   the text: so many blocks of the program stand before it, where it was put, and whether somebody had moved it
- * @property {Set<string>} excused
+ * @property {Set<string>} earlyDefs
  */
-/** @type {WeakMap<Blockly.Workspace, Shown>} */
-const SHOWN = new WeakMap();
+/** @type {WeakMap<Blockly.Workspace, ShownBlocks>} */
+const SHOWN_BLOCKS = new WeakMap();
 
 // -- blocks to their form --------------------------------------------------------------------------
 
@@ -50,18 +50,18 @@ const SHOWN = new WeakMap();
  * @returns {{form: Form, ids: string[]}} `ids` of the blocks of the body, in the order of the text
  */
 export function formOf(workspace) {
-  const tops = topsOf(workspace);
-  const program = tops.find((block) => block.type === 'program');
+  const topBlocks = topBlocksOf(workspace);
+  const program = topBlocks.find((block) => block.type === 'program');
   const items = itemsOf(workspace);
-  const kept = dataOf(program);
+  const data = dataOf(program);
   const word = String(program?.getFieldValue('WORD') ?? 'SI');
   return {
     form: {
-      start: kept.isUnsaid && word === 'SI' ? '' : word,
+      start: data.isUnsaid && word === 'SI' ? '' : word,
       note: program?.getCommentText() ?? '',
-      is_one_line: Boolean(kept.isOneLine),
+      is_one_line: Boolean(data.isOneLine),
       body: items.map(({ block }) => block),
-      loose: tops.filter(isLoose).map(stackOf),
+      loose: topBlocks.filter(isLoose).map(stackOf),
     },
     ids: items.flatMap(({ ids }) => ids),
   };
@@ -73,16 +73,16 @@ export function formOf(workspace) {
  * @returns {Form}
  */
 export function formOfOne(block) {
-  const tops = topsOf(/** @type {Blockly.WorkspaceSvg} */ (block.workspace));
-  const words = tops.filter((top) => top.type === 'def' && top !== block).map((top) => blockOf(top, []));
-  const shown = { kind: 'show', word: 'SHOW', values: [valueOf(block)], bodies: [], note: '', is_apart: false };
-  const begins = block.type === 'program' || isHat(block);
-  const own = block.outputConnection ? [shown] : begins ? bodyOf(block.getNextBlock(), []) : [blockOf(block, [])];
-  return { start: 'SI', note: '', is_one_line: false, body: [...words, ...own], loose: [] };
+  const topBlocks = topBlocksOf(/** @type {Blockly.WorkspaceSvg} */ (block.workspace));
+  const definitions = topBlocks.filter((top) => top.type === 'def' && top !== block).map((top) => blockOf(top, []));
+  const showBlock = { kind: 'show', word: 'SHOW', values: [valueOf(block)], bodies: [], note: '', is_apart: false };
+  const isProgramPart = block.type === 'program' || isHat(block);
+  const ownBlocks = block.outputConnection ? [showBlock] : isProgramPart ? bodyOf(block.getNextBlock(), []) : [blockOf(block, [])];
+  return { start: 'SI', note: '', is_one_line: false, body: [...definitions, ...ownBlocks], loose: [] };
 }
 
 /** @param {Blockly.WorkspaceSvg} workspace */
-function topsOf(workspace) {
+function topBlocksOf(workspace) {
   return workspace.getTopBlocks(true).filter((block) => !block.isInsertionMarker());
 }
 
@@ -96,32 +96,32 @@ export function isLoose(top) {
   return top.type !== 'program' && !isHat(top);
 }
 
-/** @param {Blockly.WorkspaceSvg} workspace @returns {import('./hats.js').Item[]} the blocks of the text's top level, in its order */
+/** @param {Blockly.WorkspaceSvg} workspace @returns {import('./hats.js').TextItem[]} the blocks of the text's top level, in its order */
 function itemsOf(workspace) {
-  const tops = topsOf(workspace);
-  const program = stackFrom(tops.find((block) => block.type === 'program')?.getNextBlock() ?? null);
-  const shown = SHOWN.get(workspace) ?? { program: [], hats: new Map(), excused: new Set() };
-  const numbers = new Map(shown.program.map((id, k) => [id, k]));
-  const order = [...shown.hats.keys()];
-  const hats = tops.filter(isHat).sort((a, b) => order.indexOf(a.id) - order.indexOf(b.id));
+  const topBlocks = topBlocksOf(workspace);
+  const program = stackFrom(topBlocks.find((block) => block.type === 'program')?.getNextBlock() ?? null);
+  const shownBlocks = SHOWN_BLOCKS.get(workspace) ?? { program: [], hats: new Map(), earlyDefs: new Set() };
+  const indexOfId = new Map(shownBlocks.program.map((id, k) => [id, k]));
+  const order = [...shownBlocks.hats.keys()];
+  const hats = topBlocks.filter(isHat).sort((a, b) => order.indexOf(a.id) - order.indexOf(b.id));
   return inTextOrder(program.map(itemOf), hats.map((hat) => {
     const { x, y } = hat.getRelativeToSurfaceXY();
-    const before = isMoved(hat) ? null : shown.hats.get(hat.id)?.before ?? 0;
-    if (before === null) return { ...itemOf(hat), x, y, gap: null };
-    const isLast = before === shown.program.length;
-    const above = program.findLastIndex(({ id }) => (numbers.get(id) ?? Infinity) < before);
-    return { ...itemOf(hat), x, y, gap: isLast ? program.length : above + 1 };
-  }), shown.excused);
+    const blocksBefore = isMoved(hat) ? null : shownBlocks.hats.get(hat.id)?.blocksBefore ?? 0;
+    if (blocksBefore === null) return { ...itemOf(hat), x, y, gap: null };
+    const isAtEnd = blocksBefore === shownBlocks.program.length;
+    const lastBlockBefore = program.findLastIndex(({ id }) => (indexOfId.get(id) ?? Infinity) < blocksBefore);
+    return { ...itemOf(hat), x, y, gap: isAtEnd ? program.length : lastBlockBefore + 1 };
+  }), shownBlocks.earlyDefs);
 }
 
 /** Whether somebody has put a hat where it stands, since it was made. @param {Blockly.Block} hat */
 function isMoved(hat) {
-  const put = SHOWN.get(hat.workspace)?.hats.get(hat.id);
+  const place = SHOWN_BLOCKS.get(hat.workspace)?.hats.get(hat.id);
   const { x, y } = hat.getRelativeToSurfaceXY();
-  return !put || Math.abs(put.x - x) > 1 || Math.abs(put.y - y) > 1;
+  return !place || Math.abs(place.x - x) > 1 || Math.abs(place.y - y) > 1;
 }
 
-/** @param {Blockly.Block} block @returns {import('./hats.js').Item} */
+/** @param {Blockly.Block} block @returns {import('./hats.js').TextItem} */
 function itemOf(block) {
   /** @type {string[]} */
   const ids = [];
@@ -134,41 +134,41 @@ function stackOf(top) {
 }
 
 /** What a loose stack is, however it was written. @param {Blockly.Block} top */
-function namedAs(top) {
+function stackName(top) {
   return JSON.stringify(stackOf(top), ['body', 'value', 'kind', 'word', 'values', 'bodies', 'note']);
 }
 
-/** @typedef {Map<string, Blockly.utils.Coordinate[]>} Stood where loose stacks stand, and hats that were moved, or stood last */
+/** @typedef {Map<string, Blockly.utils.Coordinate[]>} StackPlaces where loose stacks stand, and hats that were moved, or stood last */
 
 /**
  * Keeps where each loose stack stands and each hat that somebody moved, for when it is made anew.
  * @param {Blockly.WorkspaceSvg} workspace
- * @param {Stood} stood
+ * @param {StackPlaces} stackPlaces
  */
-export function keepPlaces(workspace, stood) {
-  const tops = topsOf(workspace).filter(isLoose);
-  for (const top of tops) stood.set(namedAs(top), []);
-  for (const top of tops) stood.get(namedAs(top))?.push(top.getRelativeToSurfaceXY());
-  const shown = SHOWN.get(workspace);
+export function keepPlaces(workspace, stackPlaces) {
+  const topBlocks = topBlocksOf(workspace).filter(isLoose);
+  for (const top of topBlocks) stackPlaces.set(stackName(top), []);
+  for (const top of topBlocks) stackPlaces.get(stackName(top))?.push(top.getRelativeToSurfaceXY());
+  const shownBlocks = SHOWN_BLOCKS.get(workspace);
   const hats = hatsOf(workspace);
-  for (const [k, name] of namesOf(hats).entries()) {
-    const hat = /** @type {Blockly.Block} */ (hats[k]);
-    if (isMoved(hat) || shown?.hats.get(hat.id)?.isOwn) stood.set(name, [hat.getRelativeToSurfaceXY()]);
-    else stood.delete(name);
+  for (const [index, name] of namesOf(hats).entries()) {
+    const hat = /** @type {Blockly.Block} */ (hats[index]);
+    if (isMoved(hat) || shownBlocks?.hats.get(hat.id)?.isMoved) stackPlaces.set(name, [hat.getRelativeToSurfaceXY()]);
+    else stackPlaces.delete(name);
   }
 }
 
 /**
  * Those places that blocks may be put at again: what comes back, once it was gone, is put where it is seen.
  * @param {Blockly.WorkspaceSvg} workspace
- * @param {Stood} stood
- * @returns {Stood}
+ * @param {StackPlaces} stackPlaces
+ * @returns {StackPlaces}
  */
-export function knownPlaces(workspace, stood) {
+export function knownPlaces(workspace, stackPlaces) {
   const { left, top, width, height } = workspace.getMetricsManager().getViewMetrics(true);
-  const view = new Blockly.utils.Rect(top, top + height - CORNER, left, left + width - CORNER);
-  const here = new Set([...namesOf(hatsOf(workspace)), ...topsOf(workspace).filter(isLoose).map((each) => namedAs(each))]);
-  return new Map([...stood].map(([name, places]) => [name, places.filter(({ x, y }) => here.has(name) || view.contains(x, y))]));
+  const view = new Blockly.utils.Rect(top, top + height - CORNER_UNITS, left, left + width - CORNER_UNITS);
+  const presentNames = new Set([...namesOf(hatsOf(workspace)), ...topBlocksOf(workspace).filter(isLoose).map((top) => stackName(top))]);
+  return new Map([...stackPlaces].map(([name, places]) => [name, places.filter(({ x, y }) => presentNames.has(name) || view.contains(x, y))]));
 }
 
 /** @param {Blockly.WorkspaceSvg} workspace @returns {Blockly.Block[]} in the order of the text */
@@ -198,9 +198,9 @@ function dataOf(block) {
 
 /** @param {Blockly.Block | null} first @returns {Blockly.Block[]} it and those that hang below it */
 function stackFrom(first) {
-  const found = [];
-  for (let block = first; block; block = block.getNextBlock()) if (!block.isInsertionMarker()) found.push(block);
-  return found;
+  const blocks = [];
+  for (let block = first; block; block = block.getNextBlock()) if (!block.isInsertionMarker()) blocks.push(block);
+  return blocks;
 }
 
 /** @param {Blockly.Block | null} first @param {string[]} ids @returns {FormBlock[]} */
@@ -211,21 +211,21 @@ function bodyOf(first, ids) {
 /** @param {Blockly.Block} block @param {string[]} ids @returns {FormBlock} */
 function blockOf(block, ids) {
   ids.push(block.id);
-  const kept = dataOf(block);
-  const inside = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
-  const word = String(wordOn(block) ?? kept.word ?? wordOf(block.type)), values = valuesOf(block), note = block.getCommentText() ?? '';
-  const was = kept.was ?? {};
-  const isNoteSame = word === was.word && note === was.note;
+  const data = dataOf(block);
+  const firstInside = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
+  const word = String(wordOnBlock(block) ?? data.word ?? impliedWordOf(block.type)), values = valuesOf(block), note = block.getCommentText() ?? '';
+  const linesData = data.was ?? {};
+  const isNoteSame = word === linesData.word && note === linesData.note;
   return {
     kind: block.type,
     word,
     values,
-    bodies: (isHat(block) ? [block.getNextBlock()] : inside).map((first) => bodyOf(first, ids)),
+    bodies: (isHat(block) ? [block.getNextBlock()] : firstInside).map((first) => bodyOf(first, ids)),
     note,
-    is_apart: Boolean(kept.isApart),
-    said: word === was.word ? kept.said.map((/** @type {string} */ line, /** @type {number} */ k) => (lineOf(block, values, k) === was.lines[k] ? line : '')) : [],
-    comment: isNoteSame ? kept.comment : '',
-    is_behind: Boolean(kept.isBehind),
+    is_apart: Boolean(data.isApart),
+    said: word === linesData.word ? data.said.map((/** @type {string} */ line, /** @type {number} */ k) => (lineOf(block, values, k) === linesData.lines[k] ? line : '')) : [],
+    comment: isNoteSame ? data.comment : '',
+    is_behind: Boolean(data.isBehind),
   };
 }
 
@@ -239,7 +239,7 @@ function remember(block, { word, is_apart, is_behind, said = [], comment }) {
   const values = valuesOf(block);
   block.data = JSON.stringify({
     word, isApart: is_apart, isBehind: is_behind, said, comment,
-    was: { word: String(wordOn(block) ?? word), note: block.getCommentText() ?? '', lines: said.map((_, k) => lineOf(block, values, k)) },
+    was: { word: String(wordOnBlock(block) ?? word), note: block.getCommentText() ?? '', lines: said.map((_, k) => lineOf(block, values, k)) },
   });
 }
 
@@ -251,38 +251,38 @@ function valuesOf(block) {
 }
 
 /**
- * @param {Blockly.Block | null} whole
+ * @param {Blockly.Block | null} outermost
  * @returns {Value} its parts in the order of a stack machine
  */
-function valueOf(whole) {
+function valueOf(outermost) {
   /** @type {Value} */
   const parts = [];
-  const waiting = [whole];
-  while (waiting.length) { // from the last part to the first
-    const block = waiting.pop();
+  const pendingBlocks = [outermost];
+  while (pendingBlocks.length) { // from the last part to the first
+    const block = pendingBlocks.pop();
     if (!block || block.isInsertionMarker()) {
       parts.push(['NOTHING', '']);
       continue;
     }
-    parts.push(partOf(block));
-    for (const input of block.inputList) if (input.connection) waiting.push(input.connection.targetBlock());
+    parts.push(partOfBlock(block));
+    for (const input of block.inputList) if (input.connection) pendingBlocks.push(input.connection.targetBlock());
   }
   return parts.reverse();
 }
 
 /** @param {Blockly.Block} block @returns {[string, string]} */
-function partOf(block) {
+function partOfBlock(block) {
   const field = /** @type {any} */ (block.getField('WORD'));
-  const word = String(field?.written?.() ?? field?.getValue() ?? '');
+  const word = String(field?.textValue?.() ?? field?.getValue() ?? '');
   const part = KINDS[block.type]?.part;
   return part ? [part, word] : [word, ''];
 }
 
 /** @param {FormBlock[]} blocks @returns {string[]} they and those of their values, as `pieceOf` has them */
 export function piecesIn(blocks) {
-  return blocks.flatMap(({ kind, word, values }) => [pieceOf(kind, word), ...values.flatMap((value) => value.flatMap(([op, name]) => {
-    const inside = KIND_OF.get(op);
-    return inside ? pieceOf(inside, name || op) : [];
+  return blocks.flatMap(({ kind, word, values }) => [pieceOf(kind, word), ...values.flatMap((value) => value.flatMap(([operation, operand]) => {
+    const partKind = KIND_OF_PART.get(operation);
+    return partKind ? pieceOf(partKind, operand || operation) : [];
   }))]);
 }
 
@@ -292,31 +292,31 @@ export function piecesIn(blocks) {
  * Replaces all blocks.
  * @param {Blockly.WorkspaceSvg} workspace
  * @param {Form} form
- * @param {Stood} stood where stacks are put that are known; others are put below the program
+ * @param {StackPlaces} stackPlaces where stacks are put that are known; others are put below the program
  * @returns {string[]} the ids of the blocks of the body, in the order of the text
  */
-export function showForm(workspace, form, stood) {
+export function showForm(workspace, form, stackPlaces) {
   /** @type {string[]} */
   const ids = [];
-  quietly(() => {
+  withoutEvents(() => {
     workspace.clear();
     /** @type {Blockly.BlockSvg[]} */
-    const made = [];
-    const make = (/** @type {string} */ kind) => {
+    const madeBlocks = [];
+    const makeBlock = (/** @type {string} */ kind) => {
       const block = workspace.newBlock(kind);
-      made.push(block);
+      madeBlocks.push(block);
       return block;
     };
-    const tops = atOnce(making(form, make, ids));
-    for (const block of made) block.initSvg();
-    for (const block of made.reverse()) block.queueRender();
+    const topBlocks = runAtOnce(makingSteps(form, makeBlock, ids));
+    for (const block of madeBlocks) block.initSvg();
+    for (const block of madeBlocks.reverse()) block.queueRender();
     Blockly.renderManagement.triggerQueuedRenders(workspace);
-    stand(workspace, tops, stood); // while they were drawn, blocks pushed each other
+    placeTopBlocks(workspace, topBlocks, stackPlaces); // while they were drawn, blocks pushed each other
   });
   makeRoom(workspace);
-  for (const [id, put] of SHOWN.get(workspace)?.hats ?? []) {
-    const { x, y } = workspace.getBlockById(id)?.getRelativeToSurfaceXY() ?? put;
-    Object.assign(put, { x, y }); // nobody has moved it there
+  for (const [id, place] of SHOWN_BLOCKS.get(workspace)?.hats ?? []) {
+    const { x, y } = workspace.getBlockById(id)?.getRelativeToSurfaceXY() ?? place;
+    Object.assign(place, { x, y }); // nobody has moved it there
   }
   workspace.resizeContents();
   return ids;
@@ -328,23 +328,23 @@ export function showForm(workspace, form, stood) {
  * @param {Form} form
  */
 export async function drawForm(workspace, form) {
-  clear(workspace);
-  await slowly(drawing(workspace, form), (slice) => quietly(() => {
+  clearWorkspace(workspace);
+  await runInSlices(drawingSteps(workspace, form), (slice) => withoutEvents(() => {
     slice();
-    leaveQueue(workspace);
+    removeFromRenderQueue(workspace);
   }));
 }
 
 /** @param {Blockly.WorkspaceSvg} workspace @param {Form} form @returns {Generator<void, void>} */
-function* drawing(workspace, form) {
-  const tops = yield* making(form, (kind) => workspace.newBlock(kind), []);
+function* drawingSteps(workspace, form) {
+  const topBlocks = yield* makingSteps(form, (kind) => workspace.newBlock(kind), []);
   for (const block of workspace.getAllBlocks(false).reverse()) { // what is in a block before it
-    if (!block.getParent()) leaveQueue(workspace);
+    if (!block.getParent()) removeFromRenderQueue(workspace);
     block.initSvg();
     block.renderEfficiently();
     yield;
   }
-  stand(workspace, tops, new Map());
+  placeTopBlocks(workspace, topBlocks, new Map());
 }
 
 /**
@@ -352,86 +352,86 @@ function* drawing(workspace, form) {
  * around it all is not begun: then it only takes it out of its queue.
  * @param {Blockly.WorkspaceSvg} workspace
  */
-function leaveQueue(workspace) {
+function removeFromRenderQueue(workspace) {
   Blockly.renderManagement.triggerQueuedRenders(workspace);
 }
 
 /** @param {Blockly.WorkspaceSvg} workspace */
-export function clear(workspace) {
-  quietly(() => workspace.clear());
+export function clearWorkspace(workspace) {
+  withoutEvents(() => workspace.clear());
 }
 
-/** Nothing is told of what is done, and nothing of it refused. @param {() => void} act */
-function quietly(act) {
+/** Nothing is told of what is done, and nothing of it refused. @param {() => void} change */
+function withoutEvents(change) {
   Blockly.Events.disable();
   Checker.isLenient = true;
   try {
-    act();
+    change();
   } finally {
     Checker.isLenient = false;
     Blockly.Events.enable();
   }
 }
 
-/** @typedef {{program: Blockly.BlockSvg, hats: [Blockly.BlockSvg, number][], loose: (Blockly.BlockSvg | null)[]}} Tops each hat with how many blocks of the program stand before it in the text */
+/** @typedef {{program: Blockly.BlockSvg, hats: [Blockly.BlockSvg, number][], loose: (Blockly.BlockSvg | null)[]}} TopBlocks each hat with how many blocks of the program stand before it in the text */
 
 /**
  * Makes the blocks of a form, which nobody sees yet.
  * @param {Form} form
- * @param {Make} make
+ * @param {MakeBlock} makeBlock
  * @param {string[]} ids of the blocks of the body are added
- * @returns {Generator<void, Tops>}
+ * @returns {Generator<void, TopBlocks>}
  */
-function* making(form, make, ids) {
-  const program = make('program');
+function* makingSteps(form, makeBlock, ids) {
+  const program = makeBlock('program');
   program.setFieldValue(form.start || 'SI', 'WORD');
   program.data = JSON.stringify({ isUnsaid: !form.start, isOneLine: form.is_one_line });
   if (form.note) program.setCommentText(form.note);
-  /** @type {Tops['hats']} */
+  /** @type {TopBlocks['hats']} */
   const hats = [];
   /** @type {string[]} */
-  const own = [];
+  const programIds = [];
   let above = program.nextConnection;
-  for (const each of form.body) {
-    const isHung = !KINDS[each.kind]?.is_hat;
-    const block = yield* hang([each], isHung ? above : null, make, ids);
+  for (const formBlock of form.body) {
+    const isInProgram = !KINDS[formBlock.kind]?.is_hat;
+    const block = yield* hangSteps([formBlock], isInProgram ? above : null, makeBlock, ids);
     if (!block) continue;
-    if (isHung) {
-      own.push(block.id);
+    if (isInProgram) {
+      programIds.push(block.id);
       above = block.nextConnection;
-    } else hats.push([block, own.length]);
+    } else hats.push([block, programIds.length]);
   }
   const loose = [];
-  for (const { body, value } of form.loose) loose.push(body.length ? yield* hang(body, null, make, []) : valueBlock(value, make));
-  SHOWN.set(program.workspace, { program: own, hats: new Map(), excused: calledEarly(form.body) });
+  for (const { body, value } of form.loose) loose.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : valueBlock(value, makeBlock));
+  SHOWN_BLOCKS.set(program.workspace, { program: programIds, hats: new Map(), earlyDefs: findEarlyDefs(form.body) });
   return { program, hats, loose };
 }
 
 /**
  * Puts the program into the corner, hats beside it, and loose stacks below it; what is known to have stood somewhere, there.
  * @param {Blockly.WorkspaceSvg} workspace
- * @param {Tops} tops
- * @param {Stood} stood
+ * @param {TopBlocks} tops
+ * @param {StackPlaces} stackPlaces
  */
-function stand(workspace, { program, hats, loose }, stood) {
-  const left = new Map([...stood].map(([name, places]) => [name, [...places]]));
-  const shown = SHOWN.get(workspace);
-  program.moveTo(new Blockly.utils.Coordinate(CORNER, CORNER));
+function placeTopBlocks(workspace, { program, hats, loose }, stackPlaces) {
+  const placesLeft = new Map([...stackPlaces].map(([name, places]) => [name, [...places]]));
+  const shownBlocks = SHOWN_BLOCKS.get(workspace);
+  program.moveTo(new Blockly.utils.Coordinate(CORNER_UNITS, CORNER_UNITS));
   for (const [k, name] of namesOf(hats.map(([hat]) => hat)).entries()) {
-    const [hat, before] = /** @type {Tops['hats'][number]} */ (hats[k]);
-    const known = left.get(name)?.shift();
-    if (known) hat.moveTo(known);
+    const [hat, blocksBefore] = /** @type {TopBlocks['hats'][number]} */ (hats[k]);
+    const knownPlace = placesLeft.get(name)?.shift();
+    if (knownPlace) hat.moveTo(knownPlace);
     const { x, y } = hat.getRelativeToSurfaceXY();
-    shown?.hats.set(hat.id, { before, x, y, isOwn: Boolean(known) });
+    shownBlocks?.hats.set(hat.id, { blocksBefore, x, y, isMoved: Boolean(knownPlace) });
   }
-  lineUp(workspace, program, hats.map(([hat]) => hat).filter((hat) => !shown?.hats.get(hat.id)?.isOwn));
-  const inColumn = [program, ...hats.map(([hat]) => hat)].map((block) => block.getBoundingRectangle()).filter((box) => box.left < CORNER + DISTANCE);
-  let y = Math.max(...inColumn.map(({ bottom }) => bottom)) + DISTANCE;
+  lineUp(workspace, program, hats.map(([hat]) => hat).filter((hat) => !shownBlocks?.hats.get(hat.id)?.isMoved));
+  const boxes = [program, ...hats.map(([hat]) => hat)].map((block) => block.getBoundingRectangle()).filter((box) => box.left < CORNER_UNITS + STACK_GAP);
+  let y = Math.max(...boxes.map(({ bottom }) => bottom)) + STACK_GAP;
   for (const block of loose) {
     if (!block) continue;
-    const known = left.get(namedAs(block))?.shift();
-    block.moveTo(known ?? new Blockly.utils.Coordinate(CORNER, y));
-    if (!known) y += block.getHeightWidth().height + DISTANCE;
+    const knownPlace = placesLeft.get(stackName(block))?.shift();
+    block.moveTo(knownPlace ?? new Blockly.utils.Coordinate(CORNER_UNITS, y));
+    if (!knownPlace) y += block.getHeightWidth().height + STACK_GAP;
   }
 }
 
@@ -441,9 +441,9 @@ function stand(workspace, { program, hats, loose }, stood) {
  * @param {Blockly.BlockSvg} program
  * @param {Blockly.BlockSvg[]} hats
  */
-function isRoomBeside(workspace, program, hats) {
+function hasRoomBeside(workspace, program, hats) {
   const widest = Math.max(...hats.map((hat) => hat.getHeightWidth().width));
-  return program.getBoundingRectangle().right + DISTANCE + widest <= workspace.getMetricsManager().getViewMetrics(true).width;
+  return program.getBoundingRectangle().right + STACK_GAP + widest <= workspace.getMetricsManager().getViewMetrics(true).width;
 }
 
 /**
@@ -454,13 +454,13 @@ function isRoomBeside(workspace, program, hats) {
  */
 function lineUp(workspace, program, hats) {
   const { right, bottom } = program.getBoundingRectangle();
-  const isBeside = isRoomBeside(workspace, program, hats);
-  let y = isBeside ? CORNER : bottom + DISTANCE;
+  const isBeside = hasRoomBeside(workspace, program, hats);
+  let y = isBeside ? CORNER_UNITS : bottom + STACK_GAP;
   for (const hat of hats) {
-    hat.moveTo(new Blockly.utils.Coordinate(isBeside ? right + DISTANCE : CORNER, y));
-    y += hat.getHeightWidth().height + DISTANCE;
-    const put = SHOWN.get(workspace)?.hats.get(hat.id);
-    if (put) Object.assign(put, { x: hat.getRelativeToSurfaceXY().x, y: hat.getRelativeToSurfaceXY().y });
+    hat.moveTo(new Blockly.utils.Coordinate(isBeside ? right + STACK_GAP : CORNER_UNITS, y));
+    y += hat.getHeightWidth().height + STACK_GAP;
+    const place = SHOWN_BLOCKS.get(workspace)?.hats.get(hat.id);
+    if (place) Object.assign(place, { x: hat.getRelativeToSurfaceXY().x, y: hat.getRelativeToSurfaceXY().y });
   }
 }
 
@@ -473,116 +473,116 @@ function lineUp(workspace, program, hats) {
 export function makeRoom(workspace, isResized = false) {
   const program = /** @type {Blockly.BlockSvg | undefined} */ (workspace.getBlocksByType('program')[0]);
   const hats = workspace.getTopBlocks(true).filter(isHat);
-  const [moved, still] = [true, false].map((is) => hats.filter((hat) => is === Boolean(isMoved(hat) || SHOWN.get(workspace)?.hats.get(hat.id)?.isOwn)));
-  if (!program || !moved || !still) return;
-  const under = (/** @type {Blockly.BlockSvg} */ hat) => [program, ...hats].find((other) =>
+  const [movedHats, unmovedHats] = [true, false].map((isWanted) => hats.filter((hat) => isWanted === Boolean(isMoved(hat) || SHOWN_BLOCKS.get(workspace)?.hats.get(hat.id)?.isMoved)));
+  if (!program || !movedHats || !unmovedHats) return;
+  const obstacleOf = (/** @type {Blockly.BlockSvg} */ hat) => [program, ...hats].find((other) =>
     other !== hat && other.getBoundingRectangle().intersects(hat.getBoundingRectangle()));
-  const isBeside = still[0] && still[0].getRelativeToSurfaceXY().x > CORNER;
-  quietly(() => {
-    if (still.some(under) || (isResized && still.length && isBeside !== isRoomBeside(workspace, program, still))) lineUp(workspace, program, still);
-    for (const hat of moved) {
-      let other = under(hat);
-      for (let tries = hats.length + 1; tries && other; tries -= 1, other = under(hat)) {
-        hat.moveTo(new Blockly.utils.Coordinate(hat.getRelativeToSurfaceXY().x, other.getBoundingRectangle().bottom + DISTANCE));
+  const isBeside = unmovedHats[0] && unmovedHats[0].getRelativeToSurfaceXY().x > CORNER_UNITS;
+  withoutEvents(() => {
+    if (unmovedHats.some(obstacleOf) || (isResized && unmovedHats.length && isBeside !== hasRoomBeside(workspace, program, unmovedHats))) lineUp(workspace, program, unmovedHats);
+    for (const hat of movedHats) {
+      let obstacle = obstacleOf(hat);
+      for (let triesLeft = hats.length + 1; triesLeft && obstacle; triesLeft -= 1, obstacle = obstacleOf(hat)) {
+        hat.moveTo(new Blockly.utils.Coordinate(hat.getRelativeToSurfaceXY().x, obstacle.getBoundingRectangle().bottom + STACK_GAP));
       }
     }
   });
 }
 
-/** @typedef {(kind: string) => Blockly.BlockSvg} Make */
+/** @typedef {(kind: string) => Blockly.BlockSvg} MakeBlock */
 
 /**
  * Hangs blocks one below the other.
  * @param {FormBlock[]} blocks
- * @param {Blockly.Connection | null} place
- * @param {Make} make
+ * @param {Blockly.Connection | null} connection
+ * @param {MakeBlock} makeBlock
  * @param {string[]} ids
  * @returns {Generator<void, Blockly.BlockSvg | null>} the first
  */
-function* hang(blocks, place, make, ids) {
-  let first = null;
-  let above = place;
-  for (const each of blocks) {
-    const block = make(each.kind);
-    first ??= block;
+function* hangSteps(blocks, connection, makeBlock, ids) {
+  let firstBlock = null;
+  let above = connection;
+  for (const formBlock of blocks) {
+    const block = makeBlock(formBlock.kind);
+    firstBlock ??= block;
     ids.push(block.id);
-    if (each.kind === 'if') {
-      /** @type {any} */ (block).setArms(each.values.length, each.bodies.length > each.values.length);
+    if (formBlock.kind === 'if') {
+      /** @type {any} */ (block).setArms(formBlock.values.length, formBlock.bodies.length > formBlock.values.length);
     }
-    if (each.kind === 'def') /** @type {any} */ (block).setNames(each.values.map((value) => value[0]?.[1] ?? ''));
-    if (each.kind === 'call') /** @type {any} */ (block).setCount(each.values.length);
-    const [word, unit] = block.getField('UNIT') ? each.word.split(' ') : [each.word];
+    if (formBlock.kind === 'def') /** @type {any} */ (block).setNames(formBlock.values.map((value) => value[0]?.[1] ?? ''));
+    if (formBlock.kind === 'call') /** @type {any} */ (block).setCount(formBlock.values.length);
+    const [word, unit] = block.getField('UNIT') ? formBlock.word.split(' ') : [formBlock.word];
     if (block.getField('WORD')) block.setFieldValue(word, 'WORD');
-    if (unit) block.setFieldValue(WAY, 'UNIT');
-    if (each.note) block.setCommentText(each.note);
-    each.values.forEach((value, k) => put(value, block.getInput(`V${k}`)?.connection ?? null, make));
-    for (const [k, body] of each.bodies.entries()) {
-      const input = block.getInput(`B${k}`) ?? block.getInput('OTHERWISE');
-      yield* hang(body, isHat(block) ? block.nextConnection : input?.connection ?? null, make, ids);
+    if (unit) block.setFieldValue(WAY_UNIT, 'UNIT');
+    if (formBlock.note) block.setCommentText(formBlock.note);
+    formBlock.values.forEach((value, index) => putValue(value, block.getInput(`V${index}`)?.connection ?? null, makeBlock));
+    for (const [index, body] of formBlock.bodies.entries()) {
+      const input = block.getInput(`B${index}`) ?? block.getInput('OTHERWISE');
+      yield* hangSteps(body, isHat(block) ? block.nextConnection : input?.connection ?? null, makeBlock, ids);
     }
-    remember(block, each);
+    remember(block, formBlock);
     if (block.previousConnection) above?.connect(block.previousConnection);
     above = block.nextConnection;
     yield;
   }
-  return first;
+  return firstBlock;
 }
 
 /**
  * Puts a value into its place: a plain number or a yes or no is the one that is there anyway.
  * @param {Value} value
- * @param {Blockly.Connection | null} place
- * @param {Make} make
+ * @param {Blockly.Connection | null} connection
+ * @param {MakeBlock} makeBlock
  */
-function put(value, place, make) {
-  if (!place) return;
-  const [op = 'NOTHING', text = ''] = value[0] ?? [];
-  if (value.length === 1 && op === 'NUMBER') {
-    place.setShadowState({ type: 'number', fields: { WORD: Number(text) } });
-  } else if (value.length === 1 && (op === 'TRUE' || op === 'FALSE')) {
-    place.setShadowState({ type: 'truth', fields: { WORD: op } });
+function putValue(value, connection, makeBlock) {
+  if (!connection) return;
+  const [operation = 'NOTHING', text = ''] = value[0] ?? [];
+  if (value.length === 1 && operation === 'NUMBER') {
+    connection.setShadowState({ type: 'number', fields: { WORD: Number(text) } });
+  } else if (value.length === 1 && (operation === 'TRUE' || operation === 'FALSE')) {
+    connection.setShadowState({ type: 'truth', fields: { WORD: operation } });
   } else {
-    const block = valueBlock(value, make);
-    if (block?.outputConnection) place.connect(block.outputConnection);
+    const block = valueBlock(value, makeBlock);
+    if (block?.outputConnection) connection.connect(block.outputConnection);
   }
 }
 
 /**
  * @param {Value} value
- * @param {Make} make
+ * @param {MakeBlock} makeBlock
  * @returns {Blockly.BlockSvg | null}
  */
-function valueBlock(value, make) {
+function valueBlock(value, makeBlock) {
   /** @type {Value[]} */
-  const plain = []; // beside the blocks: what a plain value is, to be put as such
+  const plainValues = []; // beside the blocks: what a plain value is, to be put as such
   /** @type {(Blockly.BlockSvg | null)[]} */
-  const stack = [];
-  value.forEach((part, k) => {
-    const [op, text] = part;
-    const kind = KIND_OF.get(op);
+  const blockStack = [];
+  value.forEach((part, index) => {
+    const [operation, text] = part;
+    const kind = KIND_OF_PART.get(operation);
     if (!kind) {
-      stack.push(null);
-      plain.push([]);
+      blockStack.push(null);
+      plainValues.push([]);
       return;
     }
-    const isPlain = (op === 'NUMBER' || op === 'TRUE' || op === 'FALSE') && k < value.length - 1;
+    const isPlain = (operation === 'NUMBER' || operation === 'TRUE' || operation === 'FALSE') && index < value.length - 1;
     if (isPlain) {
-      stack.push(null);
-      plain.push([part]);
+      blockStack.push(null);
+      plainValues.push([part]);
       return;
     }
-    const block = make(kind);
-    if (block.getField('WORD')) block.setFieldValue(text || op, 'WORD');
-    const count = KINDS[kind]?.values.length ?? 0;
-    for (let index = count - 1; index >= 0; index -= 1) {
-      const inner = stack.pop() ?? null;
-      const itself = plain.pop() ?? [];
-      const place = block.getInput(`V${index}`)?.connection ?? null;
-      if (inner?.outputConnection) place?.connect(inner.outputConnection);
-      else if (itself.length) put(itself, place, make);
+    const block = makeBlock(kind);
+    if (block.getField('WORD')) block.setFieldValue(text || operation, 'WORD');
+    const valueCount = KINDS[kind]?.values.length ?? 0;
+    for (let index = valueCount - 1; index >= 0; index -= 1) {
+      const innerBlock = blockStack.pop() ?? null;
+      const plainValue = plainValues.pop() ?? [];
+      const connection = block.getInput(`V${index}`)?.connection ?? null;
+      if (innerBlock?.outputConnection) connection?.connect(innerBlock.outputConnection);
+      else if (plainValue.length) putValue(plainValue, connection, makeBlock);
     }
-    stack.push(block);
-    plain.push([]);
+    blockStack.push(block);
+    plainValues.push([]);
   });
-  return stack.pop() ?? null;
+  return blockStack.pop() ?? null;
 }

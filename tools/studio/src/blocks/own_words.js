@@ -4,23 +4,23 @@ import * as Blockly from 'blockly/core';
 import { NameField } from './fields.js';
 import { FREE_LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
 
-const FINGER = 32; // units of a button on a block
+const BUTTON_UNITS = 32; // units of a button on a block
 
-/** @param {any} block @param {() => void} act fires what has changed of its state */
-function changed(block, act) {
-  const before = JSON.stringify(block.saveExtraState());
-  act();
-  const after = JSON.stringify(block.saveExtraState());
-  if (before === after) return;
-  Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(block, 'mutation', null, before, after));
+/** @param {any} block @param {() => void} change fires what has changed of its state */
+function changeState(block, change) {
+  const stateBefore = JSON.stringify(block.saveExtraState());
+  change();
+  const stateAfter = JSON.stringify(block.saveExtraState());
+  if (stateBefore === stateAfter) return;
+  Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(block, 'mutation', null, stateBefore, stateAfter));
 }
 
 export const DEF = {
   /** @this {any} @returns {string[]} the names of its values */
   names() {
-    const found = [];
-    for (let k = 0; this.getField(`P${k}`); k += 1) found.push(String(this.getFieldValue(`P${k}`)));
-    return found;
+    const names = [];
+    for (let index = 0; this.getField(`P${index}`); index += 1) names.push(String(this.getFieldValue(`P${index}`)));
+    return names;
   },
 
   /** @this {any} */
@@ -36,11 +36,11 @@ export const DEF = {
 
   /** @this {any} @param {string[]} names */
   setNames(names) {
-    const row = this.getInput('NAMES');
-    for (let k = names.length; this.getField(`P${k}`); k += 1) row.removeField(`P${k}`);
+    const input = this.getInput('NAMES');
+    for (let k = names.length; this.getField(`P${k}`); k += 1) input.removeField(`P${k}`);
     names.forEach((name, k) => {
       if (this.getField(`P${k}`)) this.setFieldValue(name, `P${k}`);
-      else row.insertFieldAt(k, new NameField(name), `P${k}`);
+      else input.insertFieldAt(k, new NameField(name), `P${k}`);
     });
   },
 
@@ -48,22 +48,22 @@ export const DEF = {
   more() {
     const names = this.names();
     if (names.length >= MOST_PARAMETERS) return;
-    const taken = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ each) => each.getFieldValue('WORD'))]);
-    const name = FREE_LETTERS.find((each) => !taken.has(each)) ?? `A_${names.length + 1}`;
-    changed(this, () => this.setNames([...names, name]));
+    const takenNames = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ block) => block.getFieldValue('WORD'))]);
+    const name = FREE_LETTERS.find((letter) => !takenNames.has(letter)) ?? `A_${names.length + 1}`;
+    changeState(this, () => this.setNames([...names, name]));
   },
 
   /** @this {any} */
   less() {
-    changed(this, () => this.setNames(this.names().slice(0, -1)));
+    changeState(this, () => this.setNames(this.names().slice(0, -1)));
   },
 
   /** @this {any} adds the fields and buttons after its own name */
   addNames() {
-    const row = this.appendDummyInput('NAMES');
-    for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
+    const input = this.appendDummyInput('NAMES');
+    for (const [name, onClick] of [['more', () => this.more()], ['less', () => this.less()]]) {
       const tip = tipOf(`${name}_values`);
-      row.appendField(new Blockly.FieldImage(`./${name}.svg`, FINGER, FINGER, tip, /** @type {any} */ (act))).fieldRow.at(-1).setTooltip(tip);
+      input.appendField(new Blockly.FieldImage(`./${name}.svg`, BUTTON_UNITS, BUTTON_UNITS, tip, /** @type {any} */ (onClick))).fieldRow.at(-1).setTooltip(tip);
     }
   },
 };
@@ -83,8 +83,8 @@ export const CALL = {
 
   /** @this {any} @param {number} count of its values */
   setCount(count) {
-    for (let k = 0; k < count; k += 1) {
-      if (!this.getInput(`V${k}`)) this.appendValueInput(`V${k}`).connection.setShadowState({ type: 'number', fields: { WORD: 1 } });
+    for (let index = 0; index < count; index += 1) {
+      if (!this.getInput(`V${index}`)) this.appendValueInput(`V${index}`).connection.setShadowState({ type: 'number', fields: { WORD: 1 } });
     }
     for (let k = count; this.getInput(`V${k}`); k += 1) this.removeInput(`V${k}`);
     this.count = count;
@@ -92,13 +92,13 @@ export const CALL = {
 };
 
 /** @param {Blockly.Workspace} workspace @returns {Map<string, any>} the first DEF of each name */
-function defsOf(workspace) {
+function definitionsOf(workspace) {
   return new Map(workspace.getBlocksByType('def').reverse().map((def) => [String(def.getFieldValue('WORD')), def]));
 }
 
 /** Says at each place of a call which value it is. @param {Blockly.Workspace} workspace */
 export function labelCalls(workspace) {
-  const defs = defsOf(workspace);
+  const defs = definitionsOf(workspace);
   for (const call of workspace.getBlocksByType('call')) {
     const names = defs.get(String(call.getFieldValue('WORD')))?.names() ?? [];
     for (let k = 0, input; (input = call.getInput(`V${k}`)); k += 1) {
@@ -114,13 +114,13 @@ export function labelCalls(workspace) {
  * @param {Blockly.Workspace} workspace
  * @param {any} event
  */
-export function follow(workspace, event) {
+export function updateCalls(workspace, event) {
   const def = /** @type {any} */ (workspace.getBlockById(event.blockId ?? ''));
   if (event.type !== Blockly.Events.BLOCK_CHANGE || def?.type !== 'def') return;
   if (event.element === 'field' && /^P\d/.test(event.name ?? '')) {
     for (const block of def.getDescendants(false)) {
-      const isNamed = (block.type === 'name' || block.type === 'assign') && block.getFieldValue('WORD') === event.oldValue;
-      if (isNamed) block.setFieldValue(event.newValue, 'WORD');
+      const usesOldName = (block.type === 'name' || block.type === 'assign') && block.getFieldValue('WORD') === event.oldValue;
+      if (usesOldName) block.setFieldValue(event.newValue, 'WORD');
     }
   } else if (event.element === 'mutation') {
     const word = def.getFieldValue('WORD');

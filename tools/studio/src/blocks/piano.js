@@ -2,56 +2,56 @@
 
 import { makeButton, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
-import { HIGHEST, keyAt, LOWEST, nameOf, noteAt, OCTAVE, WHITE } from './tones.js';
+import { HIGHEST_KEY, keyOfHertz, LOWEST_KEY, keyName, hertzOfKey, OCTAVE, WHITE_KEYS } from './tones.js';
 
 export class Piano {
-  place = makeElement('div');
-  #keys = makeElement('div');
-  #chosen;
-  #first = LOWEST; // of the octave that is seen
+  element = makeElement('div');
+  #keysElement = makeElement('div');
+  #onChoose;
+  #firstKey = LOWEST_KEY; // of the octave that is seen
 
-  /** @param {(hertz: number) => void} chosen */
-  constructor(chosen) {
-    this.#chosen = chosen;
-    this.place.className = 'piano';
-    this.place.setAttribute('role', 'group');
-    this.place.ariaLabel = text('piano');
-    this.place.addEventListener('mousedown', (event) => event.preventDefault()); // what is typed into stays so
-    const turns = [['lower', '◀', -OCTAVE], ['higher', '▶', OCTAVE]].map(([name, sign, by]) => {
-      const turn = makeButton('', () => this.#turn(Number(by)), String(sign));
-      turn.ariaLabel = text(name === 'lower' ? 'piano_lower' : 'piano_higher');
-      return turn;
+  /** @param {(hertz: number) => void} onChoose */
+  constructor(onChoose) {
+    this.#onChoose = onChoose;
+    this.element.className = 'piano';
+    this.element.setAttribute('role', 'group');
+    this.element.ariaLabel = text('piano');
+    this.element.addEventListener('mousedown', (event) => event.preventDefault()); // what is typed into stays so
+    const octaveButtons = [['lower', '◀', -OCTAVE], ['higher', '▶', OCTAVE]].map(([name, sign, offset]) => {
+      const octaveButton = makeButton('', () => this.#shiftKeys(Number(offset)), String(sign));
+      octaveButton.ariaLabel = text(name === 'lower' ? 'piano_lower' : 'piano_higher');
+      return octaveButton;
     });
-    this.#keys.className = 'keys';
-    this.place.append(.../** @type {Node[]} */ ([turns[0], this.#keys, turns[1]]));
-    for (const each of turns) each.tabIndex = -1; // by keyboard, the arrow keys go from tone to tone
+    this.#keysElement.className = 'keys';
+    this.element.append(.../** @type {Node[]} */ ([octaveButtons[0], this.#keysElement, octaveButtons[1]]));
+    for (const octaveButton of octaveButtons) octaveButton.tabIndex = -1; // by keyboard, the arrow keys go from tone to tone
   }
 
   /** @param {number} hertz */
   show(hertz) {
-    const key = keyAt(hertz);
-    this.#first = Math.min(HIGHEST - OCTAVE, key - (key % OCTAVE));
-    this.#draw(noteAt(key) === hertz ? key : -1);
+    const key = keyOfHertz(hertz);
+    this.#firstKey = Math.min(HIGHEST_KEY - OCTAVE, key - (key % OCTAVE));
+    this.#drawKeys(hertzOfKey(key) === hertz ? key : -1);
   }
 
-  /** @param {number} by keys */
-  #turn(by) {
-    this.#first = Math.min(HIGHEST - OCTAVE, Math.max(LOWEST, this.#first + by));
-    this.#draw(-1);
+  /** @param {number} offset keys */
+  #shiftKeys(offset) {
+    this.#firstKey = Math.min(HIGHEST_KEY - OCTAVE, Math.max(LOWEST_KEY, this.#firstKey + offset));
+    this.#drawKeys(-1);
   }
 
-  /** @param {number} chosen */
-  #draw(chosen) {
+  /** @param {number} chosenKey */
+  #drawKeys(chosenKey) {
     const names = text('notes').split(' ');
-    const all = Array.from({ length: OCTAVE + 1 }, (_, k) => this.#first + k);
-    this.#keys.replaceChildren(...all.map((key) => {
-      const isWhite = WHITE.includes(key % OCTAVE);
-      const tone = makeButton('', () => this.#chosen(noteAt(key)), isWhite ? nameOf(key, names) : '');
-      tone.className = isWhite ? 'white' : 'black';
-      tone.tabIndex = -1;
-      tone.title = tone.ariaLabel = `${nameOf(key, names)}, ${noteAt(key)} Hz`;
-      tone.setAttribute('aria-pressed', String(key === chosen));
-      return tone;
+    const keys = Array.from({ length: OCTAVE + 1 }, (_, k) => this.#firstKey + k);
+    this.#keysElement.replaceChildren(...keys.map((key) => {
+      const isWhite = WHITE_KEYS.includes(key % OCTAVE);
+      const keyButton = makeButton('', () => this.#onChoose(hertzOfKey(key)), isWhite ? keyName(key, names) : '');
+      keyButton.className = isWhite ? 'white' : 'black';
+      keyButton.tabIndex = -1;
+      keyButton.title = keyButton.ariaLabel = `${keyName(key, names)}, ${hertzOfKey(key)} Hz`;
+      keyButton.setAttribute('aria-pressed', String(key === chosenKey));
+      return keyButton;
     }));
   }
 }

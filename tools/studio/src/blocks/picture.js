@@ -1,101 +1,101 @@
 // A picture of blocks as a file. Each of their shapes is painted as the page shows it, one after the
 // other: as one drawing, a browser would work on all of it at once.
 
-import { slowly } from './slices.js';
+import { runInSlices } from './slices.js';
 
 const MARGIN = 16;
-const SHARP = 2; // pixels of the picture for one of the screen at its usual size
-const MOST_SIDE = 8000; // pixels
+const PIXEL_RATIO = 2; // pixels of the picture for one of the screen at its usual size
+const MOST_SIDE_PX = 8000; // pixels
 const MOST_PIXELS = 24_000_000;
-const LEFT_OUT = '.blocklyIconGroup, .blocklyPathSelected, .blocklyInsertionMarker';
-const ARROW = 'M1 4 6 9 11 4z'; // of a field that offers a list; its own is a file, in white
-const PLAIN = { fill: 'none', fillOpacity: '1', stroke: 'none', strokeOpacity: '1', strokeWidth: '0' };
+const OMITTED_SELECTOR = '.blocklyIconGroup, .blocklyPathSelected, .blocklyInsertionMarker';
+const ARROW_PATH = 'M1 4 6 9 11 4z'; // of a field that offers a list; its own is a file, in white
+const PLAIN_STYLE = { fill: 'none', fillOpacity: '1', stroke: 'none', strokeOpacity: '1', strokeWidth: '0' };
 /** @type {Record<string, CanvasTextBaseline>} */
 const BASELINES = { central: 'middle', middle: 'middle', hanging: 'hanging' };
 /** @type {Record<string, CanvasTextAlign>} */
-const ALIGNED = { start: 'left', middle: 'center', end: 'right' };
+const ALIGNMENTS = { start: 'left', middle: 'center', end: 'right' };
 
 /**
  * Returns a picture as a PNG file, or null where there are no blocks. The page goes on meanwhile: the
  * blocks must stay as they are.
  * @param {SVGElement} canvas what holds the blocks
  * @param {{left: number, right: number, top: number, bottom: number}} box where they are in it
- * @param {number} [most] pixels
+ * @param {number} [mostPixels] pixels
  * @returns {Promise<Blob | null>}
  */
-export async function pictureOf(canvas, { left, right, top, bottom }, most = MOST_PIXELS) {
+export async function pictureOf(canvas, { left, right, top, bottom }, mostPixels = MOST_PIXELS) {
   const width = right - left + 2 * MARGIN, height = bottom - top + 2 * MARGIN;
   if (!(right > left && bottom > top)) return null;
-  const scale = Math.min(SHARP, MOST_SIDE / width, MOST_SIDE / height, Math.sqrt(most / (width * height)));
-  const sheet = document.createElement('canvas');
-  Object.assign(sheet, { width: Math.ceil(width * scale), height: Math.ceil(height * scale) });
-  const pen = sheet.getContext('2d');
+  const scale = Math.min(PIXEL_RATIO, MOST_SIDE_PX / width, MOST_SIDE_PX / height, Math.sqrt(mostPixels / (width * height)));
+  const output = document.createElement('canvas');
+  Object.assign(output, { width: Math.ceil(width * scale), height: Math.ceil(height * scale) });
+  const pen = output.getContext('2d');
   if (!pen) return null;
   pen.fillStyle = '#fff';
-  pen.fillRect(0, 0, sheet.width, sheet.height);
+  pen.fillRect(0, 0, output.width, output.height);
   pen.setTransform(scale, 0, 0, scale, (MARGIN - left) * scale, (MARGIN - top) * scale);
-  await slowly(painting(canvas, pen));
-  return new Promise((resolve) => sheet.toBlob(resolve, 'image/png'));
+  await runInSlices(paintingSteps(canvas, pen));
+  return new Promise((resolve) => output.toBlob(resolve, 'image/png'));
 }
 
 /**
  * Paints what is in an element that is seen. Blocks hang in each other, so this goes along them with a list.
- * @param {Element} whole @param {CanvasRenderingContext2D} pen @returns {Generator<void, void>}
+ * @param {Element} root @param {CanvasRenderingContext2D} pen @returns {Generator<void, void>}
  */
-function* painting(whole, pen) {
-  const begin = { place: pen.getTransform(), opacity: 1 };
-  const waiting = [...whole.children].reverse().map((element) => ({ element, ...begin }));
-  for (let next = waiting.pop(); next; next = waiting.pop()) {
-    const { element } = next;
-    const look = getComputedStyle(element);
-    if (!(element instanceof SVGGraphicsElement) || look.display === 'none' || look.visibility === 'hidden' || element.matches(LEFT_OUT)) continue;
-    const place = placeOf(element, next.place);
-    const opacity = next.opacity * Number(look.opacity);
-    pen.setTransform(place);
-    if (element instanceof SVGTextElement) write(element, look, opacity, pen);
-    else if (element instanceof SVGGElement) for (const inner of [...element.children].reverse()) waiting.push({ element: inner, place, opacity });
-    else paint(pathOf(element), element instanceof SVGImageElement ? { ...PLAIN, fill: '#fff' } : look, opacity, pen);
+function* paintingSteps(root, pen) {
+  const rootState = { matrix: pen.getTransform(), opacity: 1 };
+  const pending = [...root.children].reverse().map((element) => ({ element, ...rootState }));
+  for (let step = pending.pop(); step; step = pending.pop()) {
+    const { element } = step;
+    const style = getComputedStyle(element);
+    if (!(element instanceof SVGGraphicsElement) || style.display === 'none' || style.visibility === 'hidden' || element.matches(OMITTED_SELECTOR)) continue;
+    const matrix = matrixOf(element, step.matrix);
+    const opacity = step.opacity * Number(style.opacity);
+    pen.setTransform(matrix);
+    if (element instanceof SVGTextElement) paintText(element, style, opacity, pen);
+    else if (element instanceof SVGGElement) for (const child of [...element.children].reverse()) pending.push({ element: child, matrix, opacity });
+    else paintPath(pathOf(element), element instanceof SVGImageElement ? { ...PLAIN_STYLE, fill: '#fff' } : style, opacity, pen);
     yield;
   }
 }
 
-/** @param {SVGGraphicsElement} element @param {DOMMatrix} around @returns {DOMMatrix} */
-function placeOf(element, around) {
-  const moves = element.transform.baseVal;
-  return Array.from({ length: moves.numberOfItems }, (_, k) => moves.getItem(k).matrix)
-    .reduce((place, { a, b, c, d, e, f }) => place.multiply(new DOMMatrix([a, b, c, d, e, f])), around);
+/** @param {SVGGraphicsElement} element @param {DOMMatrix} outerMatrix @returns {DOMMatrix} */
+function matrixOf(element, outerMatrix) {
+  const transforms = element.transform.baseVal;
+  return Array.from({ length: transforms.numberOfItems }, (_, k) => transforms.getItem(k).matrix)
+    .reduce((place, { a, b, c, d, e, f }) => place.multiply(new DOMMatrix([a, b, c, d, e, f])), outerMatrix);
 }
 
 /** @param {SVGGraphicsElement} element @returns {Path2D | null} */
 function pathOf(element) {
-  const number = (/** @type {string} */ name) => Number(element.getAttribute(name) ?? 0);
+  const attributeNumber = (/** @type {string} */ name) => Number(element.getAttribute(name) ?? 0);
   if (element instanceof SVGPathElement) return new Path2D(element.getAttribute('d') ?? '');
   const path = new Path2D();
-  if (element instanceof SVGRectElement) path.roundRect(number('x'), number('y'), number('width'), number('height'), number('rx'));
-  else if (element instanceof SVGCircleElement) path.arc(number('cx'), number('cy'), number('r'), 0, 2 * Math.PI);
-  else return element instanceof SVGImageElement && hrefOf(element).endsWith('dropdown-arrow.svg') ? new Path2D(ARROW) : null;
+  if (element instanceof SVGRectElement) path.roundRect(attributeNumber('x'), attributeNumber('y'), attributeNumber('width'), attributeNumber('height'), attributeNumber('rx'));
+  else if (element instanceof SVGCircleElement) path.arc(attributeNumber('cx'), attributeNumber('cy'), attributeNumber('r'), 0, 2 * Math.PI);
+  else return element instanceof SVGImageElement && hrefOf(element).endsWith('dropdown-arrow.svg') ? new Path2D(ARROW_PATH) : null;
   return path;
 }
 
-/** @param {Path2D | null} path @param {typeof PLAIN} look @param {number} opacity @param {CanvasRenderingContext2D} pen */
-function paint(path, look, opacity, pen) {
+/** @param {Path2D | null} path @param {typeof PLAIN_STYLE} style @param {number} opacity @param {CanvasRenderingContext2D} pen */
+function paintPath(path, style, opacity, pen) {
   if (!path) return;
-  pen.globalAlpha = opacity * Number(look.fillOpacity);
-  pen.fillStyle = look.fill;
-  if (look.fill !== 'none') pen.fill(path);
-  pen.globalAlpha = opacity * Number(look.strokeOpacity);
-  pen.strokeStyle = look.stroke;
-  pen.lineWidth = parseFloat(look.strokeWidth);
-  if (look.stroke !== 'none' && pen.lineWidth) pen.stroke(path);
+  pen.globalAlpha = opacity * Number(style.fillOpacity);
+  pen.fillStyle = style.fill;
+  if (style.fill !== 'none') pen.fill(path);
+  pen.globalAlpha = opacity * Number(style.strokeOpacity);
+  pen.strokeStyle = style.stroke;
+  pen.lineWidth = parseFloat(style.strokeWidth);
+  if (style.stroke !== 'none' && pen.lineWidth) pen.stroke(path);
 }
 
-/** @param {SVGTextElement} element @param {CSSStyleDeclaration} look @param {number} opacity @param {CanvasRenderingContext2D} pen */
-function write(element, look, opacity, pen) {
-  pen.globalAlpha = opacity * Number(look.fillOpacity);
-  pen.fillStyle = look.fill;
-  pen.font = `${look.fontStyle} ${look.fontWeight} ${look.fontSize} ${look.fontFamily}`;
-  pen.textAlign = ALIGNED[look.textAnchor] ?? 'left';
-  pen.textBaseline = BASELINES[look.dominantBaseline] ?? 'alphabetic';
+/** @param {SVGTextElement} element @param {CSSStyleDeclaration} style @param {number} opacity @param {CanvasRenderingContext2D} pen */
+function paintText(element, style, opacity, pen) {
+  pen.globalAlpha = opacity * Number(style.fillOpacity);
+  pen.fillStyle = style.fill;
+  pen.font = `${style.fontStyle} ${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+  pen.textAlign = ALIGNMENTS[style.textAnchor] ?? 'left';
+  pen.textBaseline = BASELINES[style.dominantBaseline] ?? 'alphabetic';
   pen.fillText(element.textContent ?? '', Number(element.getAttribute('x') ?? 0), Number(element.getAttribute('y') ?? 0));
 }
 

@@ -6,7 +6,7 @@ import { devicesOf } from '../page/words.js';
 
 /** @typedef {{low: number, high: number, sample: string}} Range */
 
-const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
+const ANY_RANGE = { low: -2147483.648, high: 2147483.647, sample: '1' };
 /** @type {Map<string, Range[]>} */
 const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
 /** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
@@ -16,16 +16,16 @@ const FIRST_WORDS = new Map(description.words
 /** @type {Map<string, Range>} */
 let actuators = new Map();
 
-/** @param {string} robot */
-export function setActuators(robot) {
-  actuators = new Map(devicesOf(robot, 'actuator').map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
+/** @param {string} robotName */
+export function setActuators(robotName) {
+  actuators = new Map(devicesOf(robotName, 'actuator').map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
 }
 
 /**
  * @param {string} kind
  * @returns {string} the word of a block that does not say it
  */
-export function wordOf(kind) {
+export function impliedWordOf(kind) {
   return FIRST_WORDS.get(kind.replace(/_until$/, '')) ?? '';
 }
 
@@ -33,9 +33,9 @@ export function wordOf(kind) {
  * @param {import('blockly/core').Block} block
  * @returns {string | undefined} the word on it, with its unit unless that is seconds: `F CM`
  */
-export function wordOn(block) {
+export function wordOnBlock(block) {
   const word = block.getFieldValue('WORD') ?? undefined;
-  const unit = /** @type {import('./fields.js').UnitField | null} */ (block.getField('UNIT'))?.written();
+  const unit = /** @type {import('./fields.js').UnitField | null} */ (block.getField('UNIT'))?.textValue();
   return unit ? `${word} ${unit}` : word;
 }
 
@@ -46,8 +46,8 @@ export function wordOn(block) {
  * @returns {Range}
  */
 export function rangeOf(kind, word, index) {
-  if (kind === 'set') return actuators.get(word) ?? ANY;
-  const range = ARGUMENTS.get(word || wordOf(kind) || kind.toUpperCase())?.[index] ?? ANY;
+  if (kind === 'set') return actuators.get(word) ?? ANY_RANGE;
+  const range = ARGUMENTS.get(word || impliedWordOf(kind) || kind.toUpperCase())?.[index] ?? ANY_RANGE;
   return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
 }
 
@@ -57,8 +57,8 @@ export function rangeOf(kind, word, index) {
  */
 export function rangeAt(block) {
   const parent = block?.getParent();
-  const input = parent?.inputList.find((each) => each.connection?.targetBlock() === block);
-  if (!parent || !input) return ANY;
+  const input = parent?.inputList.find((candidate) => candidate.connection?.targetBlock() === block);
+  if (!parent || !input) return ANY_RANGE;
   const index = Number(input.name.slice(1));
-  return rangeOf(parent.type, wordOn(parent) ?? '', index);
+  return rangeOf(parent.type, wordOnBlock(parent) ?? '', index);
 }

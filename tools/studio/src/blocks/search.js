@@ -4,49 +4,49 @@ import * as Blockly from 'blockly/core';
 import { makeSvg, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 
-const GLASS = 'M10.500 4a6.500 6.500 0 1 0 0 13 6.500 6.500 0 0 0 0-13zM15.500 15.500 21 21';
+const GLASS_PATH = 'M10.500 4a6.500 6.500 0 1 0 0 13 6.500 6.500 0 0 0 0-13zM15.500 15.500 21 21';
 
 export class Search {
-  place = makeElement('label');
-  #field = makeElement('input');
+  element = makeElement('label');
+  #input = makeElement('input');
   #workspace;
-  #find;
+  #findBlocks;
 
   /**
    * @param {Blockly.WorkspaceSvg} workspace
-   * @param {(words: string) => object[]} find what a list of blocks shows
+   * @param {(words: string) => object[]} findBlocks what a list of blocks shows
    */
-  constructor(workspace, find) {
+  constructor(workspace, findBlocks) {
     this.#workspace = workspace;
-    this.#find = find;
-    this.place.className = 'search';
-    Object.assign(this.#field, { type: 'search', maxLength: 40, autocomplete: 'off', spellcheck: false, placeholder: text('search') });
-    this.#field.ariaLabel = text('search_blocks');
-    this.place.append(makeSvg('svg', { viewBox: '0 0 24 24', width: 20, height: 20, 'aria-hidden': 'true' },
-      makeSvg('path', { d: GLASS, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.4, 'stroke-linecap': 'round' })), this.#field);
-    this.#field.addEventListener('input', () => this.#show());
-    this.#field.addEventListener('focus', () => {
-      if (this.#field.value) this.#show();
+    this.#findBlocks = findBlocks;
+    this.element.className = 'search';
+    Object.assign(this.#input, { type: 'search', maxLength: 40, autocomplete: 'off', spellcheck: false, placeholder: text('search') });
+    this.#input.ariaLabel = text('search_blocks');
+    this.element.append(makeSvg('svg', { viewBox: '0 0 24 24', width: 20, height: 20, 'aria-hidden': 'true' },
+      makeSvg('path', { d: GLASS_PATH, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.4, 'stroke-linecap': 'round' })), this.#input);
+    this.#input.addEventListener('input', () => this.#showResults());
+    this.#input.addEventListener('focus', () => {
+      if (this.#input.value) this.#showResults();
     });
-    this.#field.addEventListener('keydown', (event) => this.#press(event));
-    workspace.getInjectionDiv().addEventListener('focusin', ({ target }) => this.#leave(/** @type {Element} */ (target)));
+    this.#input.addEventListener('keydown', (event) => this.#onKeyDown(event));
+    workspace.getInjectionDiv().addEventListener('focusin', ({ target }) => this.#onFocusElsewhere(/** @type {Element} */ (target)));
   }
 
   /** It is as wide as the groups below it. */
-  fit() {
+  fitWidth() {
     const width = this.#workspace.getToolbox()?.getWidth() ?? 0;
-    if (width) this.place.style.setProperty('--groups', `${width}px`);
+    if (width) this.element.style.setProperty('--groups', `${width}px`);
   }
 
   /** Nothing is looked for any more. */
-  clear() {
-    this.#field.value = '';
+  clearSearch() {
+    this.#input.value = '';
   }
 
   /** What was found goes once somebody is at the blocks of the program, or at a group. @param {Element} target */
-  #leave(target) {
-    if (!this.#field.value || target.closest('.blocklyFlyout')) return;
-    this.clear();
+  #onFocusElsewhere(target) {
+    if (!this.#input.value || target.closest('.blocklyFlyout')) return;
+    this.clearSearch();
     if (!target.closest('.blocklyToolbox')) this.#flyout?.hide();
   }
 
@@ -54,23 +54,23 @@ export class Search {
     return this.#workspace.getFlyout();
   }
 
-  #show() {
-    const words = this.#field.value.trim();
+  #showResults() {
+    const words = this.#input.value.trim();
     /** @type {any} */ (this.#workspace.getToolbox())?.clearSelection();
     if (!words) {
       this.#flyout?.hide();
       return;
     }
-    const found = this.#find(words);
-    this.#flyout?.show(/** @type {any} */ (found.length ? found : [{ kind: 'label', text: text('search_none') }]));
+    const matches = this.#findBlocks(words);
+    this.#flyout?.show(/** @type {any} */ (matches.length ? matches : [{ kind: 'label', text: text('search_none') }]));
   }
 
   /** @param {KeyboardEvent} event */
-  #press(event) {
+  #onKeyDown(event) {
     event.stopPropagation(); // what is typed is no shortcut
     const { key } = event, flyout = this.#flyout;
     if (key === 'Escape') {
-      this.clear();
+      this.clearSearch();
       flyout?.hide();
       Blockly.getFocusManager().focusTree(this.#workspace);
     } else if ((key === 'Enter' || key === 'ArrowDown') && flyout?.isVisible()) {

@@ -12,33 +12,33 @@ import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE, tipOf } from
 
 const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
 /** @type {string} */
-let robot = '';
+let robotName = '';
 
 /** @param {string} name of the robot whose words are offered */
 export function setRobot(name) {
-  robot = name;
+  robotName = name;
 }
 
 /** @type {string[]} */
-let fresh = [];
+let newPieces = [];
 
-/** @param {string[]} kinds of blocks that glow where they are taken from */
-export function setNew(kinds) {
-  fresh = kinds;
+/** @param {string[]} pieces of blocks that glow where they are taken from */
+export function setNewPieces(pieces) {
+  newPieces = pieces;
 }
 
-const FOLDED = ['compare', 'logic', 'motors', 'move_until', 'random', 'round', 'extreme'];
-const LONG = 9; // letters of a move: with more it is folded, too
+const FOLDED_KINDS = ['compare', 'logic', 'motors', 'move_until', 'random', 'round', 'extreme'];
+const LONG_WORD_CHARACTERS = 9; // letters of a move: with more it is folded, too
 let isNarrow = false;
 
-/** @param {boolean} is long blocks have their second half below the first from now on: on a phone they are not seen side by side */
-export function setNarrow(is) {
-  isNarrow = is;
+/** @param {boolean} isNarrowNow long blocks have their second half below the first from now on: on a phone they are not seen side by side */
+export function setNarrow(isNarrowNow) {
+  isNarrow = isNarrowNow;
 }
 
 /** @param {'sensor' | 'actuator'} role */
-export function devices(role) {
-  return devicesOf(robot, role);
+export function devicesOfRole(role) {
+  return devicesOf(robotName, role);
 }
 
 /** Lets what a text says stand anywhere: the compiler says what does not fit. */
@@ -53,19 +53,19 @@ export class Checker extends Blockly.ConnectionChecker {
 
 /**
  * @param {Blockly.Block} block
- * @param {BlockKind} shape
+ * @param {BlockKind} blockKind
  * @returns {Blockly.Field | null} what stands before its values
  */
-function firstField(block, shape) {
-  if (shape.words.length) return options(shape.words.map((word) => [blockLabel(word), word]));
-  if (shape.field === 'name') return new NameField('X');
-  if (shape.field === 'line') return new LineField('');
-  if (shape.field) return new DeviceField(shape.field);
+function makeFirstField(block, blockKind) {
+  if (blockKind.words.length) return optionsField(blockKind.words.map((word) => [blockLabel(word), word]));
+  if (blockKind.field === 'name') return new NameField('X');
+  if (blockKind.field === 'line') return new LineField('');
+  if (blockKind.field) return new DeviceField(blockKind.field);
   return block.type === 'number' ? new NumberField(0) : null;
 }
 
 /** @param {string[][]} rows */
-function options(rows) {
+function optionsField(rows) {
   return new Blockly.FieldDropdown(/** @type {[string, string][]} */ (rows));
 }
 
@@ -75,9 +75,9 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const rows = [...devices(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
-      const kept = /** @type {any} */ (this).kept;
-      if (kept && !rows.some(([, name]) => name === kept)) rows.push([kept, kept]);
+      const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
+      const value = /** @type {any} */ (this).kept;
+      if (value && !rows.some(([, name]) => name === value)) rows.push([value, value]);
       return rows.length ? rows : [['?', '?']];
     });
   }
@@ -94,16 +94,16 @@ class DeviceField extends Blockly.FieldDropdown {
  * Adds what a message says, its fields and places.
  * @param {Blockly.Block} block
  * @param {string} message
- * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
+ * @param {(number: number) => Blockly.Field | string} partAt a field, or the name of a place
  * @param {(name: string) => ValueKind} kindOf
  * @param {boolean} [isFolded] a question begins a row, so that it is seen beside a lesson, too
  * @param {boolean} [isBroken] so does its second value
  */
-function add(block, message, what, kindOf, isFolded = false, isBroken = false) {
+function appendMessage(block, message, partAt, kindOf, isFolded = false, isBroken = false) {
   let label = '';
   /** @type {Blockly.Field[]} */
   let fields = [];
-  const flush = () => {
+  const flushLabel = () => {
     const text = label.trim();
     if (text) fields.push(new Blockly.FieldLabel(text));
     label = '';
@@ -118,36 +118,36 @@ function add(block, message, what, kindOf, isFolded = false, isBroken = false) {
     if (part === '%%') label += '%';
     else if (!/^%\d$/.test(part)) label += part;
     else {
-      flush();
-      const shape = what(Number(part[1]));
-      if (typeof shape !== 'string') {
-        fields.push(shape);
+      flushLabel();
+      const fieldOrName = partAt(Number(part[1]));
+      if (typeof fieldOrName !== 'string') {
+        fields.push(fieldOrName);
         continue;
       }
-      if (isFolded && kindOf(shape) === 'truth') {
+      if (isFolded && kindOf(fieldOrName) === 'truth') {
         endRow();
         block.appendEndRowInput();
       }
-      if (isBroken && shape === 'V1') block.appendEndRowInput();
-      const input = block.appendValueInput(shape).setCheck(CHECKS[kindOf(shape)]);
+      if (isBroken && fieldOrName === 'V1') block.appendEndRowInput();
+      const input = block.appendValueInput(fieldOrName).setCheck(CHECKS[kindOf(fieldOrName)]);
       for (const field of fields) input.appendField(field, field.name);
       fields = [];
     }
   }
-  flush();
+  flushLabel();
   endRow();
 }
 
 /** @param {Blockly.Field} field @param {string} name */
-function named(field, name) {
+function nameField(field, name) {
   field.name = name;
   return field;
 }
 
-/** @param {Blockly.Block} block @param {boolean} is its second value stands below the first */
-function fold(block, is) {
-  if (is === Boolean(block.getInput('FOLD'))) return;
-  if (!is) block.removeInput('FOLD');
+/** @param {Blockly.Block} block @param {boolean} isFolded its second value stands below the first */
+function setFolded(block, isFolded) {
+  if (isFolded === Boolean(block.getInput('FOLD'))) return;
+  if (!isFolded) block.removeInput('FOLD');
   else {
     block.appendEndRowInput('FOLD');
     block.moveInputBefore('FOLD', 'V1');
@@ -155,43 +155,43 @@ function fold(block, is) {
 }
 
 /** @param {any} block @param {string} kind */
-function glow(block, kind) {
+function markNew(block, kind) {
   if (!block.isInFlyout) return;
   queueMicrotask(() => { // once it has its word
-    if (!block.isDisposed() && fresh.includes(pieceOf(kind, String(block.getFieldValue('WORD') ?? '')))) block.addClass('fresh');
+    if (!block.isDisposed() && newPieces.includes(pieceOf(kind, String(block.getFieldValue('WORD') ?? '')))) block.addClass('fresh');
   });
 }
 
-/** @param {Blockly.Block} block @param {string} kind @param {BlockKind} shape */
-function build(block, kind, shape) {
-  const first = firstField(block, shape);
-  const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
+/** @param {Blockly.Block} block @param {string} kind @param {BlockKind} blockKind */
+function buildBlock(block, kind, blockKind) {
+  const firstWordField = makeFirstField(block, blockKind);
+  const unit = Object.keys(blockKind.units).length ? new UnitField(blockKind.units) : null;
   const arrow = unit ? new ArrowField() : null; // of a move
   if (unit) {
-    first?.setValidator((word) => {
+    firstWordField?.setValidator((word) => {
       unit.forceRerender();
       arrow?.forceRerender();
-      if (kind === 'move') fold(block, isNarrow && blockLabel(word).length > LONG);
+      if (kind === 'move') setFolded(block, isNarrow && blockLabel(word).length > LONG_WORD_CHARACTERS);
     });
   }
-  if (kind === 'set') first?.setValidator((word) => fill(block, kind, shape.values, word));
-  let value = 0;
-  add(block, blockLabel(kind), (number) => {
-    if (first && number === 1) return named(first, 'WORD');
-    if (unit && number === 3) return named(unit, 'UNIT');
-    return `V${value++}`;
-  }, (name) => shape.values[Number(name.slice(1))] ?? 'any', !shape.gives, isNarrow && FOLDED.includes(kind));
-  if (arrow) block.inputList.find(({ fieldRow }) => fieldRow.includes(/** @type {Blockly.Field} */ (first)))?.insertFieldAt(0, arrow);
-  for (let k = 0; k < shape.bodies && !shape.is_hat; k += 1) block.appendStatementInput(`B${k}`);
+  if (kind === 'set') firstWordField?.setValidator((word) => fillPlaces(block, kind, blockKind.values, word));
+  let valueIndex = 0;
+  appendMessage(block, blockLabel(kind), (number) => {
+    if (firstWordField && number === 1) return nameField(firstWordField, 'WORD');
+    if (unit && number === 3) return nameField(unit, 'UNIT');
+    return `V${valueIndex++}`;
+  }, (name) => blockKind.values[Number(name.slice(1))] ?? 'any', !blockKind.gives, isNarrow && FOLDED_KINDS.includes(kind));
+  if (arrow) block.inputList.find(({ fieldRow }) => fieldRow.includes(/** @type {Blockly.Field} */ (firstWordField)))?.insertFieldAt(0, arrow);
+  for (let k = 0; k < blockKind.bodies && !blockKind.is_hat; k += 1) block.appendStatementInput(`B${k}`);
   block.setInputsInline(true);
-  if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
+  if (blockKind.gives) block.setOutput(true, CHECKS[blockKind.gives]);
   else {
-    block.setPreviousStatement(!shape.is_hat);
+    block.setPreviousStatement(!blockKind.is_hat);
     block.setNextStatement(true);
   }
-  block.setStyle(shape.colour);
-  if (shape.is_hat) block.hat = 'cap';
-  fill(block, kind, shape.values);
+  block.setStyle(blockKind.colour);
+  if (blockKind.is_hat) block.hat = 'cap';
+  fillPlaces(block, kind, blockKind.values);
 }
 
 /**
@@ -201,22 +201,22 @@ function build(block, kind, shape) {
  * @param {ValueKind[]} values
  * @param {string} [word] that is on it from now on
  */
-function fill(block, kind, values, word = String(block.getFieldValue('WORD') ?? '')) {
-  values.forEach((place, k) => {
-    const { sample } = rangeOf(kind, word, k);
-    const device = kind === 'set' ? devices('actuator').find((each) => each.text === word) : undefined;
-    const value = place === 'truth' || device?.is_yes_no ? truth() : { type: 'number', fields: { WORD: Number(sample) } };
-    const connection = block.getInput(`V${k}`)?.connection;
+function fillPlaces(block, kind, values, word = String(block.getFieldValue('WORD') ?? '')) {
+  values.forEach((valueKind, index) => {
+    const { sample } = rangeOf(kind, word, index);
+    const device = kind === 'set' ? devicesOfRole('actuator').find((candidate) => candidate.text === word) : undefined;
+    const value = valueKind === 'truth' || device?.is_yes_no ? truthShadow() : { type: 'number', fields: { WORD: Number(sample) } };
+    const connection = block.getInput(`V${index}`)?.connection;
     if (connection?.getShadowState()?.type !== value.type) connection?.setShadowState(value);
   });
 }
 
-function truth() {
+function truthShadow() {
   return { type: 'truth', fields: { WORD: 'TRUE' } };
 }
 
 const MOST_ARMS = 20;
-const FINGER = 32; // units of a button on a block: 24 pixels at the least scale
+const BUTTON_UNITS = 32; // units of a button on a block: 24 pixels at the least scale
 
 /** The block of IF: as many arms as its state says. */
 const IF = {
@@ -239,8 +239,8 @@ const IF = {
     this.hasElse = hasElse;
     for (let k = 0; k < arms; k += 1) {
       if (this.getInput(`V${k}`)) continue;
-      add(this, blockLabel(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
-      this.getInput(`V${k}`).connection.setShadowState(truth());
+      appendMessage(this, blockLabel(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
+      this.getInput(`V${k}`).connection.setShadowState(truthShadow());
       this.appendStatementInput(`B${k}`);
       if (this.getInput('ELSE')) {
         for (const name of [`V${k}`, `B${k}`]) this.moveInputBefore(name, 'ELSE');
@@ -273,29 +273,29 @@ const IF = {
 
   /** @this {any} @param {number} arms @param {boolean} hasElse */
   change(arms, hasElse) {
-    const before = JSON.stringify(this.saveExtraState());
+    const stateBefore = JSON.stringify(this.saveExtraState());
     this.setArms(arms, hasElse);
-    const after = JSON.stringify(this.saveExtraState());
-    if (before !== after) {
-      Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(this, 'mutation', null, before, after));
+    const stateAfter = JSON.stringify(this.saveExtraState());
+    if (stateBefore !== stateAfter) {
+      Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(this, 'mutation', null, stateBefore, stateAfter));
     }
   },
 
   /** @this {any} */
   init() {
     this.setArms(1, false);
-    const buttons = this.appendDummyInput('MORE');
-    for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
-      const picture = new Blockly.FieldImage(`./${name}.svg`, FINGER, FINGER, tipOf(String(name)), /** @type {any} */ (act));
+    const buttonInput = this.appendDummyInput('MORE');
+    for (const [name, onClick] of [['more', () => this.more()], ['less', () => this.less()]]) {
+      const picture = new Blockly.FieldImage(`./${name}.svg`, BUTTON_UNITS, BUTTON_UNITS, tipOf(String(name)), /** @type {any} */ (onClick));
       picture.setTooltip(tipOf(String(name)));
-      buttons.appendField(picture);
+      buttonInput.appendField(picture);
     }
     this.setInputsInline(true);
     this.setPreviousStatement(true);
     this.setNextStatement(true);
     this.setStyle('control');
     this.setTooltip(tipOf('if'));
-    glow(this, 'if');
+    markNew(this, 'if');
   },
 };
 
@@ -304,7 +304,7 @@ export function defineBlocks() {
   Blockly.Blocks['program'] = {
     /** @this {Blockly.Block} */
     init() {
-      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [blockLabel(word), word])), 'WORD');
+      this.appendDummyInput().appendField(optionsField(['SI', 'SB', 'PING'].map((word) => [blockLabel(word), word])), 'WORD');
       this.setNextStatement(true);
       this.setDeletable(false);
       this.setMovable(false); // what is dragged is all that is seen
@@ -312,17 +312,17 @@ export function defineBlocks() {
       this.setTooltip(tipOf('program'));
     },
   };
-  for (const [kind, shape] of Object.entries(KINDS)) {
-    const more = { def: DEF, call: CALL }[kind] ?? {};
+  for (const [kind, blockKind] of Object.entries(KINDS)) {
+    const extraMethods = { def: DEF, call: CALL }[kind] ?? {};
     Blockly.Blocks[kind] = kind === 'if' ? IF : {
-      ...more,
+      ...extraMethods,
       /** @this {Blockly.Block} */
       init() {
-        build(this, kind, shape);
-        glow(this, kind);
+        buildBlock(this, kind, blockKind);
+        markNew(this, kind);
         if (kind === 'def') /** @type {any} */ (this).addNames();
         this.setTooltip(tipOf(kind));
-        if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));
+        if (blockKind.field === 'sensor' || blockKind.field === 'actuator') this.setTooltip(() => deviceTip(this));
       },
     };
   }
@@ -331,7 +331,7 @@ export function defineBlocks() {
 /** @param {Blockly.Block} block of a device */
 function deviceTip(block) {
   const name = block.getFieldValue('WORD');
-  const device = [...devices('sensor'), ...REMOTE, ...devices('actuator')].find((each) => each.text === name);
+  const device = [...devicesOfRole('sensor'), ...REMOTE, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
   const label = device && `${name}: ${labelOf(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
   return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

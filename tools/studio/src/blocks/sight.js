@@ -3,22 +3,22 @@
 
 import * as Blockly from 'blockly/core';
 
-const LEAST = 0.4; // how small the blocks become at most
-const EDGE = 12; // units around what is seen
-const ROW = 48; // units: so much of a block says what it is, however much is in it,
-const WORD = 160; // and so much of a row, where there is no room for all of it
-const STAYS_MS = 500; // for which nothing is scrolled again
-const REST_MS = 600; // without anything that runs, until the run is over
+const LEAST_SCALE = 0.4; // how small the blocks become at most
+const EDGE_UNITS = 12; // units around what is seen
+const ROW_UNITS = 48; // units: so much of a block says what it is, however much is in it,
+const WORD_UNITS = 160; // and so much of a row, where there is no room for all of it
+const SCROLL_INTERVAL_MS = 500; // for which nothing is scrolled again
+const RUN_END_MS = 600; // without anything that runs, until the run is over
 
-export class Sight {
+export class RunFollower {
   #workspace;
   /** @type {string[]} */
-  #running = [];
+  #runningIds = [];
   /** How the blocks were seen before the run. @type {{scale: number, x: number, y: number} | null} */
-  #before = null;
-  #isLeft = false; // to somebody who scrolls
-  #moved_ms = -Infinity;
-  #resting = 0;
+  #viewBefore = null;
+  #isLeftAlone = false; // to somebody who scrolls
+  #lastScroll_ms = -Infinity;
+  #endTimer = 0;
 
   /** @param {Blockly.WorkspaceSvg} workspace */
   constructor(workspace) {
@@ -26,44 +26,44 @@ export class Sight {
   }
 
   /** These blocks run now. @param {string[]} ids */
-  see(ids) {
-    this.#running = ids.filter(Boolean);
-    if (!this.#running.length) {
-      this.#resting ||= window.setTimeout(() => this.#rest(), REST_MS);
+  showRunning(ids) {
+    this.#runningIds = ids.filter(Boolean);
+    if (!this.#runningIds.length) {
+      this.#endTimer ||= window.setTimeout(() => this.#restoreView(), RUN_END_MS);
       return;
     }
-    clearTimeout(this.#resting);
-    this.#resting = 0;
-    this.keep();
+    clearTimeout(this.#endTimer);
+    this.#endTimer = 0;
+    this.keepInView();
   }
 
   /** Somebody is at the blocks: what they see stays until the run is over. */
   leave() {
-    this.#isLeft = this.#running.length > 0;
-    if (this.#isLeft) this.#before = null;
+    this.#isLeftAlone = this.#runningIds.length > 0;
+    if (this.#isLeftAlone) this.#viewBefore = null;
   }
 
   /** Has all that runs be seen, or, where it stands too far apart for that, some of it. */
-  keep() {
-    if (this.#isLeft || this.#workspace.isDragging()) return;
-    const boxes = this.#running.flatMap((id) => this.#workspace.getBlockById(id) ?? []).map((block) => {
+  keepInView() {
+    if (this.#isLeftAlone || this.#workspace.isDragging()) return;
+    const boxes = this.#runningIds.flatMap((id) => this.#workspace.getBlockById(id) ?? []).map((block) => {
       const { top, bottom, left, right } = block.getBoundingRectangleWithoutChildren();
-      return new Blockly.utils.Rect(top, Math.min(bottom, top + ROW), Math.min(left, block.getRootBlock().getRelativeToSurfaceXY().x), right);
+      return new Blockly.utils.Rect(top, Math.min(bottom, top + ROW_UNITS), Math.min(left, block.getRootBlock().getRelativeToSurfaceXY().x), right);
     });
     const view = this.#view;
-    if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => isIn(box, view))) return;
+    if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
     const { scale, scrollX: x, scrollY: y } = this.#workspace;
-    const fitting = (/** @type {Blockly.utils.Rect} */ box) => scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE), view.getHeight() / (box.getHeight() + 2 * EDGE));
-    const heads = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD)));
-    const whole = fitting(around(boxes)) < LEAST ? around(heads) : around(boxes);
-    const fits = fitting(whole);
-    const isFar = fits < LEAST;
-    if (heads.every((box) => isIn(box, view)) && scale <= LEAST) return;
-    if (isFar && (heads.some((box) => isIn(box, view)) || performance.now() - this.#moved_ms < STAYS_MS)) return;
-    this.#before ??= { scale, x, y };
-    this.#moved_ms = performance.now();
-    if (fits < scale) this.#workspace.setScale(Math.max(LEAST, fits));
-    this.#scrollTo(isFar ? heads[0] ?? whole : whole);
+    const scaleToFit = (/** @type {Blockly.utils.Rect} */ box) => scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), view.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
+    const headBoxes = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD_UNITS)));
+    const boundingBox = scaleToFit(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
+    const fittingScale = scaleToFit(boundingBox);
+    const isTooFar = fittingScale < LEAST_SCALE;
+    if (headBoxes.every((box) => contains(box, view)) && scale <= LEAST_SCALE) return;
+    if (isTooFar && (headBoxes.some((box) => contains(box, view)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
+    this.#viewBefore ??= { scale, x, y };
+    this.#lastScroll_ms = performance.now();
+    if (fittingScale < scale) this.#workspace.setScale(Math.max(LEAST_SCALE, fittingScale));
+    this.#scrollTo(isTooFar ? headBoxes[0] ?? boundingBox : boundingBox);
   }
 
   /** What is seen, in the units of blocks. */
@@ -75,36 +75,36 @@ export class Sight {
   /** As little as has it seen. @param {Blockly.utils.Rect} box */
   #scrollTo(box) {
     const view = this.#view, { scale } = this.#workspace;
-    const left = nearest(view.left, view.getWidth(), box.left, box.right), top = nearest(view.top, view.getHeight(), box.top, box.bottom);
+    const left = nearestStart(view.left, view.getWidth(), box.left, box.right), top = nearestStart(view.top, view.getHeight(), box.top, box.bottom);
     this.#workspace.scroll(-left * scale, -top * scale);
   }
 
-  #rest() {
-    this.#resting = 0;
-    this.#isLeft = false;
-    const before = this.#before;
-    this.#before = null;
-    if (!before) return;
-    this.#workspace.setScale(before.scale);
-    this.#workspace.scroll(before.x, before.y);
+  #restoreView() {
+    this.#endTimer = 0;
+    this.#isLeftAlone = false;
+    const viewBefore = this.#viewBefore;
+    this.#viewBefore = null;
+    if (!viewBefore) return;
+    this.#workspace.setScale(viewBefore.scale);
+    this.#workspace.scroll(viewBefore.x, viewBefore.y);
   }
 }
 
 /** @param {Blockly.utils.Rect} box @param {Blockly.utils.Rect} view */
-function isIn(box, view) {
+function contains(box, view) {
   return box.left >= view.left && box.right <= view.right && box.top >= view.top && box.bottom <= view.bottom;
 }
 
 /** @param {Blockly.utils.Rect[]} boxes */
-function around(boxes) {
+function boundsOf(boxes) {
   return new Blockly.utils.Rect(Math.min(...boxes.map(({ top }) => top)), Math.max(...boxes.map(({ bottom }) => bottom)),
     Math.min(...boxes.map(({ left }) => left)), Math.max(...boxes.map(({ right }) => right)));
 }
 
 /**
  * Where what is seen begins, so that all from `low` to `high` is seen, or its beginning.
- * @param {number} from where it begins now @param {number} size @param {number} low @param {number} high
+ * @param {number} start where it begins now @param {number} size @param {number} low @param {number} high
  */
-function nearest(from, size, low, high) {
-  return Math.min(Math.max(from, high + EDGE - size), low - EDGE);
+function nearestStart(start, size, low, high) {
+  return Math.min(Math.max(start, high + EDGE_UNITS - size), low - EDGE_UNITS);
 }

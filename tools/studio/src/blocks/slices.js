@@ -7,29 +7,29 @@ const SLICE_MS = 8;
  * call of `within`.
  * @template T
  * @param {Iterator<void, T>} steps
- * @param {(slice: () => void) => void} [within]
+ * @param {(slice: () => void) => void} [runSlice]
  * @returns {Promise<T>}
  */
-export async function slowly(steps, within = (slice) => slice()) {
+export async function runInSlices(steps, runSlice = (slice) => slice()) {
   for (;;) {
     /** @type {IteratorResult<void, T> | undefined} */
     let step;
-    within(() => {
-      const end = performance.now() + SLICE_MS;
-      do step = steps.next(); while (!step.done && performance.now() < end);
+    runSlice(() => {
+      const end_ms = performance.now() + SLICE_MS;
+      do step = steps.next(); while (!step.done && performance.now() < end_ms);
     });
     if (step?.done) return step.value;
-    await rest();
+    await nextTurn();
   }
 }
 
 /** What was asked meanwhile comes first: a message is behind it. */
-export function rest() {
+export function nextTurn() {
   return new Promise((resolve) => { setTimeout(resolve, 0); });
 }
 
 /** Does all steps at once. @template T @param {Iterator<void, T>} steps @returns {T} */
-export function atOnce(steps) {
+export function runAtOnce(steps) {
   let step = steps.next();
   while (!step.done) step = steps.next();
   return step.value;

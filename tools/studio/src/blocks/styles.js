@@ -4,11 +4,11 @@
 import * as Blockly from 'blockly/core';
 import { COLOURS } from './colours.js';
 
-const MEDIA = './';
+const MEDIA_URL = './';
 const RENDERER = 'tiniscript';
 
 /** @param {string} css */
-function adopt(css) {
+function adoptCss(css) {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(css);
   document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
@@ -17,12 +17,12 @@ function adopt(css) {
 class Constants extends Blockly.zelos.ConstantProvider {
   /** @param {Document | ShadowRoot} _ @param {string} selector */
   injectCSS_(_, selector) {
-    adopt(this.getCSS_(selector).join('\n'));
+    adoptCss(this.getCSS_(selector).join('\n'));
   }
 
   init() {
     super.init();
-    this.FIELD_DROPDOWN_SVG_ARROW_DATAURI = `${MEDIA}dropdown-arrow.svg`;
+    this.FIELD_DROPDOWN_SVG_ARROW_DATAURI = `${MEDIA_URL}dropdown-arrow.svg`;
   }
 }
 
@@ -33,29 +33,29 @@ class Renderer extends Blockly.zelos.Renderer {
 }
 
 /** Puts Blockly's style sheet into the page. A detached tree may hold a style element. */
-function adoptCommon() {
+function adoptCommonCss() {
   const host = document.createElement('div');
   const root = host.attachShadow({ mode: 'open' });
-  const inside = document.createElement('div');
-  root.append(inside);
-  Blockly.Css.inject(inside, true, MEDIA);
-  adopt(root.querySelector('style')?.textContent ?? '');
+  const container = document.createElement('div');
+  root.append(container);
+  Blockly.Css.inject(container, true, MEDIA_URL);
+  adoptCss(root.querySelector('style')?.textContent ?? '');
 }
 
 /** @type {Blockly.BlocklyOptions | null} */
-let looks = null;
+let cachedOptions = null;
 
 /** @returns {Blockly.BlocklyOptions} */
-export function look() {
-  looks ??= prepared();
-  return looks;
+export function blocklyOptions() {
+  cachedOptions ??= makeOptions();
+  return cachedOptions;
 }
 
 /** @returns {Blockly.BlocklyOptions} */
-function prepared() {
+function makeOptions() {
   Blockly.blockRendering.register(RENDERER, Renderer);
-  adoptCommon();
-  adopt(Object.entries(COLOURS).map(([name, colour]) => `.category.${name} { --colour: ${colour}; }`).join('\n'));
+  adoptCommonCss();
+  adoptCss(Object.entries(COLOURS).map(([name, colour]) => `.category.${name} { --colour: ${colour}; }`).join('\n'));
   const styles = Object.entries(COLOURS).map(([name, colour]) => [name, { colourPrimary: colour }]);
   const theme = Blockly.Theme.defineTheme('tiniscript', {
     name: 'tiniscript',
@@ -68,5 +68,5 @@ function prepared() {
     fontStyle: { family: 'system-ui, "DejaVu Sans", sans-serif', weight: '600', size: 12 },
     startHats: false,
   });
-  return { css: false, media: MEDIA, renderer: RENDERER, theme, sounds: false };
+  return { css: false, media: MEDIA_URL, renderer: RENDERER, theme, sounds: false };
 }

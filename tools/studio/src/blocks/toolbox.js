@@ -3,22 +3,22 @@
 // is short enough to be seen at once.
 
 import { labelOf } from './said.js';
-import { devices } from './shapes.js';
+import { devicesOfRole } from './shapes.js';
 import { hasText, textKey, text } from '../page/texts.js';
 import { KINDS, blockLabel, pieceOf, PLAIN_WORDS, plainKind, tipOf, wordsOnBlock } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
-/** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
-/** @typedef {{kind: 'block', type: string, fields?: object, inputs?: object, extraState?: object}} Item */
+/** @typedef {{names: string[], words: [string, number][]}} UsedNames names of variables, and own words with the count of their values */
+/** @typedef {{kind: 'block', type: string, fields?: object, inputs?: object, extraState?: object}} ToolboxItem */
 
 export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
 
 const MOST_NAMES = 6; // of a program, in a group
-const AHEAD = 'DISTANCE'; // of a robot that looks ahead
-const ASKED_REMOTE = ['KEY_A', 'PAD_Y']; // the field of each offers the others
+const AHEAD_SENSOR = 'DISTANCE'; // of a robot that looks ahead
+const OFFERED_REMOTE_WORDS = ['KEY_A', 'PAD_Y']; // the field of each offers the others
 
 /** @param {number} value */
-function number(value) {
+function numberShadow(value) {
   return { shadow: { type: 'number', fields: { WORD: value } } };
 }
 
@@ -26,181 +26,181 @@ function number(value) {
  * @param {string} type
  * @param {number[]} values
  * @param {string} [word]
- * @returns {Item}
+ * @returns {ToolboxItem}
  */
-function item(type, values = [], word = '') {
-  const inputs = Object.fromEntries(values.map((value, k) => [`V${k}`, number(value)]));
+function makeItem(type, values = [], word = '') {
+  const inputs = Object.fromEntries(values.map((value, k) => [`V${k}`, numberShadow(value)]));
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
-/** @param {typeof PLAIN_WORDS[number]} word @returns {Item} */
-function plain({ text, arguments: values }) {
-  return item(plainKind(values.length), values.map(({ sample }) => Number(sample)), text);
+/** @param {typeof PLAIN_WORDS[number]} word @returns {ToolboxItem} */
+function plainWordItem({ text, arguments: values }) {
+  return makeItem(plainKind(values.length), values.map(({ sample }) => Number(sample)), text);
 }
 
-/** @param {string} name of a word of one's own @param {number} count of its values @returns {Item} */
-function call(name, count) {
-  return { ...item('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
+/** @param {string} name of a word of one's own @param {number} count of its values @returns {ToolboxItem} */
+function callItem(name, count) {
+  return { ...makeItem('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
 }
 
 /** What a question asks: what is ahead of the robot, where it can tell. */
-function asked() {
-  const sensors = devices('sensor');
-  return sensors.find((device) => device.text === AHEAD) ?? sensors[0];
+function askedSensor() {
+  const sensors = devicesOfRole('sensor');
+  return sensors.find((device) => device.text === AHEAD_SENSOR) ?? sensors[0];
 }
 
-/** A question that a robot can answer, to put into an IF. @param {string} [sign] between sensor and number */
-function question(sign = 'LT') {
-  const sensor = asked();
+/** A question that a robot can answer, to put into an IF. @param {string} [operator] between sensor and number */
+function questionInputs(operator = 'LT') {
+  const sensor = askedSensor();
   if (!sensor) return {};
   const block = { type: 'sensor', fields: { WORD: sensor.text } };
-  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: sign }, inputs: { V0: { block }, V1: number(20) } } } };
+  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: operator }, inputs: { V0: { block }, V1: numberShadow(20) } } } };
 }
 
 /** A comparison, where the robot has something to compare. */
-function comparison() {
-  const { block } = /** @type {any} */ (question()).V0 ?? {};
-  return block?.type === 'compare' ? { kind: /** @type {const} */ ('block'), ...block } : { ...item('compare', [1, 1]), fields: { WORD: 'LT' } };
+function comparisonItem() {
+  const { block } = /** @type {any} */ (questionInputs()).V0 ?? {};
+  return block?.type === 'compare' ? { kind: /** @type {const} */ ('block'), ...block } : { ...makeItem('compare', [1, 1]), fields: { WORD: 'LT' } };
 }
 
-/** @param {string} type @param {object} [extraState] @returns {Item} */
-function asking(type, extraState) {
+/** @param {string} type @param {object} [extraState] @returns {ToolboxItem} */
+function questionItem(type, extraState) {
   // A WHILE goes on until something is near.
-  return { kind: 'block', type, inputs: question(type === 'while' ? 'GT' : 'LT'), ...(extraState ? { extraState } : {}) };
+  return { kind: 'block', type, inputs: questionInputs(type === 'while' ? 'GT' : 'LT'), ...(extraState ? { extraState } : {}) };
 }
 
-/** @param {string} type @param {number[]} values @param {string} word @returns {Item} */
-function until(type, values, word = '') {
-  const made = item(type, values, word);
-  return { ...made, inputs: { ...made.inputs, [`V${values.length}`]: /** @type {any} */ (question()).V0 } };
+/** @param {string} type @param {number[]} values @param {string} word @returns {ToolboxItem} */
+function untilItem(type, values, word = '') {
+  const item = makeItem(type, values, word);
+  return { ...item, inputs: { ...item.inputs, [`V${values.length}`]: /** @type {any} */ (questionInputs()).V0 } };
 }
 
 /**
- * @param {Used} used
- * @returns {[string, [Level, Item][]][]} each group, and from which level on each block is in it
+ * @param {UsedNames} usedNames
+ * @returns {[string, [Level, ToolboxItem][]][]} each group, and from which level on each block is in it
  */
-function groups(used) {
-  const sensors = devices('sensor').map((device) => device.text);
-  const actuators = devices('actuator');
-  const measured = asked();
+function groupsOf(usedNames) {
+  const sensors = devicesOfRole('sensor').map((device) => device.text);
+  const actuators = devicesOfRole('actuator');
+  const measuredSensor = askedSensor();
   return [
     ['move', [
-      ['few', item('move', [2, 80], 'F')], ['few', item('move', [2, 80], 'B')],
-      ['few', item('move', [0.5, 60], 'L')], ['few', item('move', [0.5, 60], 'R')], ['few', item('stop')],
-      ['usual', until('move_until', [5, 60], 'F')], ['all', item('motors', [50, 80])],
+      ['few', makeItem('move', [2, 80], 'F')], ['few', makeItem('move', [2, 80], 'B')],
+      ['few', makeItem('move', [0.5, 60], 'L')], ['few', makeItem('move', [0.5, 60], 'R')], ['few', makeItem('stop')],
+      ['usual', untilItem('move_until', [5, 60], 'F')], ['all', makeItem('motors', [50, 80])],
     ]],
     ['time', [
-      ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
-      ...PLAIN_WORDS.map((word) => /** @type {[Level, Item]} */ (['few', plain(word)])),
-      ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
+      ['few', makeItem('wait', [1])], ['few', makeItem('beep', [0.5, 440])], ['usual', makeItem('show', [1])],
+      ...PLAIN_WORDS.map((word) => /** @type {[Level, ToolboxItem]} */ (['few', plainWordItem(word)])),
+      ['usual', untilItem('wait_until', [5])], ['all', makeItem('time')], ['all', makeItem('endless')],
     ]],
     ['control', [
-      ['few', item('loop', [3])], ['few', item('forever')], ['usual', asking('while')], ['usual', item('break')],
+      ['few', makeItem('loop', [3])], ['few', makeItem('forever')], ['usual', questionItem('while')], ['usual', makeItem('break')],
     ]],
     ['choose', [
-      ['few', asking('if', { arms: 1, hasElse: false })], ['few', asking('if', { arms: 1, hasElse: true })],
+      ['few', questionItem('if', { arms: 1, hasElse: false })], ['few', questionItem('if', { arms: 1, hasElse: true })],
     ]],
-    ['events', [['few', asking('when')], ['few', item('task')]]],
+    ['events', [['few', questionItem('when')], ['few', makeItem('task')]]],
     ['sensors', [
-      ...sensors.map((name) => /** @type {[Level, Item]} */ (['few', item('sensor', [], name)])),
-      ...actuators.map((device) => /** @type {[Level, Item]} */ (['few', item('set', device.is_yes_no ? [] : [0], device.text)])),
-      ...(measured ? [/** @type {[Level, Item]} */ (['usual', item('read', [], measured.text)])] : []),
-      ...ASKED_REMOTE.map((name) => /** @type {[Level, Item]} */ (['usual', item('sensor', [], name)])),
+      ...sensors.map((name) => /** @type {[Level, ToolboxItem]} */ (['few', makeItem('sensor', [], name)])),
+      ...actuators.map((device) => /** @type {[Level, ToolboxItem]} */ (['few', makeItem('set', device.is_yes_no ? [] : [0], device.text)])),
+      ...(measuredSensor ? [/** @type {[Level, ToolboxItem]} */ (['usual', makeItem('read', [], measuredSensor.text)])] : []),
+      ...OFFERED_REMOTE_WORDS.map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('sensor', [], name)])),
     ]],
     ['decide', [
-      ['few', comparison()], ['usual', { ...item('logic'), fields: { WORD: 'AND' } }],
-      ['usual', item('not')], ['usual', item('truth')],
+      ['few', comparisonItem()], ['usual', { ...makeItem('logic'), fields: { WORD: 'AND' } }],
+      ['usual', makeItem('not')], ['usual', makeItem('truth')],
     ]],
     ['numbers', [
-      ['usual', item('number')], ['usual', item('math', [1, 1])], ['usual', item('random', [1, 6])],
-      ['all', item('round', [1, 0])], ['all', item('abs', [-1])], ['all', item('extreme', [1, 2])],
-      ['all', item('negative', [1])], ['all', item('brackets', [1])],
+      ['usual', makeItem('number')], ['usual', makeItem('math', [1, 1])], ['usual', makeItem('random', [1, 6])],
+      ['all', makeItem('round', [1, 0])], ['all', makeItem('abs', [-1])], ['all', makeItem('extreme', [1, 2])],
+      ['all', makeItem('negative', [1])], ['all', makeItem('brackets', [1])],
     ]],
     ['names', [
-      ['usual', item('assign', [0], used.names[0] ?? 'X')],
-      ...(used.names.length ? used.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, Item]} */ (['usual', item('name', [], name)])),
+      ['usual', makeItem('assign', [0], usedNames.names[0] ?? 'X')],
+      ...(usedNames.names.length ? usedNames.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('name', [], name)])),
     ]],
     ['words', [
-      ['usual', item('def', [], 'HOP')],
-      ...used.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, Item]} */ (['usual', call(name, count)])),
+      ['usual', makeItem('def', [], 'HOP')],
+      ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', callItem(name, count)])),
     ]],
-    ['others', [['usual', item('comment')], ['all', item('start')]]],
+    ['others', [['usual', makeItem('comment')], ['all', makeItem('start')]]],
   ];
 }
 
-/** @param {Item} each */
-function wordOf(each) {
-  return /** @type {{WORD?: string}} */ (each.fields ?? {}).WORD ?? '';
+/** @param {ToolboxItem} item */
+function wordOfItem(item) {
+  return /** @type {{WORD?: string}} */ (item.fields ?? {}).WORD ?? '';
 }
 
 const MOST_FOUND = 8; // are seen at once
 
-/** @param {string} said @returns {string} in small letters without accents */
-function plainly(said) {
-  return said.toLowerCase().normalize('NFD').replace(/[\u0300-\u036f]/g, '');
+/** @param {string} text @returns {string} in small letters without accents */
+function withoutAccents(text) {
+  return text.toLowerCase().normalize('NFD').replace(/[\u0300-\u036f]/g, '');
 }
 
 /** Where a word that somebody looks for may be, the best first; in no place of them a block is not found. */
-const PLACES = 5;
+const RANK_COUNT = 5;
 
 /**
  * @param {string} words that somebody looks for
- * @param {Used} used
+ * @param {UsedNames} usedNames
  * @returns {object[]} blocks whose label has them, or their word in the text, or what people call it, what is said of what they do, or their group
  */
-export function found(words, used) {
-  const wanted = plainly(words).split(/\s+/).filter(Boolean);
-  const rows = groups(used).flatMap(([group, items]) => items.map(([, each]) => {
-    const word = wordOf(each);
-    const choices = word ? [] : (KINDS[each.type]?.words ?? []).map(blockLabel);
-    const label = plainly([labelOf(each.type, word, null).said, word, each.type, ...choices].join(' '));
-    const called = ` ${peopleSay(each.type, word)}`, tip = plainly(tipOf(each.type)), over = ` ${plainly(text(textKey(`group/${group}`)))}`;
-    const ranks = wanted.map((part) => [label.startsWith(part), label.includes(part), called.includes(` ${part}`), tip.includes(part), over.includes(` ${part}`), true].indexOf(true));
-    return { each, rank: Math.max(...ranks) };
+export function findItems(words, usedNames) {
+  const wantedWords = withoutAccents(words).split(/\s+/).filter(Boolean);
+  const rankedItems = groupsOf(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
+    const word = wordOfItem(item);
+    const choices = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
+    const label = withoutAccents([labelOf(item.type, word, null).text, word, item.type, ...choices].join(' '));
+    const peopleWords = ` ${wordsOfPeople(item.type, word)}`, tipText = withoutAccents(tipOf(item.type)), groupText = ` ${withoutAccents(text(textKey(`group/${group}`)))}`;
+    const ranks = wantedWords.map((wantedWord) => [label.startsWith(wantedWord), label.includes(wantedWord), peopleWords.includes(` ${wantedWord}`), tipText.includes(wantedWord), groupText.includes(` ${wantedWord}`), true].indexOf(true));
+    return { item, rank: Math.max(...ranks) };
   }));
-  return rows.filter(({ rank }) => rank < PLACES).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ each }) => ({ ...each, gap: 8 }));
+  return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ item }) => ({ ...item, gap: 8 }));
 }
 
 /** What people say for the words that a block stands for, by the lexicon of their language. @param {string} kind @param {string} word @returns {string} */
-function peopleSay(kind, word) {
+function wordsOfPeople(kind, word) {
   const words = word ? [word] : KINDS[kind]?.words ?? [];
-  const meant = [...words, ...[kind, ...words].flatMap((each) => wordsOnBlock(each)), ...words.some((each) => KINDS['move']?.units[each] === 'DEG') ? ['turn'] : []];
-  return plainly(meant.map((each) => (hasText(`words/${each}`) ? text(textKey(`words/${each}`)) : '')).join(' '));
+  const meanings = [...words, ...[kind, ...words].flatMap((blockName) => wordsOnBlock(blockName)), ...words.some((blockWord) => KINDS['move']?.units[blockWord] === 'DEG') ? ['turn'] : []];
+  return withoutAccents(meanings.map((meaning) => (hasText(`words/${meaning}`) ? text(textKey(`words/${meaning}`)) : '')).join(' '));
 }
 
 /**
  * @param {string[]} kinds of blocks
- * @param {Used} used
+ * @param {UsedNames} usedNames
  * @returns {Level} the lowest one that offers them all
  */
-export function levelOf(kinds, used) {
-  const rows = groups(used).flatMap(([, items]) => items);
-  const least = kinds.flatMap((kind) => {
-    const levels = rows.filter(([, { type }]) => type === kind).map(([level]) => LEVELS.indexOf(level));
+export function levelOf(kinds, usedNames) {
+  const levelItems = groupsOf(usedNames).flatMap(([, items]) => items);
+  const leastLevels = kinds.flatMap((kind) => {
+    const levels = levelItems.filter(([, { type }]) => type === kind).map(([level]) => LEVELS.indexOf(level));
     return levels.length ? Math.min(...levels) : [];
   });
-  return LEVELS[Math.max(0, ...least)] ?? 'few';
+  return LEVELS[Math.max(0, ...leastLevels)] ?? 'few';
 }
 
 /**
  * @param {Level} level
- * @param {Used} used
- * @param {string[]} taught kinds of blocks that lessons have spoken of
- * @param {string[]} fresh blocks that glow, as `pieceOf` has them
+ * @param {UsedNames} usedNames
+ * @param {string[]} taughtKinds kinds of blocks that lessons have spoken of
+ * @param {string[]} newPieces blocks that glow, as `pieceOf` has them
  * @returns {any}
  */
-export function toolbox(level, used, taught, fresh) {
-  const most = LEVELS.indexOf(level);
-  const isShown = (/** @type {[Level, Item]} */ [from, { type }]) => LEVELS.indexOf(from) <= most || taught.includes(type);
-  const shown = groups(used).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
+export function makeToolbox(level, usedNames, taughtKinds, newPieces) {
+  const levelIndex = LEVELS.indexOf(level);
+  const isShown = (/** @type {[Level, ToolboxItem]} */ [fromLevel, { type }]) => LEVELS.indexOf(fromLevel) <= levelIndex || taughtKinds.includes(type);
+  const shownGroups = groupsOf(usedNames).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
   return {
     kind: 'categoryToolbox',
-    contents: shown.filter(([, items]) => items.length).map(([name, items]) => ({
+    contents: shownGroups.filter(([, items]) => items.length).map(([name, items]) => ({
       kind: 'category',
       name: text(textKey(`group/${name}`)),
       categorystyle: name,
-      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, each]) => fresh.includes(pieceOf(each.type, wordOf(each)))) ? ' fresh' : ''}` },
-      contents: items.map(([, each]) => ({ ...each, gap: 8 })),
+      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, item]) => newPieces.includes(pieceOf(item.type, wordOfItem(item)))) ? ' fresh' : ''}` },
+      contents: items.map(([, item]) => ({ ...item, gap: 8 })),
     })),
   };
 }

@@ -378,7 +378,7 @@ export class Teacher {
       const answer = await post({ do: 'class_text', ...owner });
       const program = { text: String(answer.text), robot: String(answer.robot || 'tinibot'), version: Number(answer.version), history: answer.history ?? [] };
       this.#knownPrograms.set(key, program);
-      this.#pictures.want(key, program, (address) => {
+      this.#pictures.request(key, program, (address) => {
         if (!this.#wall.setPicture(key, address)) URL.revokeObjectURL(address);
         if (this.#bigPupil.key === key) this.#showBigPupil(key);
       });

@@ -27,7 +27,7 @@ import { isSecondPress } from '../page/twice.js';
  * @property {number} worlds
  * @property {string[]} said
  * @property {string[]} block_said the same for who sees blocks
- * @property {Record<string, import('../blocks/said.js').Spoken>} spoken what each code in it is as a block
+ * @property {Record<string, import('../blocks/said.js').SpokenBlock>} spoken what each code in it is as a block
  * @property {{seed: number, until_ms: number} | null} run
  */
 /**
@@ -73,7 +73,7 @@ export class Lessons {
   #next = element('lesson_next', HTMLButtonElement);
   #hint = element('lesson_hint', HTMLDetailsElement);
   #pictures;
-  /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').Spoken>} */
+  /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').SpokenBlock>} */
   #spoken = {};
   /** What the check has found. @type {{said: string[], block_said: string[]}} */
   #found = { said: [], block_said: [] };
@@ -272,7 +272,7 @@ export class Lessons {
         return this.#areBlocks ? spoken ? asWritten(labelOfBlock(spoken), code) : labelOfWord(code) : null;
       },
       draw: this.#areBlocks ? (program, done) => {
-        this.#pictures.want(program, { text: program, robot: pageState.robotName.value }, done);
+        this.#pictures.request(program, { text: program, robot: pageState.robotName.value }, done);
       } : null,
     };
   }
@@ -424,7 +424,7 @@ export class Lessons {
 }
 
 /** Names that a sentence has in small letters. @param {import('../blocks/said.js').Label} label @param {string} code */
-function asWritten({ said, colour }, code) {
+function asWritten({ text: said, colour }, code) {
   const names = code.match(/[\p{Ll}_]{2,}/gu) ?? [];
-  return { said: names.reduce((whole, name) => whole.replace(name.toUpperCase(), name), said), colour };
+  return { text: names.reduce((whole, name) => whole.replace(name.toUpperCase(), name), said), colour };
 }

@@ -56,7 +56,7 @@ export function filled(kind, line, { say }) {
     const mark = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
     if (!mark || part.length <= 2 * mark) return part;
     const inside = part.slice(mark, -mark), label = mark === 1 ? say(inside) : null;
-    const place = makeElement(mark === 2 ? 'strong' : label ? 'span' : 'code', '', label?.said ?? inside);
+    const place = makeElement(mark === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? inside);
     if (label) {
       place.className = 'on_block';
       place.style.setProperty('--colour', label.colour);

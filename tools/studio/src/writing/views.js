@@ -152,7 +152,7 @@ export class Views {
     const { value } = this.#level;
     replaceOptions(this.#level, LEVELS.map(([level, name], k) => pictureOption(text(name), level, blocksPicture(k + 1))));
     this.#level.value = value || this.#page.work.level;
-    this.#blocks?.showWords();
+    this.#blocks?.updateLanguage();
     if (!this.#isStale()) this.#showAll();
     if (this.#blocks) this.#refresh(true);
   }
@@ -244,8 +244,8 @@ export class Views {
   async #fetch() {
     const { Blocks: Kind } = await import('../blocks/blocks.js');
     this.#blocks = new Kind(this.#pane, pageState.robotName.value, this.#page.work.level, {
-      changed: () => this.#blocksChanged(),
-      toggle: (place) => {
+      onChange: () => this.#blocksChanged(),
+      toggleBreakpoint: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
       tryAlone: async (form, isAsked) => {
@@ -256,7 +256,7 @@ export class Views {
           this.#fail(why);
         }
       },
-      hear: this.#page.hear,
+      playTone: this.#page.hear,
     });
     this.#teach();
     this.#pane.dataset['state'] = 'empty';
@@ -331,7 +331,7 @@ export class Views {
         this.#shown = answer.text;
         this.#form = whole;
         this.#stand = stands.after;
-        this.#blocks.placed(ids, answer.places);
+        this.#blocks.setRanges(ids, answer.places);
         this.#page.editor.replaceByBlocks(answer.text, stands);
         this.#showBreakpoints();
       }
@@ -361,7 +361,7 @@ export class Views {
       const answer = await group.writeBlocks(form, ids);
       if (!answer?.is_shown) return;
       this.#shown = this.#page.editor.text;
-      this.#blocks.placed(ids, answer.places ?? []);
+      this.#blocks.setRanges(ids, answer.places ?? []);
       this.#showBreakpoints();
     }
   }
