@@ -274,8 +274,8 @@ const PARTS = {
     globalThis.getComputedStyle = () => ({ getPropertyValue: (name) => name });
     let notes = [];
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
-    class Choice { shapes = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { said = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
+    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
     const notingClass = (name) => function made() { return noting(notes, name); };
     const beginning = (name) => function made() { // what is drawn is what came since it has begun
       let count = 0;
@@ -729,7 +729,7 @@ const PARTS = {
     const { Programs } = await page.load('programs/programs.js');
     let late = () => 5;
     const python = { ask: async () => { await later(late()); return { text: 'a line' }; } };
-    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, picturing() {} });
+    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, makePicture() {} });
     const { dataset } = page.byId('programs');
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : 5 + chance.below(900));
@@ -1104,22 +1104,22 @@ const PARTS = {
     const page = freshPage();
     await learns(page);
     const { OwnWorlds } = await page.load('world/own.js');
-    const { keptWorlds } = await page.load('programs/work.js');
+    const { loadWorldTexts } = await page.load('programs/work.js');
     let late = () => 5;
     const own = new OwnWorlds({ ask: async ({ form }) => { await later(late()); return { text: `text of ${form.name}` }; } });
     return async (chance, isGood) => {
       late = () => (isGood ? 50 : 5 + chance.below(600));
       const count = 1 + chance.below(5);
       for (let k = 0; k < count; k += 1) {
-        own.put({ name: `${isGood ? 'good' : 'bad'} ${k}` }, isGood);
-        own.keep('tinibot');
+        own.setNewest({ name: `${isGood ? 'good' : 'bad'} ${k}` }, isGood);
+        own.storeTexts('tinibot');
         if (!isGood) await passes(chance.below(300));
       }
       if (!isGood) return { ends: [count > 1 ? 'several' : 'one'], seen: [] };
-      own.before = [];
-      own.keep('tinibot');
+      own.earlier = [];
+      own.storeTexts('tinibot');
       await passes(2000);
-      return { ends: ['good'], seen: keptWorlds().newest };
+      return { ends: ['good'], seen: loadWorldTexts().newest };
     };
   },
 
@@ -1135,7 +1135,7 @@ const PARTS = {
     let world = empty('w0');
     const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
     const drawing = new WorldDrawing({ ask: async () => ({ world: empty('opened') }) }, noting([], 'arena'), {
-      world: () => world, choice, robot: () => [0, 0], isDriving: () => false, rest() {}, preview() {}, tell() {},
+      world: () => world, worldChoice: choice, robot: () => [0, 0], isDriving: () => false, switchOff() {}, preview() {}, tell() {},
       put(changed) {
         world = changed;
         choice.isOwn = true;
@@ -1200,12 +1200,12 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Programs } = await page.load('programs/programs.js');
-    const { keptWork } = await page.load('programs/work.js');
-    const { MOST_CHARACTERS, versions } = await page.load('programs/versions.js');
-    const { linkOf } = await page.load('programs/links.js');
+    const { loadWork } = await page.load('programs/work.js');
+    const { MOST_CHARACTERS, loadVersions } = await page.load('programs/versions.js');
+    const { makeLink } = await page.load('programs/links.js');
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
     const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
-    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), picturing() {} });
+    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
     const inForm = ({ text, robot, name }) => JSON.stringify([text, robot, name]);
     return async (chance, isGood) => {
@@ -1213,7 +1213,7 @@ const PARTS = {
       const ends = new Set();
       const acts = {
         writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(chance.of([1, 20, 30_000, 60_000, 90_000]))}`; },
-        again: () => { work.text = chance.of(versions())?.text ?? work.text; },
+        again: () => { work.text = chance.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
         opens: () => page.byId('my_programs').click(),
@@ -1234,7 +1234,7 @@ const PARTS = {
         },
         leaves: () => dispatchEvent(new Event('pagehide')),
         link: async () => {
-          const link = await linkOf({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
+          const link = await makeLink({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
           location.hash = link.slice(link.indexOf('#'));
           dispatchEvent(new Event('hashchange'));
           for (let k = 0; work.text !== `B(${count});` && k < 50_000; k += 1) await settles(); // it waits for the real clock
@@ -1246,14 +1246,14 @@ const PARTS = {
         if (chance() < 0.1) store.room = chance.of([Infinity, Infinity, 400_000, 100_000, 0]);
         const act = chance.of(Object.keys(acts));
         const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
-        const kept = versions();
+        const kept = loadVersions();
         pageState.note.set('');
         let told = '';
         pageState.note.subscribe((said) => { told ||= said; });
         await acts[act]();
-        const now = versions();
+        const now = loadVersions();
         if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
-        if (act === 'names' && store.room === Infinity && keptWork()?.name !== before.name) throw new Error(`its name is ${keptWork()?.name}`);
+        if (act === 'names' && store.room === Infinity && loadWork()?.name !== before.name) throw new Error(`its name is ${loadWork()?.name}`);
         const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
         const wanted = [before, ...others].map(inForm);
         if (before.text.length > MOST_CHARACTERS || !now.length || inForm(now[0]) !== wanted[0]) {
@@ -1703,8 +1703,8 @@ const PARTS = {
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
-    class Choice { shapes = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { said = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
+    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),

@@ -14,7 +14,7 @@ import { Python } from './python.js';
 import { pictureOption, robotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
-import { bringsProgram } from './programs/links.js';
+import { holdsProgram } from './programs/links.js';
 import { labelOf, currentLanguage, textKey, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
 import { isRunFile } from './virtual/runs_window.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
@@ -26,13 +26,13 @@ import { RunningPlace } from './robot/place.js';
 import { listenToSideButtons } from './page/sides.js';
 import { ignoreSecondPresses } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
-import { beginScreens, isStart, show as showScreen } from './start/screens.js';
+import { openFirstScreen, isStart, showScreen as showScreen } from './start/screens.js';
 import { OwnWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
 import { startTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
 import { ROBOTS } from './page/words.js';
-import { keep, keptWork, LONGEST } from './programs/work.js';
+import { storeWork, loadWork, MOST_CHARACTERS } from './programs/work.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 
@@ -49,7 +49,7 @@ const list = element('messages', HTMLElement);
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
-const kept = keptWork();
+const kept = loadWork();
 const work = kept ?? {
   text: FIRST_PROGRAM,
   robot: ROBOTS[0]?.name ?? '',
@@ -105,7 +105,7 @@ const driving = new SimulatorPanel({
     phone.show('robot');
   },
 });
-const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
+const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.picture() });
 
 const recorder = new Recorder({ runs: driving.runs, play: (run) => driving.playAgain(run) });
 const place = new RunningPlace();
@@ -121,7 +121,7 @@ const lessons = new Lessons({
   work,
   put: (program) => programs.replace(program),
   exchange: (program) => {
-    programs.keep();
+    programs.storeVersion();
     fill(program);
   },
   driving,
@@ -137,30 +137,30 @@ const checking = new Checking(python, (why) => {
   sayStatus(bugSentence(why), 'wrong');
 });
 const phone = new Phone(() => panel.run());
-beginScreens(entryFailure !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
-if (kept) programs.keep();
+openFirstScreen(entryFailure !== '' || holdsProgram(location.hash), !('class' in document.documentElement.dataset));
+if (kept) programs.storeVersion();
 new OwnWindow();
 new Start({
-  put: (program) => programs.replace(program),
-  run: (world) => {
+  putProgram: (program) => programs.replace(program),
+  runInWorld: (world) => {
     phone.show('robot');
     return driving.run(world);
   },
-  see: () => views.wake(),
-  side: (id) => {
+  seeProgram: () => views.wake(),
+  showSide: (id) => {
     element(id, HTMLButtonElement).click();
     phone.show(id === 'side_virtual' ? 'program' : 'robot');
   },
-  leave: () => {
+  leaveProgram: () => {
     element('programs', HTMLDialogElement).close();
     driving.leave();
-    programs.keep();
+    programs.storeVersion();
     lessons.leave();
   },
 });
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
-    panel, work, python, editor, views, keepProgram: () => programs.keep(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
+    panel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
     newestRun: () => driving.newestRun(), openRun: (file) => driving.openRun(file),
   }));
 }
@@ -229,7 +229,7 @@ function showRobots() {
 }
 
 function remember() {
-  if (!keep(work)) pageState.note.set(text(work.text.length > LONGEST ? 'kept_too_long' : 'not_kept'));
+  if (!storeWork(work)) pageState.note.set(text(work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
 }
 
 robots.addEventListener('change', async () => {

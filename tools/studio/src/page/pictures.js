@@ -6,7 +6,7 @@ import { pageState } from './page_state.js';
 import { drawRobot } from '../virtual/robot_drawing.js';
 import { cornersOf } from '../world/parts.js';
 
-/** @import { World, Place } from '../world/parts.js' */
+/** @import { World, Point } from '../world/parts.js' */
 
 const WIDTH_PX = 96, HEIGHT_PX = 66; // pixels of a robot's picture
 const VISIBLE_CM = 34; // that are seen of one
@@ -77,7 +77,7 @@ function discPicture(cx, cy, r, fill) {
   return makeSvg('circle', { cx, cy, r, fill });
 }
 
-/** @param {Place[]} points @param {string} fill @param {string} stroke */
+/** @param {Point[]} points @param {string} fill @param {string} stroke */
 function polyline(points, fill, stroke) {
   return makeSvg('polyline', { points: points.map((point) => point.join(' ')).join(' '), fill, stroke, 'stroke-width': 5 });
 }

@@ -1,7 +1,7 @@
 // Where others find a page, and from where an address can be opened.
 
-const HERE = /^(.*\.)?localhost$|^127(\.\d+){3}$|^\[::1\]$/;
-const NETWORK = /^(10\.\d+|192\.168|172\.(1[6-9]|2\d|3[01])|169\.254)(\.\d+){2}$|^\[f([cd]|e[89ab])|\.local$|^[^.[]+$/;
+const HERE_HOST = /^(.*\.)?localhost$|^127(\.\d+){3}$|^\[::1\]$/;
+const NETWORK_HOST = /^(10\.\d+|192\.168|172\.(1[6-9]|2\d|3[01])|169\.254)(\.\d+){2}$|^\[f([cd]|e[89ab])|\.local$|^[^.[]+$/;
 
 /** @param {string} address */
 export function isAddress(address) {
@@ -14,5 +14,5 @@ export function isAddress(address) {
  */
 export function reachOf(address) {
   const { hostname } = new URL(address);
-  return HERE.test(hostname) ? 'here' : NETWORK.test(hostname) ? 'network' : 'anywhere';
+  return HERE_HOST.test(hostname) ? 'here' : NETWORK_HOST.test(hostname) ? 'network' : 'anywhere';
 }

@@ -10,14 +10,14 @@ import { storeText, storedJson } from '../page/kept.js';
 
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
-const PLACE = 'tiniscript.versions';
-const MOST = 40;
+const STORAGE_KEY = 'tiniscript.versions';
+const MOST_VERSIONS = 40;
 export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five million
 
 /** @returns {Version[]} */
-export function versions() {
-  const kept = storedJson(PLACE);
-  return Array.isArray(kept) ? kept.filter(isVersion).slice(0, MOST) : [];
+export function loadVersions() {
+  const stored = storedJson(STORAGE_KEY);
+  return Array.isArray(stored) ? stored.filter(isVersion).slice(0, MOST_VERSIONS) : [];
 }
 
 /**
@@ -27,23 +27,23 @@ export function versions() {
  * @param {number} [at_ms]
  * @returns {boolean}
  */
-export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
+export function storeVersion({ text, robot, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
-  const others = versions().filter((each) => each.text !== text || each.robot !== robot);
-  const all = [{ text, robot, name, at_ms }, ...others].slice(0, MOST);
-  while (all.length > 1 && all.reduce((sum, each) => sum + each.text.length, 0) > MOST_CHARACTERS) all.pop();
-  while (all.length && !storeText(PLACE, JSON.stringify(all))) all.pop();
-  return all.length > 0;
+  const otherVersions = loadVersions().filter((version) => version.text !== text || version.robot !== robot);
+  const newVersions = [{ text, robot, name, at_ms }, ...otherVersions].slice(0, MOST_VERSIONS);
+  while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
+  while (newVersions.length && !storeText(STORAGE_KEY, JSON.stringify(newVersions))) newVersions.pop();
+  return newVersions.length > 0;
 }
 
 /**
  * Its name; else its first block in words for who sees blocks, and for who sees text its first lines.
  * @param {Version} version @param {number} number @returns {string}
  */
-export function titleOf({ name, text }, number) {
-  const begin = pageState.view.value === 'blocks' ? labelOfLine(firstLine(text)) || said('program_unnamed', { number }) : beginOf(text);
-  return name.replace(/\.\w+$/, '') || begin;
+export function versionTitle({ name, text }, number) {
+  const beginning = pageState.view.value === 'blocks' ? labelOfLine(firstLine(text)) || said('program_unnamed', { number }) : beginningOf(text);
+  return name.replace(/\.\w+$/, '') || beginning;
 }
 
 /** Its first instruction. @param {string} text @returns {string} */
@@ -52,21 +52,21 @@ function firstLine(text) {
 }
 
 /** Its first lines as one, with no character cut in two. @param {string} text @returns {string} */
-export function beginOf(text) {
+export function beginningOf(text) {
   return text.trim().split('\n', 3).join(' ').replace(/^(.{60}).+/su, '$1…');
 }
 
 /**
- * @param {any} found
+ * @param {any} value
  * @returns {found is Version}
  */
-function isVersion(found) {
+function isVersion(value) {
   return (
-    typeof found?.text === 'string' &&
-    found.text.length <= MOST_CHARACTERS &&
-    isRobot(found.robot) &&
-    typeof found.name === 'string' &&
-    Number.isFinite(found.at_ms) &&
-    Math.abs(found.at_ms) <= 8.64e15 // what a Date takes
+    typeof value?.text === 'string' &&
+    value.text.length <= MOST_CHARACTERS &&
+    isRobot(value.robot) &&
+    typeof value.name === 'string' &&
+    Number.isFinite(value.at_ms) &&
+    Math.abs(value.at_ms) <= 8.64e15 // what a Date takes
   );
 }

@@ -8,34 +8,34 @@ import { isRobot, WORLDS } from '../page/words.js';
 
 /** @typedef {{text: string, robot: string, world: string, language: string, name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
 
-const PLACE = 'tiniscript.work';
-const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
-const BEFORE_PLACE = 'tiniscript.worlds_before'; // the texts of those before it
+const STORAGE_KEY = 'tiniscript.work';
+const WORLD_KEY = 'tiniscript.world'; // the text of the newest world that was drawn here
+const EARLIER_WORLDS_KEY = 'tiniscript.worlds_before'; // the texts of those before it
 export const OWN_WORLD = ':own'; // no name of a shipped world
-export const LONGEST = 1_000_000; // characters
+export const MOST_CHARACTERS = 1_000_000; // characters
 
-const MOST_OTHERS = 5;
+const MOST_OTHER_WORLDS = 5;
 
 /** The worlds of this tab that may be in the place: others there are of another tab. @type {Set<string>} */
 let ownWorlds = new Set();
 
 /** @returns {Work | null} */
-export function keptWork() {
-  return checked(storedJson(PLACE, 'sessionStorage')) ?? checked(storedJson(PLACE));
+export function loadWork() {
+  return validWork(storedJson(STORAGE_KEY, 'sessionStorage')) ?? validWork(storedJson(STORAGE_KEY));
 }
 
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
-export function keptWorlds() {
-  const newest = storedText(WORLD_PLACE, 'sessionStorage') || storedText(WORLD_PLACE);
-  const before = worldsBefore('sessionStorage') ?? worldsBefore() ?? [];
+export function loadWorldTexts() {
+  const newest = storedText(WORLD_KEY, 'sessionStorage') || storedText(WORLD_KEY);
+  const before = loadEarlierWorlds('sessionStorage') ?? loadEarlierWorlds() ?? [];
   ownWorlds = new Set([newest, ...before]);
   return { newest, before };
 }
 
-/** @param {import('../page/kept.js').StoreName} [store] @returns {string[] | null} */
-function worldsBefore(store) {
-  const texts = storedJson(BEFORE_PLACE, store);
-  return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
+/** @param {import('../page/kept.js').StoreName} [storeName] @returns {string[] | null} */
+function loadEarlierWorlds(storeName) {
+  const texts = storedJson(EARLIER_WORLDS_KEY, storeName);
+  return Array.isArray(texts) ? texts.filter((worldText) => typeof worldText === 'string' && worldText) : null;
 }
 
 /**
@@ -43,56 +43,56 @@ function worldsBefore(store) {
  * @param {Work} work
  * @returns {boolean}
  */
-export function keep(work) {
-  return work.text.length <= LONGEST && put(PLACE, JSON.stringify(work));
+export function storeWork(work) {
+  return work.text.length <= MOST_CHARACTERS && storeInBoth(STORAGE_KEY, JSON.stringify(work));
 }
 
 /**
  * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
  * The next tab finds those of other tabs, too: as they are now, after the ones before. Returns whether it does.
  * @param {string} newest
- * @param {string[]} before the last one first
+ * @param {string[]} earlierWorlds the last one first
  * @returns {boolean}
  */
-export function keepWorlds(newest, before) {
-  for (const each of [newest, ...before]) ownWorlds.add(each);
+export function storeWorldTexts(newest, earlierWorlds) {
+  for (const worldText of [newest, ...earlierWorlds]) ownWorlds.add(worldText);
   // What lasts was put there by the tab that changed last, with the worlds of all tabs as it found them.
-  const others = [...new Set(lastingWorlds())].filter((each) => !ownWorlds.has(each)).slice(0, MOST_OTHERS);
-  let rest = LONGEST;
-  const fitting = [...before, ...others].filter((each) => (rest -= each.length) >= 0);
-  const own = fitting.filter((each) => before.includes(each));
-  const areKept = put(BEFORE_PLACE, JSON.stringify(own), JSON.stringify(fitting));
-  const isKept = newest ? put(WORLD_PLACE, newest) && areKept : areKept;
-  if (isKept) ownWorlds = new Set([newest, ...before]);
-  return isKept;
+  const otherWorlds = [...new Set(loadLastingWorlds())].filter((worldText) => !ownWorlds.has(worldText)).slice(0, MOST_OTHER_WORLDS);
+  let charactersLeft = MOST_CHARACTERS;
+  const fittingWorlds = [...earlierWorlds, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
+  const ownEarlier = fittingWorlds.filter((worldText) => earlierWorlds.includes(worldText));
+  const areEarlierStored = storeInBoth(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlier), JSON.stringify(fittingWorlds));
+  const isStored = newest ? storeInBoth(WORLD_KEY, newest) && areEarlierStored : areEarlierStored;
+  if (isStored) ownWorlds = new Set([newest, ...earlierWorlds]);
+  return isStored;
 }
 
 /** Those that the next tab would find. @returns {string[]} */
-function lastingWorlds() {
-  return [storedText(WORLD_PLACE), ...(worldsBefore() ?? [])].filter(Boolean);
+function loadLastingWorlds() {
+  return [storedText(WORLD_KEY), ...(loadEarlierWorlds() ?? [])].filter(Boolean);
 }
 
-/** @param {string} place @param {string} whole @param {string} [lasting] for the next tab @returns {boolean} whether that is kept, too */
-function put(place, whole, lasting = whole) {
-  storeText(place, whole, 'sessionStorage');
-  return storeText(place, lasting);
+/** @param {string} key @param {string} content @param {string} [lastingContent] for the next tab @returns {boolean} whether that is kept, too */
+function storeInBoth(key, content, lastingContent = content) {
+  storeText(key, content, 'sessionStorage');
+  return storeText(key, lastingContent);
 }
 
 /**
- * @param {any} found
+ * @param {any} value
  * @returns {Work | null}
  */
-function checked(found) {
-  if (typeof found?.text !== 'string' || found.text.length > LONGEST) return null;
+function validWork(value) {
+  if (typeof value?.text !== 'string' || value.text.length > MOST_CHARACTERS) return null;
   return {
-    text: found.text,
-    robot: isRobot(found.robot) ? found.robot : 'tinibot',
-    world: found.world === OWN_WORLD || WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
-    language: languageOf(typeof found.language === 'string' ? found.language : ''),
-    name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
-    view: found.view === 'text' ? 'text' : 'blocks',
-    level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',
-    words: found.words === true,
-    sound: found.sound !== false,
+    text: value.text,
+    robot: isRobot(value.robot) ? value.robot : 'tinibot',
+    world: value.world === OWN_WORLD || WORLDS.some((world) => world.name === value.world) ? value.world : 'obstacles',
+    language: languageOf(typeof value.language === 'string' ? value.language : ''),
+    name: typeof value.name === 'string' ? value.name.slice(0, 200) : '',
+    view: value.view === 'text' ? 'text' : 'blocks',
+    level: value.level === 'all' || value.level === 'usual' ? value.level : 'few',
+    words: value.words === true,
+    sound: value.sound !== false,
   };
 }

@@ -77,6 +77,6 @@ END_WHEN;
 };
 
 /** Whether a program is one that the page has brought. @param {string} text */
-export function isGiven(text) {
-  return text === FIRST_PROGRAM || Object.values(BEGINNINGS).some((each) => each.text === text);
+export function isShippedProgram(text) {
+  return text === FIRST_PROGRAM || Object.values(BEGINNINGS).some((beginning) => beginning.text === text);
 }

@@ -5,16 +5,16 @@ import { pageState } from '../page/page_state.js';
 
 /** @typedef {'start' | 'program'} Screen */
 
-const EDITOR = '#editor';
+const EDITOR_HASH = '#editor';
 const root = document.documentElement;
 
 /** Whether the address is that of a screen, and of nothing else. */
-function isScreen() {
-  return location.hash === '' || location.hash === EDITOR;
+function isScreenAddress() {
+  return location.hash === '' || location.hash === EDITOR_HASH;
 }
 
 /** @param {Screen} screen */
-function put(screen) {
+function setScreen(screen) {
   if (pageState.screen.value === screen) return;
   root.dataset['screen'] = screen;
   pageState.screen.set(screen);
@@ -26,16 +26,16 @@ export function isStart() {
 }
 
 /** @param {Screen} screen */
-export function show(screen) {
+export function showScreen(screen) {
   if (pageState.screen.value === screen) return;
-  history.pushState(null, '', location.pathname + location.search + (screen === 'start' ? '' : EDITOR));
-  put(screen);
+  history.pushState(null, '', location.pathname + location.search + (screen === 'start' ? '' : EDITOR_HASH));
+  setScreen(screen);
 }
 
 /** Shows the program in place of what the address has brought, which is taken out of it. */
-export function showInstead() {
-  history.replaceState(null, '', location.pathname + location.search + EDITOR);
-  put('program');
+export function showProgramInstead() {
+  history.replaceState(null, '', location.pathname + location.search + EDITOR_HASH);
+  setScreen('program');
 }
 
 /**
@@ -43,9 +43,9 @@ export function showInstead() {
  * @param {boolean} isProgram the program is to be seen, whatever it says
  * @param {boolean} hasStart a class has none
  */
-export function beginScreens(isProgram, hasStart) {
-  put(isProgram || !hasStart || location.hash === EDITOR ? 'program' : 'start');
+export function openFirstScreen(isProgram, hasStart) {
+  setScreen(isProgram || !hasStart || location.hash === EDITOR_HASH ? 'program' : 'start');
   addEventListener('popstate', () => {
-    if (hasStart && isScreen()) put(location.hash === EDITOR ? 'program' : 'start');
+    if (hasStart && isScreenAddress()) setScreen(location.hash === EDITOR_HASH ? 'program' : 'start');
   });
 }

@@ -5,32 +5,32 @@ import { COLOURS } from '../blocks/colours.js';
 import { makeSvg } from '../page/made.js';
 import { KINDS, wordsOf } from '../page/words.js';
 
-const MOST = 7; // bars
-const ROW = 9, HIGH = 7, STEP = 7, WIDEST = 60;
-const OPENS = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, TURNS = /^ELSE/i, CLOSES = /^END/i;
+const MOST_BARS = 7; // bars
+const ROW_HEIGHT = 9, BAR_HEIGHT = 7, INDENT = 7, MOST_BAR_WIDTH = 60;
+const OPENING_WORD = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, ARM_WORD = /^ELSE/i, CLOSING_WORD = /^END/i;
 
 /**
  * @param {string} program
- * @param {string} robot
+ * @param {string} robotName
  * @returns {SVGElement}
  */
-export function thumbnail(program, robot) {
-  const words = wordsOf(robot);
+export function makeThumbnail(program, robotName) {
+  const words = wordsOf(robotName);
   /** @type {SVGElement[]} */
   const bars = [];
   let depth = 0;
-  for (const part of program.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
-    const line = part.trim();
+  for (const rawLine of program.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
+    const line = rawLine.trim();
     if (!line) continue;
-    if (CLOSES.test(line) || TURNS.test(line)) depth = Math.max(0, depth - 1);
-    if (!CLOSES.test(line)) {
+    if (CLOSING_WORD.test(line) || ARM_WORD.test(line)) depth = Math.max(0, depth - 1);
+    if (!CLOSING_WORD.test(line)) {
       const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
-      const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
-      const width = Math.min(WIDEST, 14 + 3 * line.length);
-      bars.push(makeSvg('rect', { x: 3 + depth * STEP, y: 3 + bars.length * ROW, width, height: HIGH, rx: 2, fill: colour ?? '' }));
+      const colour = OPENING_WORD.test(line) || ARM_WORD.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
+      const width = Math.min(MOST_BAR_WIDTH, 14 + 3 * line.length);
+      bars.push(makeSvg('rect', { x: 3 + depth * INDENT, y: 3 + bars.length * ROW_HEIGHT, width, height: BAR_HEIGHT, rx: 2, fill: colour ?? '' }));
     }
-    if (OPENS.test(line) || TURNS.test(line)) depth = Math.min(3, depth + 1);
-    if (bars.length === MOST) break;
+    if (OPENING_WORD.test(line) || ARM_WORD.test(line)) depth = Math.min(3, depth + 1);
+    if (bars.length === MOST_BARS) break;
   }
-  return makeSvg('svg', { viewBox: `0 0 96 ${MOST * ROW + 3}`, 'aria-hidden': 'true' }, ...bars);
+  return makeSvg('svg', { viewBox: `0 0 96 ${MOST_BARS * ROW_HEIGHT + 3}`, 'aria-hidden': 'true' }, ...bars);
 }

@@ -9,8 +9,8 @@ import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld, lightTile } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
-/** @import { World, Place } from '../world/parts.js' */
-/** @typedef {{points: Place[], pointIndex: number, handle: Place | null}} FloorMark the points that can be taken, which one is, and what turns it */
+/** @import { World, Point } from '../world/parts.js' */
+/** @typedef {{points: Point[], pointIndex: number, handle: Point | null}} FloorMark the points that can be taken, which one is, and what turns it */
 /** @typedef {import('../world/floor.js').Goal} Goal */
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 
@@ -154,7 +154,7 @@ export class Arena {
   /**
    * Returns the place on the floor under a finger, and how far it may miss.
    * @param {PointerEvent} event
-   * @returns {{place: Place, reach_cm: number}}
+   * @returns {{place: Point, reach_cm: number}}
    */
   floorAt(event) {
     const bounds = this.#canvas.getBoundingClientRect();

@@ -113,13 +113,13 @@ export class SimulatorPanel {
     });
     this.#worldDrawing = new WorldDrawing(python, this.#arena, {
       world: () => this.#shownWorld,
-      choice: this.#worldChoice,
+      worldChoice: this.#worldChoice,
       robot: () => {
         const [x, y] = this.#simulator.state?.pose ?? [this.#shownWorld.start.x_cm, this.#shownWorld.start.y_cm];
         return [x, y];
       },
       isDriving: () => this.#isDriving,
-      rest: () => {
+      switchOff: () => {
         this.#switchOff();
         this.#chooseView('seen_arena');
       },
@@ -212,7 +212,7 @@ export class SimulatorPanel {
   }
 
   get #shownWorld() {
-    return this.#previewWorld ?? this.#worldChoice.shapes;
+    return this.#previewWorld ?? this.#worldChoice.shownWorld;
   }
 
   /** Runs the program in a shipped world; resolves once the robot is on. @param {string} worldName */
@@ -325,7 +325,7 @@ export class SimulatorPanel {
 
   /** @param {Run} run its world, and the way that it has taken */
   #drawTrack(run) {
-    this.#arena.begin(run.world ?? this.#worldChoice.shapes, run.origin.robot, run === this.#newestRun ? this.#worldChoice.goals : []);
+    this.#arena.begin(run.world ?? this.#worldChoice.shownWorld, run.origin.robot, run === this.#newestRun ? this.#worldChoice.goals : []);
     for (const state of run.moments.all()) this.#arena.follow(state);
   }
 
@@ -472,7 +472,7 @@ export class SimulatorPanel {
   async #start(isPaused, judged = null, leastSpeed = 0, replay = null, part = null) {
     this.#onRunOver();
     const startNumber = ++this.#startCount;
-    this.#worldDrawing.said = '';
+    this.#worldDrawing.notice = '';
     let program = part?.checked ?? pageState.checkResult.value;
     if (!program) {
       this.#isWaiting = true;
@@ -491,7 +491,7 @@ export class SimulatorPanel {
     this.#wasStopped = false;
     this.#bumpCount = 0;
     this.#canEarnStars = !judged && !replay && !part;
-    this.#arena.begin(this.#worldChoice.shapes, pageState.robotName.value, this.#worldChoice.goals);
+    this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals);
     this.#plot.begin();
     this.#shownValues.clear();
     this.#program = program;
@@ -523,7 +523,7 @@ export class SimulatorPanel {
       run.origin = { ...run.origin, of: replay.opened.of };
       run.file = replay.opened.file;
     }
-    run.world = this.#worldChoice.shapes;
+    run.world = this.#worldChoice.shownWorld;
     run.program = program;
     run.restart();
     if (replay) {
@@ -600,7 +600,7 @@ export class SimulatorPanel {
     this.#pauseButton.disabled = !this.#isDriving;
     say(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
     hide(this.#pushButton, !state?.is_waiting || phase !== 'running');
-    say(element('doing', HTMLElement), this.#note || this.#worldDrawing.said || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
+    say(element('doing', HTMLElement), this.#note || this.#worldDrawing.notice || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
     const traceText = trace.slice(-MOST_TRACE_LINES).join('\n');
     if (traceText !== this.#traceText) element('trace', HTMLElement).textContent = this.#traceText = traceText;
     this.#showScore(state?.score ?? null);

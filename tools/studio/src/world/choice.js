@@ -12,7 +12,7 @@ import { OWN_WORLD } from '../programs/work.js';
 
 /** @typedef {import('./parts.js').World} World */
 /**
- * @typedef {object} Brought
+ * @typedef {object} BroughtWorld
  * @property {unknown} request what the worker is asked for
  * @property {World} shapes
  * @property {() => string} label in the language of the page
@@ -21,43 +21,43 @@ import { OWN_WORLD } from '../programs/work.js';
 /**
  * @typedef {object} Page what the page does for who changes a world
  * @property {() => World} world that is seen
- * @property {() => import('./parts.js').Place} robot where it is seen
+ * @property {() => import('./parts.js').Point} robot where it is seen
  * @property {() => boolean} isDriving
- * @property {WorldChoice} choice of it
- * @property {() => void} rest the robot is off, and its floor seen in place of curves
+ * @property {WorldChoice} worldChoice of it
+ * @property {() => void} switchOff the robot is off, and its floor seen in place of curves
  * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
  * @property {(world: World) => void} preview the same, for as long as a finger is down
  * @property {() => void} tell something is to be shown anew
  */
 
-const BROUGHT = ':brought'; // no name of a shipped world
-const BEFORE = ':before'; // nor this, with a number after it
+const BROUGHT_VALUE = ':brought'; // no name of a shipped world
+const EARLIER_PREFIX = ':before'; // nor this, with a number after it
 
 export class WorldChoice {
   #work;
-  #choice = element('world', HTMLSelectElement);
-  /** @type {Brought | null} */
-  #brought = null;
-  #own;
+  #worldSelect = element('world', HTMLSelectElement);
+  /** @type {BroughtWorld | null} */
+  #broughtWorld = null;
+  #ownWorlds;
 
   /**
    * @param {import('../python.js').Python} python
    * @param {import('../programs/work.js').Work} work
-   * @param {() => void} changed
+   * @param {() => void} onChange
    */
-  constructor(python, work, changed) {
+  constructor(python, work, onChange) {
     this.#work = work;
-    this.#own = new OwnWorlds(python);
-    this.#choice.addEventListener('change', () => {
-      const { value } = this.#choice;
-      if (value.startsWith(BEFORE)) {
-        this.#own.takeBack(Number(value.slice(BEFORE.length)));
+    this.#ownWorlds = new OwnWorlds(python);
+    this.#worldSelect.addEventListener('change', () => {
+      const { value } = this.#worldSelect;
+      if (value.startsWith(EARLIER_PREFIX)) {
+        this.#ownWorlds.restoreEarlier(Number(value.slice(EARLIER_PREFIX.length)));
         this.keepOwn();
       }
-      if (value !== BROUGHT) {
-        this.choose(value.startsWith(BEFORE) ? OWN_WORLD : value);
+      if (value !== BROUGHT_VALUE) {
+        this.choose(value.startsWith(EARLIER_PREFIX) ? OWN_WORLD : value);
       }
-      changed();
+      onChange();
     });
     pageState.language.subscribe(() => this.#show());
     this.#show();
@@ -65,12 +65,12 @@ export class WorldChoice {
 
   /** Whether the world that is seen was drawn or opened here. */
   get isOwn() {
-    return !this.#brought && this.#own.newest !== null && this.#work.world === OWN_WORLD;
+    return !this.#broughtWorld && this.#ownWorlds.newest !== null && this.#work.world === OWN_WORLD;
   }
 
   /** Whether a lesson has brought the world that is seen. */
   get isOfLesson() {
-    return typeof this.#brought?.request === 'object' && this.#brought.request !== null && 'lesson' in this.#brought.request;
+    return typeof this.#broughtWorld?.request === 'object' && this.#broughtWorld.request !== null && 'lesson' in this.#broughtWorld.request;
   }
 
   /** The stars of a world are others than before. */
@@ -79,32 +79,32 @@ export class WorldChoice {
   }
 
   get goals() {
-    return this.#brought?.goals ?? [];
+    return this.#broughtWorld?.goals ?? [];
   }
 
   /** @returns {World} */
-  get shapes() {
+  get shownWorld() {
     const { world } = this.#work;
-    if (this.isOwn && this.#own.newest) return this.#own.newest;
-    return this.#brought?.shapes ?? WORLDS.find((each) => each.name === world) ?? /** @type {World} */ (WORLDS[0]);
+    if (this.isOwn && this.#ownWorlds.newest) return this.#ownWorlds.newest;
+    return this.#broughtWorld?.shapes ?? WORLDS.find((candidate) => candidate.name === world) ?? /** @type {World} */ (WORLDS[0]);
   }
 
   /** What the worker is asked for. */
   get request() {
-    if (this.isOwn) return { form: this.#own.newest };
-    return this.#brought?.request ?? this.shapes.name;
+    if (this.isOwn) return { form: this.#ownWorlds.newest };
+    return this.#broughtWorld?.request ?? this.shownWorld.name;
   }
 
   /** @param {string} name of a shipped world, or `OWN_WORLD` */
   choose(name) {
     this.#work.world = name;
-    this.#brought = null;
+    this.#broughtWorld = null;
     this.#show();
   }
 
-  /** @param {Brought} brought is chosen, until another one is */
-  bring(brought) {
-    this.#brought = brought;
+  /** @param {BroughtWorld} broughtWorld is chosen, until another one is */
+  bring(broughtWorld) {
+    this.#broughtWorld = broughtWorld;
     this.#show();
   }
 
@@ -113,40 +113,40 @@ export class WorldChoice {
    * @param {boolean} isOther than the one that is seen
    */
   putOwn(world, isOther) {
-    this.#own.put(world, isOther || !this.isOwn);
-    this.#brought = null;
+    this.#ownWorlds.setNewest(world, isOther || !this.isOwn);
+    this.#broughtWorld = null;
     this.#work.world = OWN_WORLD;
     this.#show();
   }
 
   /** @param {World} world it is written as a file has it */
   write(world) {
-    return this.#own.write(world, pageState.robotName.value);
+    return this.#ownWorlds.writeText(world, pageState.robotName.value);
   }
 
   /** Keeps this person's worlds on this device. */
   keepOwn() {
-    return this.#own.keep(pageState.robotName.value);
+    return this.#ownWorlds.storeTexts(pageState.robotName.value);
   }
 
   /** Brings this person's worlds back; returns whether the newest can still be read. */
   async restoreOwn() {
-    const isWhole = await this.#own.restore();
+    const isWhole = await this.#ownWorlds.restore();
     this.#show();
     return isWhole;
   }
 
   #show() {
-    const brought = this.#brought;
-    const { newest, before } = this.#own, stars = lessonStars();
+    const broughtWorld = this.#broughtWorld;
+    const { newest, earlier } = this.#ownWorlds, stars = lessonStars();
     /** @param {World} world */
-    const label = (world) => labelOf(world.labels).trim() || text('world_own');
-    this.#choice.replaceChildren(
+    const labelOfWorld = (world) => labelOf(world.labels).trim() || text('world_own');
+    this.#worldSelect.replaceChildren(
       ...WORLDS.map((world) => pictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(worldStars(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
-      ...(newest ? [pictureOption(label(newest), OWN_WORLD, worldPicture(newest))] : []),
-      ...before.map((world, k) => pictureOption(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
-      ...(brought ? [new Option(brought.label(), BROUGHT)] : []),
+      ...(newest ? [pictureOption(labelOfWorld(newest), OWN_WORLD, worldPicture(newest))] : []),
+      ...earlier.map((world, index) => pictureOption(text(index ? 'world_before_more' : 'world_before', { world: labelOfWorld(world), number: index + 1 }), `${EARLIER_PREFIX}${index}`, worldPicture(world))),
+      ...(broughtWorld ? [new Option(broughtWorld.label(), BROUGHT_VALUE)] : []),
     );
-    this.#choice.value = brought ? BROUGHT : this.isOwn ? OWN_WORLD : this.shapes.name;
+    this.#worldSelect.value = broughtWorld ? BROUGHT_VALUE : this.isOwn ? OWN_WORLD : this.shownWorld.name;
   }
 }

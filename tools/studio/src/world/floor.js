@@ -7,15 +7,15 @@ import { cornersOf } from './parts.js';
 
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 /** @typedef {import('./parts.js').World} World */
-/** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: import('./parts.js').Place[]}} Goal */
+/** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: import('./parts.js').Point[]}} Goal */
 
 const GRID_CM = 10; // while a world is changed
 const TILE_CM = 25;
 const LAWN_CM = 7; // around a house
 const DASH_CM = 6; // of the white line in the middle of a street
 const NIGHT_PERCENT = 5; // of light, at most, where it is night
-const PAPER = '#fffdf6', NIGHT = '#27324b';
-const TILES = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
+const PAPER_COLOR = '#fffdf6', NIGHT_COLOR = '#27324b';
+const TILE_COLORS = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT_TILE_COLORS = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
 /** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'city' | 'ring'>} */
 const THEMES = { dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring', sumo: 'ring' };
 
@@ -23,19 +23,19 @@ const THEMES = { dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: '
  * @param {Pen} pen
  * @param {World} world
  * @param {Goal[]} goals where a task leads
- * @param {number} taken flags
- * @param {boolean} isChanged now, by a finger
+ * @param {number} takenFlags flags
+ * @param {boolean} isEdited now, by a finger
  */
-export function drawWorld(pen, world, goals, taken, isChanged) {
+export function drawWorld(pen, world, goals, takenFlags, isEdited) {
   drawTheme(pen, world);
-  if (isChanged) drawGrid(pen, world);
+  if (isEdited) drawGrid(pen, world);
   for (const goal of goals) drawGoal(pen, goal);
-  world.flags.forEach((flag, k) => drawFlag(pen, flag, k - taken, k + 1));
+  world.flags.forEach((flag, index) => drawFlag(pen, flag, index - takenFlags, index + 1));
   for (const ring of world.rings) drawRing(pen, ring);
   for (const line of world.lines) drawPath(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
-    const reach = themeOf(world) === 'night' ? [46, 30, 17] : [];
-    for (const each of reach) drawDot(pen, x, y, each, '#ffe9a324');
+    const radii = themeOf(world) === 'night' ? [46, 30, 17] : [];
+    for (const radius of radii) drawDot(pen, x, y, radius, '#ffe9a324');
     drawDot(pen, x, y, 9, '#ffe9a3');
     drawDot(pen, x, y, 3, '#e08a1e');
   }
@@ -49,22 +49,22 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
 }
 
 /** @param {World} world */
-function themeOf({ name, ambient_percent: light }) {
-  return light <= NIGHT_PERCENT ? 'night' : THEMES[name];
+function themeOf({ name, ambient_percent: light_percent }) {
+  return light_percent <= NIGHT_PERCENT ? 'night' : THEMES[name];
 }
 
 /** @param {Pen} pen @param {World} world */
 function drawTheme(pen, world) {
   const { width_cm: width, height_cm: height } = world, theme = themeOf(world);
-  pen.fillStyle = theme === 'night' ? NIGHT : theme === 'city' ? '#dfe2e6' : theme === 'ring' ? '#e9eef2' : PAPER;
+  pen.fillStyle = theme === 'night' ? NIGHT_COLOR : theme === 'city' ? '#dfe2e6' : theme === 'ring' ? '#e9eef2' : PAPER_COLOR;
   pen.fillRect(0, 0, width, height);
   if (theme === 'tiles') {
-    for (let x = 0; x < width; x += TILE_CM) for (let y = 0; y < height; y += TILE_CM) fillTile(pen, world, x, y, TILES);
+    for (let x = 0; x < width; x += TILE_CM) for (let y = 0; y < height; y += TILE_CM) fillTile(pen, world, x, y, TILE_COLORS);
   }
   if (theme === 'kitchen') {
-    for (let at = TILE_CM; at < Math.max(width, height); at += TILE_CM) {
-      if (at < width) drawPath(pen, [[at, 0], [at, height]], '#efe6d2', 0.5);
-      if (at < height) drawPath(pen, [[0, at], [width, at]], '#efe6d2', 0.5);
+    for (let line_cm = TILE_CM; line_cm < Math.max(width, height); line_cm += TILE_CM) {
+      if (line_cm < width) drawPath(pen, [[line_cm, 0], [line_cm, height]], '#efe6d2', 0.5);
+      if (line_cm < height) drawPath(pen, [[0, line_cm], [width, line_cm]], '#efe6d2', 0.5);
     }
   }
   if (theme === 'city') drawStreets(pen, world);
@@ -75,43 +75,43 @@ function drawTheme(pen, world) {
 function drawStreets(pen, { boxes, width_cm, height_cm }) {
   const lawns = boxes.map((box) => cornersOf({ ...box, length_cm: box.length_cm + 2 * LAWN_CM, width_cm: box.width_cm + 2 * LAWN_CM }));
   pen.setLineDash([DASH_CM, DASH_CM]);
-  for (const x of gaps(lawns.map((corners) => corners.map(([each]) => each)), width_cm)) drawPath(pen, [[x, 0], [x, height_cm]], '#fff', 1.2);
-  for (const y of gaps(lawns.map((corners) => corners.map(([, each]) => each)), height_cm)) drawPath(pen, [[0, y], [width_cm, y]], '#fff', 1.2);
+  for (const x of gapMiddles(lawns.map((corners) => corners.map(([x]) => x)), width_cm)) drawPath(pen, [[x, 0], [x, height_cm]], '#fff', 1.2);
+  for (const y of gapMiddles(lawns.map((corners) => corners.map(([, y]) => y)), height_cm)) drawPath(pen, [[0, y], [width_cm, y]], '#fff', 1.2);
   pen.setLineDash([]);
   for (const lawn of lawns) drawPath(pen, lawn, '#b7d3a6', 1, '#cfe3c2');
 }
 
-/** The middles of what lies between things, from one edge of the floor to the other. @param {number[][]} things the coordinates of each @param {number} size of the floor */
-function gaps(things, size) {
-  const rows = things.map((each) => [Math.min(...each), Math.max(...each)]).sort(([a = 0], [b = 0]) => a - b);
-  const found = [];
-  let until = 0;
-  for (const [from = 0, to = 0] of [...rows, [size, size]]) {
-    if (from > until) found.push((until + from) / 2);
-    until = Math.max(until, to);
+/** The middles of what lies between things, from one edge of the floor to the other. @param {number[][]} intervals the coordinates of each @param {number} floorSize of the floor */
+function gapMiddles(intervals, floorSize) {
+  const ranges = intervals.map((coordinates) => [Math.min(...coordinates), Math.max(...coordinates)]).sort(([a = 0], [b = 0]) => a - b);
+  const middles = [];
+  let coveredUntil = 0;
+  for (const [low = 0, high = 0] of [...ranges, [floorSize, floorSize]]) {
+    if (low > coveredUntil) middles.push((coveredUntil + low) / 2);
+    coveredUntil = Math.max(coveredUntil, high);
   }
-  return found;
+  return middles;
 }
 
 /** @param {Pen} pen @param {World} world @param {number} x @param {number} y @param {string[]} colors */
 function fillTile(pen, { width_cm, height_cm }, x, y, colors) {
   const column = Math.floor(x / TILE_CM), row = Math.floor(y / TILE_CM);
-  pen.fillStyle = colors[(column + 2 * row) % colors.length] ?? PAPER;
+  pen.fillStyle = colors[(column + 2 * row) % colors.length] ?? PAPER_COLOR;
   pen.fillRect(column * TILE_CM, row * TILE_CM, Math.min(TILE_CM, width_cm - column * TILE_CM), Math.min(TILE_CM, height_cm - row * TILE_CM));
 }
 
 /** Lights the tile under a robot, where the floor has such tiles. @param {Pen} pen @param {World} world @param {number} x @param {number} y */
 export function lightTile(pen, world, x, y) {
-  const isThere = x > 0 && y > 0 && x < world.width_cm && y < world.height_cm;
-  if (isThere && THEMES[world.name] === 'tiles') fillTile(pen, world, x, y, LIT);
+  const isOnFloor = x > 0 && y > 0 && x < world.width_cm && y < world.height_cm;
+  if (isOnFloor && THEMES[world.name] === 'tiles') fillTile(pen, world, x, y, LIT_TILE_COLORS);
 }
 
 /** @param {Pen} pen @param {World} world */
 function drawGrid(pen, { width_cm, height_cm }) {
-  for (let at = GRID_CM; at < Math.max(width_cm, height_cm); at += GRID_CM) {
-    const color = at % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
-    if (at < width_cm) drawPath(pen, [[at, 0], [at, height_cm]], color, 0.4);
-    if (at < height_cm) drawPath(pen, [[0, at], [width_cm, at]], color, 0.4);
+  for (let line_cm = GRID_CM; line_cm < Math.max(width_cm, height_cm); line_cm += GRID_CM) {
+    const color = line_cm % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
+    if (line_cm < width_cm) drawPath(pen, [[line_cm, 0], [line_cm, height_cm]], color, 0.4);
+    if (line_cm < height_cm) drawPath(pen, [[0, line_cm], [width_cm, line_cm]], color, 0.4);
   }
 }
 
@@ -142,11 +142,11 @@ function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
  * A flag of the world: taken, the next one, or one of those after it.
  * @param {Pen} pen
  * @param {import('./parts.js').Flag} flag
- * @param {number} behind the next one, by so many flags
+ * @param {number} order the next one, by so many flags
  * @param {number} number
  */
-function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, behind, number) {
-  const isTaken = behind < 0, isNext = behind === 0;
+function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, order, number) {
+  const isTaken = order < 0, isNext = order === 0;
   drawDot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
   if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
   pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';

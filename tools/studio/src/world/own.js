@@ -3,22 +3,22 @@
 // Knows how they are kept on this device, in the form of their files; shows nothing.
 
 import { currentLanguage } from '../page/texts.js';
-import { keepWorlds, keptWorlds } from '../programs/work.js';
+import { storeWorldTexts, loadWorldTexts } from '../programs/work.js';
 
 /** @typedef {import('./parts.js').World} World */
 
-const MOST_BEFORE = 5;
-const NAMED = /^# (.*)\n/; // by the name of a file
+const MOST_EARLIER = 5;
+const NAME_COMMENT = /^# (.*)\n/; // by the name of a file
 
 export class OwnWorlds {
   #python;
   /** @type {World | null} */
   newest = null;
   /** The last one first. @type {World[]} */
-  before = [];
+  earlier = [];
   /** @type {WeakMap<World, string>} */
   #texts = new WeakMap();
-  #asked = 0;
+  #storeCount = 0;
 
   /** @param {import('../python.js').Python} python */
   constructor(python) {
@@ -29,62 +29,62 @@ export class OwnWorlds {
    * @param {World} world is the newest from now on
    * @param {boolean} isOther than the newest one, which is not lost
    */
-  put(world, isOther) {
-    if (isOther && this.newest) this.before = [this.newest, ...this.before].slice(0, MOST_BEFORE);
+  setNewest(world, isOther) {
+    if (isOther && this.newest) this.earlier = [this.newest, ...this.earlier].slice(0, MOST_EARLIER);
     this.newest = world;
   }
 
   /** A world before is the newest from now on. @param {number} index of it */
-  takeBack(index) {
-    const [world] = this.before.splice(index, 1);
-    if (world) this.put(world, true);
+  restoreEarlier(index) {
+    const [world] = this.earlier.splice(index, 1);
+    if (world) this.setNewest(world, true);
   }
 
   /**
    * Writes a world as a file has it, or says why it is none.
    * @param {World} world
-   * @param {string} robot that is in it
+   * @param {string} robotName that is in it
    * @returns {Promise<{text?: string, is_blocked?: boolean, refused?: string[]}>}
    */
-  async write(world, robot) {
-    const answer = await this.#python.ask({ do: 'write_world', form: world, robot, language: currentLanguage() });
+  async writeText(world, robotName) {
+    const answer = await this.#python.ask({ do: 'write_world', form: world, robot: robotName, language: currentLanguage() });
     this.#texts.set(world, answer.text ?? '');
     return answer;
   }
 
-  /** Keeps them on this device; returns whether that was possible. @param {string} robot that is in them @returns {Promise<boolean>} */
-  async keep(robot) {
-    const asked = ++this.#asked;
-    const { newest, before } = this;
-    const texts = await Promise.all([newest, ...before].map((world) => this.#textOf(world, robot)));
-    if (asked !== this.#asked) return true; // a newer one says it
-    const [text, ...others] = texts;
-    return keepWorlds(text ?? '', others.filter(Boolean));
+  /** Keeps them on this device; returns whether that was possible. @param {string} robotName that is in them @returns {Promise<boolean>} */
+  async storeTexts(robotName) {
+    const storeNumber = ++this.#storeCount;
+    const { newest, earlier: before } = this;
+    const texts = await Promise.all([newest, ...before].map((world) => this.#textOf(world, robotName)));
+    if (storeNumber !== this.#storeCount) return true; // a newer one says it
+    const [text, ...earlierTexts] = texts;
+    return storeWorldTexts(text ?? '', earlierTexts.filter(Boolean));
   }
 
-  /** @param {World | null} world @param {string} robot @returns {Promise<string>} empty where there is none */
-  async #textOf(world, robot) {
+  /** @param {World | null} world @param {string} robotName @returns {Promise<string>} empty where there is none */
+  async #textOf(world, robotName) {
     if (!world) return '';
-    const written = this.#texts.get(world) ?? (await this.write(world, robot)).text ?? '';
-    return written && world.name ? `# ${world.name}\n${written}` : written;
+    const worldText = this.#texts.get(world) ?? (await this.writeText(world, robotName)).text ?? '';
+    return worldText && world.name ? `# ${world.name}\n${worldText}` : worldText;
   }
 
   /** Brings back what was kept; returns whether the newest can still be read. @returns {Promise<boolean>} */
   async restore() {
-    const { newest, before } = keptWorlds();
+    const { newest, before } = loadWorldTexts();
     if (!newest && !before.length) return true;
     await this.#python.ready;
-    const worlds = await Promise.all([newest, ...before].map((text) => this.#read(text)));
+    const worlds = await Promise.all([newest, ...before].map((text) => this.#readText(text)));
     this.newest = worlds[0] ?? null;
-    this.before = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_BEFORE);
+    this.earlier = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_EARLIER);
     return !newest || this.newest !== null;
   }
 
-  /** @param {string} kept @returns {Promise<World | null>} */
-  async #read(kept) {
-    if (!kept) return null;
-    const [first, name] = kept.match(NAMED) ?? ['', ''];
-    const text = kept.slice(first.length);
+  /** @param {string} storedText @returns {Promise<World | null>} */
+  async #readText(storedText) {
+    if (!storedText) return null;
+    const [nameLine, name] = storedText.match(NAME_COMMENT) ?? ['', ''];
+    const text = storedText.slice(nameLine.length);
     const request = { do: 'open_world', name, language: currentLanguage() };
     const { world = null } = await this.#python.ask(request, new TextEncoder().encode(text));
     if (world) this.#texts.set(world, text);
@@ -93,6 +93,6 @@ export class OwnWorlds {
 }
 
 /** A shipped world that is changed is nobody's but this person's. @param {World} world @returns {World} */
-export function ownCopy(world) {
+export function copyAsOwn(world) {
   return { ...world, name: '', labels: {} };
 }

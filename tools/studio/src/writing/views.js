@@ -6,7 +6,7 @@ import { bugSentence } from '../page/faults.js';
 import { blocksPicture, replaceOptions, pictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
-import { isGiven } from '../start/beginnings.js';
+import { isShippedProgram } from '../start/beginnings.js';
 
 /** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
 /** @typedef {import('../blocks/form.js').Form} Form */
@@ -394,7 +394,7 @@ export class Views {
         }
         this.#shown = now;
         this.#changes = 0;
-        this.#blocks.setGiven(isGiven(now) ? form : null);
+        this.#blocks.setGiven(isShippedProgram(now) ? form : null);
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
         this.#stand = this.#blocks.stand;
