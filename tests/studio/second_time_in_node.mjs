@@ -526,18 +526,18 @@ const PARTS = {
     const page = freshPage();
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
-    const { Checking } = await page.load('writing/checking.js');
+    const { Checker } = await page.load('writing/checking.js');
     let breaks = () => false;
     let notes = [];
     const python = {
-      again() {},
+      tryAgain() {},
       async ask(request, data) {
         await later(breaks() ? 400 : 30);
         if (breaks()) throw new Broken();
         return { robot: request.robot, findings: [], image: `of ${new TextDecoder().decode(data)}`, names_robot: false };
       },
     };
-    const checking = new Checking(python, (why) => notes.push(String(why)));
+    const checking = new Checker(python, (why) => notes.push(String(why)));
     pageState.checkResult.subscribe((answer) => {
       if (answer && answer.image !== `of ${pageState.programText.value}`) throw new Error('it is said of another text');
       notes.push(answer?.image);
@@ -601,7 +601,7 @@ const PARTS = {
     let verdict = '';
     let parts = 0;
     const python = {
-      again() {},
+      tryAgain() {},
       async ask(request) {
         const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
         const own = verdict;
@@ -613,7 +613,7 @@ const PARTS = {
     };
     let stops = () => {};
     const driving = { showLesson: () => later(late()), stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
-    new Lessons({ python, driving, put() {} });
+    new Lessons({ python, simulatorPanel: driving, put() {} });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -704,10 +704,10 @@ const PARTS = {
       notes.length = 0;
       fails = isGood ? '' : chance.of(['error', 'not fetched', 'silent']);
       const end = fails;
-      if (python) python.again('en');
+      if (python) python.tryAgain('en');
       else {
         python = new Python('en');
-        python.heed({ waits: () => notes.push('waits'), begins() {}, fails: () => notes.push('fails') });
+        python.listen({ onWait: () => notes.push('waits'), onBegin() {}, onFail: () => notes.push('fails') });
       }
       let open = 0;
       for (let k = 0; k < 4; k += 1) {
@@ -890,7 +890,7 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9 });
     const { text } = await page.load('page/texts.js');
-    const panel = new RobotPanel({ python: { again() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RunningPlace(), pad: noting(notes, 'pad') });
+    const panel = new RobotPanel({ python: { tryAgain() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RunningPlace(), pad: noting(notes, 'pad') });
     await passes(10);
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
     const said = () => page.byId('link_said').textContent;
@@ -1015,7 +1015,7 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     const whole = { ...PROGRAM, program: 'ff', bytes: 9, halts: [0], findings: [], start: 'SI' };
     pageState.checkResult.set(whole);
-    const python = { again() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
+    const python = { tryAgain() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
     const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RunningPlace(), pad: noting([], 'pad') });
     await passes(10);
     panel.connectByHost('p');
@@ -1339,7 +1339,7 @@ const PARTS = {
     let world = 0;
     let newest = { name: '' }; // that was chosen, unless it could not be had
     const python = {
-      again() {},
+      tryAgain() {},
       async ask({ do: what, number }) {
         const own = what === 'lesson_steps' ? { name: `L${number}` } : newest;
         newest = own;
@@ -1362,7 +1362,7 @@ const PARTS = {
         world = number;
       },
     };
-    new Lessons({ python, driving, put() {} });
+    new Lessons({ python, simulatorPanel: driving, put() {} });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
     const opens = () => {

@@ -1,12 +1,12 @@
 // The page: puts editor, compiler, files and kept work together.
 
 import { element } from './page/elements.js';
-import { Checking } from './writing/checking.js';
+import { Checker } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
 import { bugSentence } from './page/faults.js';
 import { bytesOf, download, onFileChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
-import { showMessages, showRepair, summary, whole } from './writing/messages.js';
+import { showMessages, showRepair, summaryOf, messageWithFix } from './writing/messages.js';
 import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
@@ -36,21 +36,21 @@ import { storeWork, loadWork, MOST_CHARACTERS } from './programs/work.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 
-const UNCHECKED_MS = 400; // that what was said of a text may stay over the next one: most are checked before
+const STALE_STATUS_MS = 400; // that what was said of a text may stay over the next one: most are checked before
 
-const robots = element('robot', HTMLSelectElement);
-const languages = element('language', HTMLSelectElement);
-const words = element('words', HTMLButtonElement);
-const file = element('file', HTMLInputElement);
-const status = element('status', HTMLElement);
-const note = element('note', HTMLElement);
-const list = element('messages', HTMLElement);
+const robotSelect = element('robot', HTMLSelectElement);
+const languageSelect = element('language', HTMLSelectElement);
+const wordsButton = element('words', HTMLButtonElement);
+const fileInput = element('file', HTMLInputElement);
+const statusElement = element('status', HTMLElement);
+const noteElement = element('note', HTMLElement);
+const messageList = element('messages', HTMLElement);
 
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
-const kept = loadWork();
-const work = kept ?? {
+const storedWork = loadWork();
+const work = storedWork ?? {
   text: FIRST_PROGRAM,
   robot: ROBOTS[0]?.name ?? '',
   world: 'obstacles',
@@ -62,19 +62,19 @@ const work = kept ?? {
   sound: true,
 };
 const python = new Python(work.language);
-languages.replaceChildren(...LANGUAGES.map(([code, name]) => Object.assign(new Option(name, code), { lang: code })));
-languages.value = work.language = await setLanguage(work.language);
+languageSelect.replaceChildren(...LANGUAGES.map(([code, name]) => Object.assign(new Option(name, code), { lang: code })));
+languageSelect.value = work.language = await setLanguage(work.language);
 element('coming', HTMLElement).remove();
-pageState.note.subscribe((said) => {
-  note.textContent = said;
+pageState.note.subscribe((sentence) => {
+  noteElement.textContent = sentence;
 });
 pageState.areWordsShown.subscribe((areShown) => {
   work.words = areShown;
-  words.setAttribute('aria-pressed', String(areShown));
+  wordsButton.setAttribute('aria-pressed', String(areShown));
   remember();
 });
 pageState.robotName.subscribe((name) => {
-  work.robot = robots.value = name;
+  work.robot = robotSelect.value = name;
   remember();
 });
 pageState.programText.subscribe((program) => {
@@ -89,14 +89,14 @@ pageState.robotName.set(work.robot);
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
   python, editor, work, remember,
-  tryAlone: (program, isAsked) => driving.tryAlone(program, isAsked, () => {
+  tryAlone: (program, isAsked) => simulatorPanel.tryAlone(program, isAsked, () => {
     element('side_virtual', HTMLButtonElement).click();
     phone.show('robot');
   }),
-  hear: (hertz) => driving.hear(hertz),
+  playTone: (hertz) => simulatorPanel.hear(hertz),
 });
 const pad = new Pad();
-const driving = new SimulatorPanel({
+const simulatorPanel = new SimulatorPanel({
   python, work, remember, pad,
   whenCompiled: () => checking.whenChecked(),
   put: ({ text: program, robot }) => {
@@ -107,14 +107,14 @@ const driving = new SimulatorPanel({
 });
 const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.picture() });
 
-const recorder = new Recorder({ runs: driving.runs, play: (run) => driving.playAgain(run) });
-const place = new RunningPlace();
-const panel = new RobotPanel({
+const recorder = new Recorder({ runs: simulatorPanel.runs, play: (run) => simulatorPanel.playAgain(run) });
+const runningPlace = new RunningPlace();
+const robotPanel = new RobotPanel({
   recorder,
-  place,
+  place: runningPlace,
   pad,
   python,
-  goTo: (place) => views.goTo(place),
+  goTo: (range) => views.goTo(range),
 });
 const lessons = new Lessons({
   python,
@@ -122,29 +122,29 @@ const lessons = new Lessons({
   put: (program) => programs.replace(program),
   exchange: (program) => {
     programs.storeVersion();
-    fill(program);
+    openProgram(program);
   },
-  driving,
+  simulatorPanel,
 });
 listenToSideButtons();
 pageState.language.subscribe(() => {
   showRobots();
   pageState.note.set('');
-  if (!isReady) status.textContent = text('starting');
+  if (!isReady) statusElement.textContent = text('starting');
   remember();
 });
-const checking = new Checking(python, (why) => {
-  sayStatus(bugSentence(why), 'wrong');
+const checking = new Checker(python, (error) => {
+  showStatus(bugSentence(error), 'wrong');
 });
-const phone = new Phone(() => panel.run());
+const phone = new Phone(() => robotPanel.run());
 openFirstScreen(entryFailure !== '' || holdsProgram(location.hash), !('class' in document.documentElement.dataset));
-if (kept) programs.storeVersion();
+if (storedWork) programs.storeVersion();
 new OwnWindow();
 new Start({
   putProgram: (program) => programs.replace(program),
   runInWorld: (world) => {
     phone.show('robot');
-    return driving.run(world);
+    return simulatorPanel.run(world);
   },
   seeProgram: () => views.wake(),
   showSide: (id) => {
@@ -153,52 +153,52 @@ new Start({
   },
   leaveProgram: () => {
     element('programs', HTMLDialogElement).close();
-    driving.leave();
+    simulatorPanel.leave();
     programs.storeVersion();
     lessons.leave();
   },
 });
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
-    panel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
-    newestRun: () => driving.newestRun(), openRun: (file) => driving.openRun(file),
+    panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
+    newestRun: () => simulatorPanel.newestRun(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }
 
 let isReady = false;
-let unchecked = 0; // while what is said may be of the text before
+let staleTimer = 0; // while what is said may be of the text before
 
 pageState.checkResult.subscribe((answer) => {
   if (!answer) {
-    unchecked ||= window.setTimeout(() => {
-      if (isReady) sayStatus('…', '');
-    }, UNCHECKED_MS);
+    staleTimer ||= window.setTimeout(() => {
+      if (isReady) showStatus('…', '');
+    }, STALE_STATUS_MS);
     return;
   }
   editor.showFindings(answer.findings, repair);
-  showMessages(list, answer.findings, (finding) => views.goTo(finding));
-  sayStatus(summary(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
+  showMessages(messageList, answer.findings, (finding) => views.goTo(finding));
+  showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
-pageState.offeredFindingIndex.subscribe((which) => {
-  const finding = pageState.checkResult.value?.findings[which];
-  if (finding) showRepair(list, which, finding, repair);
+pageState.offeredFindingIndex.subscribe((findingIndex) => {
+  const finding = pageState.checkResult.value?.findings[findingIndex];
+  if (finding) showRepair(messageList, findingIndex, finding, repair);
 });
 if (entryFailure) pageState.note.set(text(textKey(`why_${entryFailure}`)));
 editor.replace(work.text);
-status.textContent = text('starting');
-python.heed({
-  waits: () => {
+statusElement.textContent = text('starting');
+python.listen({
+  onWait: () => {
     if (isReady) pageState.note.set(text('starting_waits'));
-    else status.textContent = text('starting_waits');
-    driving.showWaiting();
+    else statusElement.textContent = text('starting_waits');
+    simulatorPanel.showWaiting();
   },
-  begins: () => {
-    status.textContent = text('starting');
-    checking.begins();
+  onBegin: () => {
+    statusElement.textContent = text('starting');
+    checking.markBeginning();
   },
-  fails: () => {
-    status.textContent = text('no_compiler');
-    checking.failed();
+  onFail: () => {
+    statusElement.textContent = text('no_compiler');
+    checking.markFailed();
   },
 });
 python.ready.then(() => {
@@ -208,88 +208,88 @@ python.ready.then(() => {
   if (isStart()) views.fetchAhead();
 });
 
-/** @param {string} said of the newest text @param {string} look */
-function sayStatus(said, look) {
-  clearTimeout(unchecked);
-  unchecked = 0;
-  status.textContent = said;
-  status.className = look;
+/** @param {string} sentence of the newest text @param {string} className */
+function showStatus(sentence, className) {
+  clearTimeout(staleTimer);
+  staleTimer = 0;
+  statusElement.textContent = sentence;
+  statusElement.className = className;
 }
 
 /** @param {Finding} finding */
 function repair(finding) {
-  if (pageState.checkResult.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
+  if (pageState.checkResult.value && finding.repair) editor.applyChanges(finding.repair); // else its places are those of another text
 }
 
 function showRobots() {
-  robots.replaceChildren(
+  robotSelect.replaceChildren(
     ...ROBOTS.map((robot) => pictureOption(labelOf(robot.labels), robot.name, robotPicture(robot))),
   );
-  robots.value = work.robot;
+  robotSelect.value = work.robot;
 }
 
 function remember() {
   if (!storeWork(work)) pageState.note.set(text(work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
 }
 
-robots.addEventListener('change', async () => {
-  const robot = robots.value;
+robotSelect.addEventListener('change', async () => {
+  const robotName = robotSelect.value;
   if (pageState.isRobotNamed.value) { // then the text changes its mind, too
-    const now = pageState.programText.value;
-    const answer = await python.ask({ do: 'rename', robot }, new TextEncoder().encode(now));
-    if (pageState.programText.value === now) editor.replace(answer.text);
+    const programText = pageState.programText.value;
+    const answer = await python.ask({ do: 'rename', robot: robotName }, new TextEncoder().encode(programText));
+    if (pageState.programText.value === programText) editor.replace(answer.text);
   }
-  pageState.robotName.set(robot);
+  pageState.robotName.set(robotName);
 });
 
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {
   showScreen('program');
   phone.show('program');
-  fill(program);
+  openProgram(program);
 }
 
 /** @param {{text: string, robot: string, name: string}} program begins anew, whatever is seen */
-function fill(program) {
+function openProgram(program) {
   pageState.note.set('');
   if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
   views.begin();
   editor.replace(program.text);
-  driving.beginAnew();
+  simulatorPanel.beginAnew();
   remember();
 }
 
-languages.addEventListener('change', async () => {
-  const isLearnt = python.ask({ do: 'learn', language: languages.value }).catch(() => null);
-  languages.value = work.language = await setLanguage(languages.value);
-  await isLearnt;
-  checking.again(); // what was said meanwhile is in English
+languageSelect.addEventListener('change', async () => {
+  const learning = python.ask({ do: 'learn', language: languageSelect.value }).catch(() => null);
+  languageSelect.value = work.language = await setLanguage(languageSelect.value);
+  await learning;
+  checking.checkAgain(); // what was said meanwhile is in English
 });
 
-words.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
+wordsButton.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
 
-element('open', HTMLButtonElement).addEventListener('click', () => file.click());
+element('open', HTMLButtonElement).addEventListener('click', () => fileInput.click());
 
-onFileChosen('file', async (chosen) => {
-  if (isRunFile(chosen.name)) {
-    driving.openRun(chosen);
+onFileChosen('file', async (file) => {
+  if (isRunFile(file.name)) {
+    simulatorPanel.openRun(file);
     return;
   }
   let answer;
   try {
-    const data = await bytesOf(chosen);
+    const data = await bytesOf(file);
     answer = await python.ask({ do: 'open', robot: work.robot, language: currentLanguage() }, data);
   } catch {
-    pageState.note.set(text('not_opened', { name: chosen.name, why: text('unreadable') }));
+    pageState.note.set(text('not_opened', { name: file.name, why: text('unreadable') }));
     return;
   }
   if (answer.text === undefined) {
-    pageState.note.set(text('not_opened', { name: chosen.name, why: whole(answer) }));
+    pageState.note.set(text('not_opened', { name: file.name, why: messageWithFix(answer) }));
     return;
   }
-  programs.replace({ text: answer.text, robot: work.robot, name: chosen.name });
-  pageState.note.set(text('opened', { name: chosen.name }));
+  programs.replace({ text: answer.text, robot: work.robot, name: file.name });
+  pageState.note.set(text('opened', { name: file.name }));
 });
 
 element('save', HTMLButtonElement).addEventListener('click', () => {
@@ -305,12 +305,12 @@ addEventListener('keydown', (event) => {
     element('save', HTMLButtonElement).click();
   } else if (event.key === 'o') {
     event.preventDefault();
-    file.click();
+    fileInput.click();
   } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasItsOwnUndo(event.composedPath()[0])) {
     event.preventDefault();
     const isRedo = event.shiftKey || event.key === 'y';
-    const place = 'drawing' in document.documentElement.dataset ? 'world_' : '';
-    element(`${place}${isRedo ? 'redo' : 'undo'}`, HTMLButtonElement).click();
+    const idPrefix = 'drawing' in document.documentElement.dataset ? 'world_' : '';
+    element(`${idPrefix}${isRedo ? 'redo' : 'undo'}`, HTMLButtonElement).click();
   }
 });
 

@@ -26,7 +26,7 @@ import { watchPromise } from './page/progress.js';
  */
 
 /**
- * @typedef {object} Checked
+ * @typedef {object} CheckResult
  * @property {string} image hexadecimal; empty where there are mistakes
  * @property {string} program the image's checksum, in hexadecimal; empty where there are mistakes
  * @property {number} bytes of code
@@ -83,104 +83,104 @@ import { watchPromise } from './page/progress.js';
  * @property {number} began_ms from when on the rows count
  */
 
-/** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
+/** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} PendingRequest */
 
 /**
- * @typedef {object} Heard what is told of it until it is there
- * @property {() => void} waits nothing has come of what it needs for a while
- * @property {() => void} fails it cannot be had
- * @property {() => void} begins it is tried again
+ * @typedef {object} PythonListener what is told of it until it is there
+ * @property {() => void} onWait nothing has come of what it needs for a while
+ * @property {() => void} onFail it cannot be had
+ * @property {() => void} onBegin it is tried again
  */
 
 export class Python {
   /** @type {Worker | null} */
   #worker = null;
-  #isThere = false;
-  /** @type {Map<number, Waiting>} */
-  #waiting = new Map();
-  #asked = 0;
-  #answers = () => {};
+  #isReady = false;
+  /** @type {Map<number, PendingRequest>} */
+  #pendingRequests = new Map();
+  #requestCount = 0;
+  #resolveReady = () => {};
   #isLate = false;
-  /** @type {Heard} */
-  #heard = { waits() {}, fails() {}, begins() {} };
+  /** @type {PythonListener} */
+  #listener = { onWait() {}, onFail() {}, onBegin() {} };
   /** Resolves when it answers, be that at another try. @type {Promise<void>} */
   ready;
 
   /** @param {string} language to begin with */
   constructor(language) {
-    this.ready = new Promise((resolve) => { this.#answers = resolve; });
-    this.#begin(language);
+    this.ready = new Promise((resolve) => { this.#resolveReady = resolve; });
+    this.#startWorker(language);
   }
 
   /** Whether nothing has come for a while. */
   get isLate() { return this.#isLate; }
 
-  /** Tells of it from now on, and where it is. @param {Heard} heard */
-  heed(heard) {
-    this.#heard = heard;
-    if (!this.#worker) heard.fails();
-    else if (this.#isLate) heard.waits();
+  /** Tells of it from now on, and where it is. @param {PythonListener} listener */
+  listen(listener) {
+    this.#listener = listener;
+    if (!this.#worker) listener.onFail();
+    else if (this.#isLate) listener.onWait();
   }
 
   /** Tries once more where it could not be had. @param {string} language */
-  again(language) {
+  tryAgain(language) {
     if (this.#worker) return;
-    this.#begin(language);
-    this.#heard.begins();
+    this.#startWorker(language);
+    this.#listener.onBegin();
   }
 
   /** @param {string} language */
-  #begin(language) {
+  #startWorker(language) {
     const worker = this.#worker = new Worker('./worker.js', { type: 'module', name: language });
     /** @type {Promise<void>} */
-    const begun = new Promise((resolve) => {
+    const firstMessage = new Promise((resolve) => {
       worker.addEventListener('message', ({ data }) => {
         resolve();
         if (data.begun) return;
-        if (data.waits) this.#wait(worker);
-        else if (data.id === 0) this.#settle(worker, data.error);
+        if (data.waits) this.#reportWait(worker);
+        else if (data.id === 0) this.#onReadyOrFailed(worker, data.error);
         else {
-          const waiting = this.#waiting.get(data.id);
-          this.#waiting.delete(data.id);
-          if (data.error) waiting?.reject(new Error(data.error));
-          else waiting?.resolve(JSON.parse(data.answer));
+          const pending = this.#pendingRequests.get(data.id);
+          this.#pendingRequests.delete(data.id);
+          if (data.error) pending?.reject(new Error(data.error));
+          else pending?.resolve(JSON.parse(data.answer));
         }
       });
     });
-    watchPromise(begun, { onWait: () => this.#wait(worker) }).catch((why) => this.#settle(worker, String(why)));
+    watchPromise(firstMessage, { onWait: () => this.#reportWait(worker) }).catch((error) => this.#onReadyOrFailed(worker, String(error)));
     worker.addEventListener('error', (event) => {
-      const why = event.message || 'worker';
-      this.#rejectAll(why);
-      this.#settle(worker, why);
+      const error = event.message || 'worker';
+      this.#rejectAll(error);
+      this.#onReadyOrFailed(worker, error);
     });
   }
 
   /** @param {Worker} worker */
-  #wait(worker) {
+  #reportWait(worker) {
     if (worker !== this.#worker) return;
     this.#isLate = true;
-    this.#heard.waits();
+    this.#listener.onWait();
   }
 
   /** Whether it is there is known now. @param {Worker} worker @param {string} [error] */
-  #settle(worker, error) {
-    if (worker !== this.#worker || this.#isThere) return;
+  #onReadyOrFailed(worker, error) {
+    if (worker !== this.#worker || this.#isReady) return;
     this.#isLate = false;
     if (error) {
       worker.terminate(); // what it waits for may come later: then it is another one's
       this.#worker = null;
       this.#rejectAll(error);
-      this.#heard.fails();
+      this.#listener.onFail();
     } else {
-      this.#isThere = true;
-      this.#answers();
+      this.#isReady = true;
+      this.#resolveReady();
     }
   }
 
-  /** @param {string} why */
-  #rejectAll(why) {
-    for (const waiting of this.#waiting.values()) waiting.reject(new Error(why));
-    this.#waiting.clear();
+  /** @param {string} reason */
+  #rejectAll(reason) {
+    for (const pending of this.#pendingRequests.values()) pending.reject(new Error(reason));
+    this.#pendingRequests.clear();
   }
 
   /**
@@ -189,10 +189,10 @@ export class Python {
    * @returns {Promise<any>}
    */
   ask(request, data = new Uint8Array()) {
-    const id = ++this.#asked;
+    const id = ++this.#requestCount;
     return new Promise((resolve, reject) => {
       if (!this.#worker) throw new Error('no worker');
-      this.#waiting.set(id, { resolve, reject });
+      this.#pendingRequests.set(id, { resolve, reject });
       this.#worker.postMessage({ id, request: JSON.stringify(request), data });
     });
   }

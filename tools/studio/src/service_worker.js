@@ -4,26 +4,26 @@
 //
 // It does not take over pages of another build: a worker and a page of two builds would not fit.
 
-const PREFIX = 'tiniscript-studio-';
-const NAME = PREFIX + VERSION;
+const CACHE_PREFIX = 'tiniscript-studio-';
+const CACHE_NAME = CACHE_PREFIX + VERSION;
 
 /** @param {string[]} names of files */
-async function keep(names) {
-  const cache = await caches.open(NAME);
+async function cacheFiles(names) {
+  const cache = await caches.open(CACHE_NAME);
   return cache.addAll(names.map((name) => new Request(name, { cache: 'reload' })));
 }
 
 /** Whether a build keeps one of these files. @param {string[]} names */
-async function isKept(names) {
+async function isAnyCached(names) {
   return (await Promise.all(names.map((name) => caches.match(name)))).some(Boolean);
 }
 
 self.addEventListener('install', (event) => {
   event.waitUntil(
-    Promise.all(Object.values(LANGUAGES).map(async (names) => ((await isKept(names)) ? names : [])))
-      .then(async (kept) => {
-        await caches.delete(NAME); // what is there another server of this address may have put there
-        await keep([...new Set([...FILES, ...kept.flat()])]);
+    Promise.all(Object.values(LANGUAGES).map(async (names) => ((await isAnyCached(names)) ? names : [])))
+      .then(async (cachedNames) => {
+        await caches.delete(CACHE_NAME); // what is there another server of this address may have put there
+        await cacheFiles([...new Set([...FILES, ...cachedNames.flat()])]);
       }),
   );
 });
@@ -32,9 +32,9 @@ self.addEventListener('message', (event) => {
   const names = LANGUAGES[event.data] ?? [];
   event.waitUntil(
     caches
-      .open(NAME)
+      .open(CACHE_NAME)
       .then((cache) => Promise.all(names.map((name) => cache.match(name))))
-      .then((found) => (found.every(Boolean) ? undefined : keep(names))),
+      .then((responses) => (responses.every(Boolean) ? undefined : cacheFiles(names))),
   );
 });
 
@@ -44,7 +44,7 @@ self.addEventListener('activate', (event) => {
       .keys()
       .then((names) =>
         Promise.all(
-          names.filter((name) => name.startsWith(PREFIX) && name !== NAME).map((name) => caches.delete(name)),
+          names.filter((name) => name.startsWith(CACHE_PREFIX) && name !== CACHE_NAME).map((name) => caches.delete(name)),
         ),
       )
       .then(() => self.clients.claim()),
@@ -55,8 +55,8 @@ self.addEventListener('fetch', (event) => {
   if (event.request.method !== 'GET') return;
   event.respondWith(
     caches
-      .open(NAME)
+      .open(CACHE_NAME)
       .then((cache) => cache.match(event.request, { ignoreSearch: true }))
-      .then((found) => found ?? fetch(event.request)),
+      .then((response) => response ?? fetch(event.request)),
   );
 });

@@ -7,37 +7,37 @@ import languages from '../made/languages.json';
 import lock from '../made/lock.json';
 
 postMessage({ id: 0, begun: true });
-const waits = () => postMessage({ id: 0, waits: true });
+const reportWait = () => postMessage({ id: 0, waits: true });
 const plainFetch = self.fetch.bind(self);
 // Pyodide's own module. An import tells of no progress: while something else comes, the line carries it, too.
-const module = new Progress({ onWait: waits });
-const came = () => module.advance();
+const moduleProgress = new Progress({ onWait: reportWait });
+const advanceModule = () => moduleProgress.advance();
 // What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
-const fails = (/** @type {unknown} */ why) => postMessage({ id: 0, error: String(why) });
-self.fetch = (what, options) => watchedFetch(what, { ...options, onWait: waits, onProgress: came, onFail: fails }, plainFetch);
+const reportError = (/** @type {unknown} */ error) => postMessage({ id: 0, error: String(error) });
+self.fetch = (what, options) => watchedFetch(what, { ...options, onWait: reportWait, onProgress: advanceModule, onFail: reportError }, plainFetch);
 
-const SOURCE = languages[0]?.[0] ?? ''; // the language that is always there
+const SOURCE_LANGUAGE = languages[0]?.[0] ?? ''; // the language that is always there
 
 /** @param {string} name */
-async function fetched(name) {
-  const found = await watchedFetch(`./${name}`, { onWait: waits, onProgress: came }, plainFetch).catch((why) => {
-    throw new Error(`${name}: ${why}`);
+async function fetchFile(name) {
+  const response = await watchedFetch(`./${name}`, { onWait: reportWait, onProgress: advanceModule }, plainFetch).catch((error) => {
+    throw new Error(`${name}: ${error}`);
   });
-  if (!found.ok) throw new Error(`${name}: ${found.status}`);
-  return found.arrayBuffer();
+  if (!response.ok) throw new Error(`${name}: ${response.status}`);
+  return response.arrayBuffer();
 }
 
 /** The languages that Python speaks. @type {Set<string>} */
-const learnt = new Set();
+const learntLanguages = new Set();
 /** Those that are fetched: what is kept for long waits for its language. @type {Map<string, Promise<unknown>>} */
-const coming = new Map();
+const learningLanguages = new Map();
 
-async function begin() {
-  const imported = module.watch(import(new URL('./pyodide.asm.mjs', self.location.href).href));
-  const archive = fetched('tiniscript.zip');
-  const wanted = [...new Set([SOURCE, self.name || SOURCE])];
-  const messages = wanted.map((language) => fetched(`messages.${language}.json`).catch((why) => {
-    if (language === SOURCE) throw why;
+async function startPython() {
+  const importing = moduleProgress.watch(import(new URL('./pyodide.asm.mjs', self.location.href).href));
+  const archiveData = fetchFile('tiniscript.zip');
+  const wantedLanguages = [...new Set([SOURCE_LANGUAGE, self.name || SOURCE_LANGUAGE])];
+  const messageFiles = wantedLanguages.map((language) => fetchFile(`messages.${language}.json`).catch((error) => {
+    if (language === SOURCE_LANGUAGE) throw error;
     return null;
   }));
   const [python] = await Promise.all([
@@ -47,12 +47,12 @@ async function begin() {
       lockFileContents: /** @type {any} */ (lock),
       packageBaseUrl: new URL('./', self.location.href).href,
     }),
-    imported,
+    importing,
   ]);
   python.FS.mkdirTree('/studio');
   /** @param {ArrayBuffer} data */
   const unpack = (data) => python.unpackArchive(data, 'zip', { extractDir: '/studio' });
-  unpack(await archive);
+  unpack(await archiveData);
   const ask = python.runPython(`
 import sys
 sys.path.insert(0, "/studio")
@@ -62,49 +62,49 @@ lambda request, data: answer(request, data.to_bytes())
   /** @param {string} language @param {ArrayBuffer | null} data its messages */
   const learn = (language, data) => {
     if (data) ask(JSON.stringify({ do: 'learn', language }), new Uint8Array(data));
-    if (data) learnt.add(language);
+    if (data) learntLanguages.add(language);
   };
-  (await Promise.all(messages)).forEach((data, k) => learn(wanted[k] ?? '', data));
+  (await Promise.all(messageFiles)).forEach((data, index) => learn(wantedLanguages[index] ?? '', data));
   return { ask, unpack, learn };
 }
 
 addEventListener('unhandledrejection', ({ reason }) => postMessage({ id: 0, error: String(reason) }));
 
-const python = begin();
+const python = startPython();
 python.then(
   () => postMessage({ id: 0 }),
-  (why) => postMessage({ id: 0, error: String(why) }),
+  (error) => postMessage({ id: 0, error: String(error) }),
 );
 
 /** What is fetched once it is needed, until that was possible. @type {Map<string, Promise<void>>} */
 const archives = new Map();
 
 /** @param {string} name */
-function need(name) {
-  const coming = archives.get(name) ?? Promise.all([python, fetched(name)]).then(([{ unpack }, data]) => unpack(data));
-  archives.set(name, coming);
-  coming.catch(() => archives.delete(name));
-  return coming;
+function fetchArchive(name) {
+  const fetching = archives.get(name) ?? Promise.all([python, fetchFile(name)]).then(([{ unpack }, data]) => unpack(data));
+  archives.set(name, fetching);
+  fetching.catch(() => archives.delete(name));
+  return fetching;
 }
 
 addEventListener('message', async ({ data: { id, request, data } }) => {
   try {
     const { ask, learn } = await python;
-    const asked = JSON.parse(request);
-    const { language } = asked;
-    if (asked.do.startsWith('lesson_')) await Promise.all([need('lessons.zip'), coming.get(language)?.catch(() => null)]);
-    if (asked.do.startsWith('group_')) await need('together.zip');
-    if (asked.do === 'learn') {
-      if (!learnt.has(language)) {
-        coming.set(language, fetched(`messages.${language}.json`).then((found) => learn(language, found)));
-        await coming.get(language);
+    const parsedRequest = JSON.parse(request);
+    const { language } = parsedRequest;
+    if (parsedRequest.do.startsWith('lesson_')) await Promise.all([fetchArchive('lessons.zip'), learningLanguages.get(language)?.catch(() => null)]);
+    if (parsedRequest.do.startsWith('group_')) await fetchArchive('together.zip');
+    if (parsedRequest.do === 'learn') {
+      if (!learntLanguages.has(language)) {
+        learningLanguages.set(language, fetchFile(`messages.${language}.json`).then((messages) => learn(language, messages)));
+        await learningLanguages.get(language);
       }
       postMessage({ id, answer: '{}' });
       return;
     }
-    if (language && !learnt.has(language)) asked.language = SOURCE;
-    postMessage({ id, answer: ask(JSON.stringify(asked), data) });
-  } catch (why) {
-    postMessage({ id, error: String(why) });
+    if (language && !learntLanguages.has(language)) parsedRequest.language = SOURCE_LANGUAGE;
+    postMessage({ id, answer: ask(JSON.stringify(parsedRequest), data) });
+  } catch (error) {
+    postMessage({ id, error: String(error) });
   }
 });

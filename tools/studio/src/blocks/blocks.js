@@ -433,7 +433,7 @@ export class Blocks {
     return result;
   }
 
-  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').Stand} */
+  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').StandText} */
   get stand() {
     /** @type {import('./form.js').StackPlaces} */
     const stackPlaces = new Map();
@@ -441,7 +441,7 @@ export class Blocks {
     return JSON.stringify([...stackPlaces].sort(([a], [b]) => (a < b ? -1 : 1)));
   }
 
-  /** Has the next blocks stand there again. @param {import('../writing/editor.js').Stand} stand */
+  /** Has the next blocks stand there again. @param {import('../writing/editor.js').StandText} stand */
   set stand(stand) {
     /** @type {[string, {x: number, y: number}[]][]} */
     const stackPlaces = JSON.parse(stand);

@@ -58,9 +58,9 @@ export class Membership {
           this.endMembership();
           this.#listener.say('group_left');
         },
-        fails: (why) => {
+        fails: (error) => {
           this.endMembership();
-          this.#listener.onBug(why);
+          this.#listener.onBug(error);
         },
         others: (others) => this.#listener.onOthers(others),
         refused: () => pageState.note.set(text('group_refused')),
@@ -75,9 +75,9 @@ export class Membership {
       await together.begin(answer, storedPage ?? null).then(() => {
         views.join(together);
         document.documentElement.dataset['group'] = 'in';
-      }, (why) => {
+      }, (error) => {
         this.leave();
-        this.#listener.onBug(why);
+        this.#listener.onBug(error);
       });
     } catch {
       this.#listener.say('class_silent');

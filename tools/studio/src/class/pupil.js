@@ -8,7 +8,7 @@
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { element, say } from '../page/elements.js';
 import { askAs, hearStops, post } from '../robot/host.js';
-import { keepDone, lessonsDone } from '../lesson/progress.js';
+import { storeDone, loadDoneLessons } from '../lesson/progress.js';
 import { plainText } from '../robot/plain_text.js';
 import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
@@ -177,9 +177,9 @@ export class Pupil {
         giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
       }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
-    } catch (why) {
+    } catch (error) {
       if (stay !== this.#stay) return;
-      if (why instanceof ConnectionFailure && why.reason === 'host_other') {
+      if (error instanceof ConnectionFailure && error.reason === 'host_other') {
         this.#leaveClass('class_gone');
         return;
       }
@@ -195,7 +195,7 @@ export class Pupil {
     return {
       text: JSON.stringify(this.#work.text.slice(0, CLASS.text_characters)),
       robot: JSON.stringify(this.#work.robot),
-      lessons: JSON.stringify([...lessonsDone()].slice(0, CLASS.most_lessons)),
+      lessons: JSON.stringify([...loadDoneLessons()].slice(0, CLASS.most_lessons)),
       own_robot: JSON.stringify(pageState.ownRobot.value),
       ...(state === 'checked' && { is_right: JSON.stringify(Boolean(image) || !this.#work.text.trim()) }),
     };
@@ -216,7 +216,7 @@ export class Pupil {
         return;
       }
       stay.takenWork = work;
-      for (const name of work.lessons) keepDone(name);
+      for (const name of work.lessons) storeDone(name);
       element('note', HTMLElement).textContent = text('class_given');
     }
     stay.isTakenUnconfirmed = true;

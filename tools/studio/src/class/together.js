@@ -152,7 +152,7 @@ export class SharedEditor {
     this.#python = python;
     this.#editor = editor;
     this.#listener = listener;
-    editor.handUndo((direction) => this.#undoOrRedo(direction));
+    editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
     this.#view = editor.extend([othersField, baseTheme, EditorView.updateListener.of((update) => this.#onUpdate(update))]);
   }
 
@@ -174,7 +174,7 @@ export class SharedEditor {
     this.#isOver = true;
     this.#otherPupils = [];
     this.#showOthers();
-    this.#editor.handUndo(null);
+    this.#editor.setUndoHandler(null);
   }
 
   /** What is finished becomes the group's. @returns {Promise<unknown>} */
@@ -284,7 +284,7 @@ export class SharedEditor {
       ...(isAtLineStart && { selection: selection.map(mapped, 1) }), // else it is mapped so anyway; saying it would end a composition
       annotations: [broughtAnnotation.of(true), Transaction.addToHistory.of(false)],
     });
-    if (answer.count > countBefore) this.#editor.handUndo((direction) => this.#undoOrRedo(direction));
+    if (answer.count > countBefore) this.#editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
     this.#showOthers();
     this.#listener.keep(answer.kept);
     if (answer.told > refusedBefore && this.#pythonState.version > 1) this.#listener.refused(answer.why);
@@ -332,10 +332,10 @@ export class SharedEditor {
     let answer;
     try {
       answer = await post({ ...this.#request(), ...fields }, options);
-    } catch (why) {
+    } catch (error) {
       if (this.#isOver) return null;
       this.#listener.answers(false);
-      await pause(why instanceof ConnectionFailure ? SLOW_RETRY_MS : RETRY_MS);
+      await pause(error instanceof ConnectionFailure ? SLOW_RETRY_MS : RETRY_MS);
       return null;
     }
     if (this.#isOver) return null;

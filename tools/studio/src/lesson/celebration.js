@@ -2,10 +2,10 @@
 
 import { makeElement } from '../page/made.js';
 
-const LASTS_MS = 1600;
-const PIECES = 90;
+const DURATION_MS = 1600;
+const PIECE_COUNT = 90;
 const COLOURS = ['#ffd84d', '#2a9d6f', '#2f74c0', '#d0468f', '#d8741a', '#8a4fc4'];
-const FALL = 1.1; // heights of the page in a second, squared
+const FALL_ACCELERATION = 1.1; // heights of the page in a second, squared
 
 /** Lets confetti fall, in front of everything and under no finger. */
 export function celebrate() {
@@ -17,26 +17,26 @@ export function celebrate() {
   canvas.setAttribute('aria-hidden', 'true');
   Object.assign(canvas, { width: innerWidth, height: innerHeight });
   document.body.append(canvas);
-  const pieces = Array.from({ length: PIECES }, (_, k) => ({
-    x: Math.random(), up: 0.5 + Math.random() * 0.7, aside: (Math.random() - 0.5) * 0.5, spin: Math.random() * 9, size: 5 + Math.random() * 7, colour: COLOURS[k % COLOURS.length] ?? '',
+  const pieces = Array.from({ length: PIECE_COUNT }, (_, index) => ({
+    x: Math.random(), up: 0.5 + Math.random() * 0.7, aside: (Math.random() - 0.5) * 0.5, spin: Math.random() * 9, size: 5 + Math.random() * 7, colour: COLOURS[index % COLOURS.length] ?? '',
   }));
   const began_ms = performance.now();
-  const draw = () => {
-    const passed_s = (performance.now() - began_ms) / 1000;
-    if (passed_s * 1000 > LASTS_MS || !canvas.isConnected) {
+  const drawFrame = () => {
+    const elapsed_s = (performance.now() - began_ms) / 1000;
+    if (elapsed_s * 1000 > DURATION_MS || !canvas.isConnected) {
       canvas.remove();
       return;
     }
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, canvas.width, canvas.height);
     for (const { x, up, aside, spin, size, colour } of pieces) {
-      pen.setTransform(1, 0, 0, 1, (x + aside * passed_s) * canvas.width, (0.9 - up * passed_s + FALL * passed_s ** 2 / 2) * canvas.height);
-      pen.rotate(spin * passed_s);
-      pen.scale(1, Math.cos(2 * spin * passed_s)); // it turns in the air
+      pen.setTransform(1, 0, 0, 1, (x + aside * elapsed_s) * canvas.width, (0.9 - up * elapsed_s + FALL_ACCELERATION * elapsed_s ** 2 / 2) * canvas.height);
+      pen.rotate(spin * elapsed_s);
+      pen.scale(1, Math.cos(2 * spin * elapsed_s)); // it turns in the air
       pen.fillStyle = colour;
       pen.fillRect(-size / 2, -size / 3, size, size / 1.5);
     }
-    requestAnimationFrame(draw);
+    requestAnimationFrame(drawFrame);
   };
-  draw();
+  drawFrame();
 }

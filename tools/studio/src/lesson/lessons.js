@@ -8,9 +8,9 @@ import { makeButton, makeElement } from '../page/made.js';
 import { bugSentence } from '../page/faults.js';
 import { labelOfBlock, labelOfWord } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
-import { elementOf, filled } from './page.js';
+import { makeBlockElement, makeTextElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { keepDone, keepStars, lessonsDone, starsInAll } from './progress.js';
+import { storeDone, storeStars, loadDoneLessons, countAllStars } from './progress.js';
 import { replaceOptions, pictureOption, worldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
@@ -36,159 +36,159 @@ import { isSecondPress } from '../page/twice.js';
  * @property {import('../programs/work.js').Work} work
  * @property {(program: Program) => void} put another program into the editor, which is seen then
  * @property {(program: Program) => void} exchange it, whatever is seen
- * @property {import('../virtual/simulator_panel.js').SimulatorPanel} driving
+ * @property {import('../virtual/simulator_panel.js').SimulatorPanel} simulatorPanel
  */
 
 /** What is said of each verdict, where a lesson has one world, and where it has several. */
-const SAID = /** @type {const} */ ({
+const VERDICT_KEYS = /** @type {const} */ ({
   passed: ['lesson_passed', 'lesson_passed_worlds'],
   failed: ['lesson_failed', 'lesson_failed_world'],
   mistakes: ['lesson_mistakes', 'lesson_mistakes'],
 });
-const ARCHIVE = 'lessons.zip'; // named where it cannot be fetched
-const BUSY_MS = 40; // of the worker's time for a part of a check
-const LEAST_MS = 20; // of the robot's time in a part, and the most
-const MOST_MS = 2000;
+const ARCHIVE_NAME = 'lessons.zip'; // named where it cannot be fetched
+const PART_MS = 40; // of the worker's time for a part of a check
+const LEAST_ROBOT_MS = 20; // of the robot's time in a part, and the most
+const MOST_ROBOT_MS = 2000;
 
-const MORE = 4; // pixels below that nobody misses
+const MORE_PX = 4; // pixels below that nobody misses
 
 export class Lessons {
   #page;
   /** @type {Lesson[]} */
   #lessons = [];
-  #number = 1;
+  #lessonNumber = 1;
   /** @type {Step[]} */
   #steps = [];
   /** The same for who sees blocks. @type {Step[]} */
   #blockSteps = [];
-  #step = 0;
-  #checks = 0; // the newest one goes on; others have been ended
-  #asked = 0;
+  #stepIndex = 0;
+  #checkCount = 0; // the newest one goes on; others have been ended
+  #requestCount = 0;
   #isShown = false;
-  #choice = element('lesson', HTMLSelectElement);
-  #check = element('lesson_check', HTMLButtonElement);
-  #end = element('lesson_end', HTMLButtonElement);
-  #said = element('lesson_said', HTMLElement);
-  #findings = element('lesson_findings', HTMLElement);
-  #next = element('lesson_next', HTMLButtonElement);
-  #hint = element('lesson_hint', HTMLDetailsElement);
+  #lessonSelect = element('lesson', HTMLSelectElement);
+  #checkButton = element('lesson_check', HTMLButtonElement);
+  #endButton = element('lesson_end', HTMLButtonElement);
+  #verdictElement = element('lesson_said', HTMLElement);
+  #findingsElement = element('lesson_findings', HTMLElement);
+  #nextButton = element('lesson_next', HTMLButtonElement);
+  #hintElement = element('lesson_hint', HTMLDetailsElement);
   #pictures;
   /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').SpokenBlock>} */
-  #spoken = {};
+  #spokenBlocks = {};
   /** What the check has found. @type {{said: string[], block_said: string[]}} */
-  #found = { said: [], block_said: [] };
+  #findings = { said: [], block_said: [] };
   #hasPassed = false;
   #isPlaying = false;
   /** This person's program, which comes back after the lesson. @type {Program | null} */
-  #own = null;
-  #ownName = ''; // of the lesson's program
+  #ownProgram = null;
+  #lessonProgramName = ''; // of the lesson's program
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
     this.#pictures = new Pictures(page.python, 'lesson_blocks');
-    element('side_lessons', HTMLButtonElement).addEventListener('click', () => this.#show());
-    this.#choice.addEventListener('change', () => {
-      this.#choose(Number(this.#choice.value)).catch((why) => this.#fail(why));
+    element('side_lessons', HTMLButtonElement).addEventListener('click', () => this.#showLessons());
+    this.#lessonSelect.addEventListener('change', () => {
+      this.#chooseLesson(Number(this.#lessonSelect.value)).catch((error) => this.#showFailure(error));
     });
-    this.#check.addEventListener('click', () => this.#begin());
-    this.#end.addEventListener('click', () => {
+    this.#checkButton.addEventListener('click', () => this.#startCheck());
+    this.#endButton.addEventListener('click', () => {
       if (this.#isPlaying) {
-        this.#page.driving.stop(); // which shows the verdict
+        this.#page.simulatorPanel.stop(); // which shows the verdict
         return;
       }
-      this.#forget();
-      this.#said.textContent = text('lesson_ended');
-      this.#check.focus();
+      this.#forgetCheck();
+      this.#verdictElement.textContent = text('lesson_ended');
+      this.#checkButton.focus();
     });
-    this.#next.addEventListener('click', (event) => {
+    this.#nextButton.addEventListener('click', (event) => {
       if (isSecondPress(event)) return; // one step is seen after the other
-      if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
-      else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
+      if (this.#stepIndex < this.#steps.length - 1) this.#goToStep(this.#stepIndex + 1);
+      else this.#chooseLesson(this.#lessonNumber + 1).catch((error) => this.#showFailure(error));
     });
     pageState.language.subscribe(() => {
       this.#pictures.updateLanguage();
-      if (this.#isShown) this.#fetch();
+      if (this.#isShown) this.#fetchLessons();
     });
     pageState.areWordsShown.subscribe(() => {
       this.#pictures.updateLanguage();
-      this.#fill();
+      this.#fillStep();
     });
     pageState.view.subscribe(() => {
-      if (this.#lessons.length) this.#list();
-      this.#fill();
+      if (this.#lessons.length) this.#listLessons();
+      this.#fillStep();
     });
-    pageState.robotName.subscribe(() => this.#fill());
+    pageState.robotName.subscribe(() => this.#fillStep());
     pageState.sideId.subscribe((side) => {
       if (side !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
     });
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
-      if (this.#isShown) this.#forget();
+      if (this.#isShown) this.#forgetCheck();
     });
-    const place = element('lesson_page', HTMLElement);
-    const tellMore = () => place.classList.toggle('more', place.scrollTop + place.clientHeight < place.scrollHeight - MORE);
-    place.addEventListener('scroll', tellMore, { passive: true });
-    const watcher = new ResizeObserver(tellMore);
-    for (const each of [place, element('lesson_step', HTMLElement)]) watcher.observe(each);
+    const lessonPage = element('lesson_page', HTMLElement);
+    const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - MORE_PX);
+    lessonPage.addEventListener('scroll', markMore, { passive: true });
+    const resizeObserver = new ResizeObserver(markMore);
+    for (const observed of [lessonPage, element('lesson_step', HTMLElement)]) resizeObserver.observe(observed);
     this.#setReady(false);
   }
 
-  #show() {
+  #showLessons() {
     if (this.#isShown) {
-      if (this.#steps.length) this.#enter().catch((why) => this.#fail(why));
+      if (this.#steps.length) this.#enterLesson().catch((error) => this.#showFailure(error));
       return;
     }
     this.#isShown = true;
-    this.#fetch();
+    this.#fetchLessons();
   }
 
   /** Ends a check and forgets what was said. */
-  #forget() {
-    this.#checks += 1;
+  #forgetCheck() {
+    this.#checkCount += 1;
     this.#isPlaying = this.#hasPassed = false;
-    this.#end.hidden = true;
-    this.#end.textContent = text('lesson_end');
-    this.#lay();
-    this.#find({ said: [], block_said: [] });
-    delete this.#said.dataset['verdict'];
-    this.#said.textContent = '';
+    this.#endButton.hidden = true;
+    this.#endButton.textContent = text('lesson_end');
+    this.#showButtons();
+    this.#showFindings({ said: [], block_said: [] });
+    delete this.#verdictElement.dataset['verdict'];
+    this.#verdictElement.textContent = '';
     element('lesson_stars', HTMLElement).textContent = '';
   }
 
   /** @param {boolean} isReady */
   #setReady(isReady) {
-    this.#choice.disabled = this.#check.disabled = this.#next.disabled = !isReady;
+    this.#lessonSelect.disabled = this.#checkButton.disabled = this.#nextButton.disabled = !isReady;
   }
 
   /** Fetches the names of the lessons and the page of the one that is chosen. */
-  async #fetch() {
-    const asked = ++this.#asked;
-    this.#said.textContent = text('lessons_coming');
+  async #fetchLessons() {
+    const requestNumber = ++this.#requestCount;
+    this.#verdictElement.textContent = text('lessons_coming');
     const language = currentLanguage();
     try {
-      this.#page.python.again(language);
+      this.#page.python.tryAgain(language);
       const { lessons } = await this.#page.python.ask({ do: 'lesson_titles', language });
-      if (asked !== this.#asked) return;
+      if (requestNumber !== this.#requestCount) return;
       this.#lessons = lessons;
-      if (!this.#steps.length) this.#number = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => !lessonsDone().has(name)));
-      this.#list();
-      await this.#choose(this.#number);
-    } catch (why) {
+      if (!this.#steps.length) this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => !loadDoneLessons().has(name)));
+      this.#listLessons();
+      await this.#chooseLesson(this.#lessonNumber);
+    } catch (error) {
       this.#isShown = false;
       this.#setReady(false);
-      if (document.documentElement.dataset['state'] === 'failed') this.#said.textContent = text('no_compiler');
-      else if (String(why).includes(ARCHIVE)) this.#said.textContent = text('lessons_unreachable');
-      else this.#fail(why);
+      if (document.documentElement.dataset['state'] === 'failed') this.#verdictElement.textContent = text('no_compiler');
+      else if (String(error).includes(ARCHIVE_NAME)) this.#verdictElement.textContent = text('lessons_unreachable');
+      else this.#showFailure(error);
     }
   }
 
-  #list() {
-    const done = lessonsDone();
-    replaceOptions(this.#choice, this.#lessons.map((lesson, k) => {
-      const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return pictureOption(`${k + 1}. ${this.#titleOf(lesson)}${mark}`, String(k + 1), worldPicture(lesson.world));
+  #listLessons() {
+    const doneLessons = loadDoneLessons();
+    replaceOptions(this.#lessonSelect, this.#lessons.map((lesson, index) => {
+      const mark = doneLessons.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
+      return pictureOption(`${index + 1}. ${this.#titleOf(lesson)}${mark}`, String(index + 1), worldPicture(lesson.world));
     }));
-    this.#choice.value = String(this.#number);
+    this.#lessonSelect.value = String(this.#lessonNumber);
   }
 
   get #areBlocks() {
@@ -200,231 +200,231 @@ export class Lessons {
     return this.#areBlocks ? lesson.block_title : lesson.title;
   }
 
-  /** @param {number} number */
-  async #choose(number) {
-    const asked = ++this.#asked;
+  /** @param {number} lessonNumber */
+  async #chooseLesson(lessonNumber) {
+    const requestNumber = ++this.#requestCount;
     const language = currentLanguage();
-    this.#forget();
-    const { steps, block_steps, offered, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
-    if (asked !== this.#asked) return;
-    const isOther = number !== this.#number || !this.#steps.length;
-    this.#number = number; // from now on: until then the one before is seen and checked
-    this.#choice.value = String(number);
+    this.#forgetCheck();
+    const { steps, block_steps, offered, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number: lessonNumber, language });
+    if (requestNumber !== this.#requestCount) return;
+    const isOther = lessonNumber !== this.#lessonNumber || !this.#steps.length;
+    this.#lessonNumber = lessonNumber; // from now on: until then the one before is seen and checked
+    this.#lessonSelect.value = String(lessonNumber);
     this.#steps = steps;
     this.#blockSteps = block_steps;
-    this.#spoken = spoken;
+    this.#spokenBlocks = spoken;
     pageState.taughtBlocks.set({ offered, needed, fresh });
-    this.#go(isOther ? 0 : this.#step);
-    if (isOther && !element('lessons', HTMLElement).hidden) await this.#enter();
+    this.#goToStep(isOther ? 0 : this.#stepIndex);
+    if (isOther && !element('lessons', HTMLElement).hidden) await this.#enterLesson();
     this.#setReady(true);
   }
 
-  /** Shows a step. @param {number} step */
-  #go(step) {
-    this.#step = step;
-    const place = element('lesson_page', HTMLElement);
-    this.#fill();
-    place.dataset['lesson'] = String(this.#number);
+  /** Shows a step. @param {number} stepIndex */
+  #goToStep(stepIndex) {
+    this.#stepIndex = stepIndex;
+    const lessonPage = element('lesson_page', HTMLElement);
+    this.#fillStep();
+    lessonPage.dataset['lesson'] = String(this.#lessonNumber);
     element('lesson_page', HTMLElement).scrollTop = 0;
-    this.#hint.open = false;
-    this.#hint.hidden = !this.#steps[step]?.hint;
-    element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
-      const isTask = k === this.#steps.length - 1;
-      const tile = makeButton('', () => {
-        this.#go(k);
-        element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
-      }, isTask ? '★' : String(k + 1));
-      tile.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
-      if (k === step) tile.setAttribute('aria-current', 'step');
-      return makeElement('li', '', tile);
+    this.#hintElement.open = false;
+    this.#hintElement.hidden = !this.#steps[stepIndex]?.hint;
+    element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, index) => {
+      const isTask = index === this.#steps.length - 1;
+      const stepButton = makeButton('', () => {
+        this.#goToStep(index);
+        element('lesson_steps', HTMLElement).querySelectorAll('button')[index]?.focus();
+      }, isTask ? '★' : String(index + 1));
+      stepButton.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: index + 1 });
+      if (index === stepIndex) stepButton.setAttribute('aria-current', 'step');
+      return makeElement('li', '', stepButton);
     }));
-    this.#lay();
+    this.#showButtons();
   }
 
   /** Shows what the step says and what a check has found, as this person writes programs. */
-  #fill() {
-    const step = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#step], lesson = this.#lessons[this.#number - 1];
+  #fillStep() {
+    const step = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
     if (!step || !lesson) return;
-    const reader = this.#readerOf(lesson);
+    const reader = this.#makeReader(lesson);
     element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
-    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => elementOf(block, reader)));
-    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', step.hint, reader));
-    this.#find(this.#found);
+    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => makeBlockElement(block, reader)));
+    element('lesson_hint_said', HTMLElement).replaceChildren(makeTextElement('span', step.hint, reader));
+    this.#showFindings(this.#findings);
   }
 
-  /** @param {{said: string[], block_said: string[]}} found */
-  #find(found) {
-    this.#found = found;
-    const lesson = this.#lessons[this.#number - 1];
-    const said = this.#areBlocks ? found.block_said : found.said;
-    this.#findings.replaceChildren(...lesson ? said.map((sentence) => filled('li', sentence, this.#readerOf(lesson))) : []);
+  /** @param {{said: string[], block_said: string[]}} findings */
+  #showFindings(findings) {
+    this.#findings = findings;
+    const lesson = this.#lessons[this.#lessonNumber - 1];
+    const sentences = this.#areBlocks ? findings.block_said : findings.said;
+    this.#findingsElement.replaceChildren(...lesson ? sentences.map((sentence) => makeTextElement('li', sentence, this.#makeReader(lesson))) : []);
   }
 
   /** What is done for who reads a lesson. @param {Lesson} lesson @returns {import('./page.js').Reader} */
-  #readerOf(lesson) {
+  #makeReader(lesson) {
     return {
-      use: (program) => {
-        this.#page.put(this.#lend(lesson, program));
+      useProgram: (program) => {
+        this.#page.put(this.#lendProgram(lesson, program));
         pageState.note.set(text('lesson_used'));
       },
-      say: (code) => {
-        const spoken = this.#spoken[code];
-        return this.#areBlocks ? spoken ? asWritten(labelOfBlock(spoken), code) : labelOfWord(code) : null;
+      labelOfCode: (code) => {
+        const spokenBlock = this.#spokenBlocks[code];
+        return this.#areBlocks ? spokenBlock ? withNamesAsWritten(labelOfBlock(spokenBlock), code) : labelOfWord(code) : null;
       },
-      draw: this.#areBlocks ? (program, done) => {
+      drawProgram: this.#areBlocks ? (program, done) => {
         this.#pictures.request(program, { text: program, robot: pageState.robotName.value }, done);
       } : null,
     };
   }
 
   /** Which buttons there are. Who pressed one that goes away is at the page. */
-  #lay() {
+  #showButtons() {
     const { activeElement } = document;
-    const isTask = this.#step === this.#steps.length - 1;
-    this.#check.hidden = !isTask || !this.#end.hidden;
-    this.#next.hidden = isTask && !(this.#hasPassed && this.#number < this.#lessons.length);
-    this.#next.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
+    const isTask = this.#stepIndex === this.#steps.length - 1;
+    this.#checkButton.hidden = !isTask || !this.#endButton.hidden;
+    this.#nextButton.hidden = isTask && !(this.#hasPassed && this.#lessonNumber < this.#lessons.length);
+    this.#nextButton.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
     if (activeElement instanceof HTMLElement && activeElement.hidden) element('lesson_page', HTMLElement).focus();
   }
 
   /** Has the lesson's robot and world seen. */
-  async #enter() {
-    const asked = this.#asked, lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    const isForOther = await this.#isForOther(lesson);
-    if (asked !== this.#asked) return;
+  async #enterLesson() {
+    const requestNumber = this.#requestCount, lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
+    const isForOther = await this.#isForOtherRobot(lesson);
+    if (requestNumber !== this.#requestCount) return;
     if (isForOther) {
-      const said = text(this.#isOfLesson ? 'lesson_before' : 'lesson_own');
-      this.#page.exchange(this.#lend(lesson, ''));
-      pageState.note.set(said);
+      const notice = text(this.#isOfLesson ? 'lesson_before' : 'lesson_own');
+      this.#page.exchange(this.#lendProgram(lesson, ''));
+      pageState.note.set(notice);
     }
-    await this.#seeWorld(1);
+    await this.#showWorld(1);
   }
 
   /** Whether the program in the editor is right on its robot and wrong on a lesson's. @param {Lesson} lesson */
-  async #isForOther(lesson) {
-    const now = pageState.programText.value, robot = pageState.robotName.value;
-    if (robot === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !now.trim()) return false;
-    const program = new TextEncoder().encode(now), language = currentLanguage();
-    /** @param {string} each */
-    const isRight = async (each) => Boolean((await this.#page.python.ask({ do: 'check', robot: each, language }, program)).image);
-    return await isRight(robot) && !(await isRight(lesson.robot)) && now === pageState.programText.value;
+  async #isForOtherRobot(lesson) {
+    const programText = pageState.programText.value, robotName = pageState.robotName.value;
+    if (robotName === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !programText.trim()) return false;
+    const program = new TextEncoder().encode(programText), language = currentLanguage();
+    /** @param {string} robotName */
+    const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, program)).image);
+    return await isRightOn(robotName) && !(await isRightOn(lesson.robot)) && programText === pageState.programText.value;
   }
 
   /** Whether the program in the editor is a lesson's, in place of this person's own one. */
   get #isOfLesson() {
-    return this.#own !== null && this.#page.work.name === this.#ownName;
+    return this.#ownProgram !== null && this.#page.work.name === this.#lessonProgramName;
   }
 
   /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} program @returns {Program} */
-  #lend(lesson, program) {
-    const { text: whole, robot, name } = this.#page.work;
-    if (!this.#isOfLesson) this.#own = { text: whole, robot, name };
-    this.#ownName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
-    return { text: program, robot: lesson.robot, name: this.#ownName };
+  #lendProgram(lesson, program) {
+    const { text: programText, robot, name } = this.#page.work;
+    if (!this.#isOfLesson) this.#ownProgram = { text: programText, robot, name };
+    this.#lessonProgramName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
+    return { text: program, robot: lesson.robot, name: this.#lessonProgramName };
   }
 
   /** The lesson is over: this person's own program comes back, unless another one has been opened since. */
   leave() {
-    const own = this.#isOfLesson ? this.#own : null;
-    this.#own = null;
-    if (!own || pageState.groupName.value) return;
-    this.#page.exchange(own);
-    this.#page.driving.leaveLesson();
+    const ownProgram = this.#isOfLesson ? this.#ownProgram : null;
+    this.#ownProgram = null;
+    if (!ownProgram || pageState.groupName.value) return;
+    this.#page.exchange(ownProgram);
+    this.#page.simulatorPanel.leaveLesson();
   }
 
   /** @param {number} seed */
-  async #seeWorld(seed) {
-    const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    const values = { number: this.#number, seed };
+  async #showWorld(seed) {
+    const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
+    const values = { number: this.#lessonNumber, seed };
     if (robot !== pageState.robotName.value && !pageState.isRobotNamed.value) pageState.robotName.set(robot);
-    await this.#page.driving.showLesson(values.number, seed,
+    await this.#page.simulatorPanel.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
 
-  async #begin() {
-    this.#forget();
-    const check = this.#checks;
-    const number = this.#number;
+  async #startCheck() {
+    this.#forgetCheck();
+    const checkNumber = this.#checkCount;
+    const number = this.#lessonNumber;
     const program = new TextEncoder().encode(pageState.programText.value);
     const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
-    this.#end.hidden = false;
-    this.#lay();
-    this.#end.focus();
-    this.#said.textContent = text('lesson_checking', { seed: 1, worlds });
-    let most_ms = LEAST_MS;
+    this.#endButton.hidden = false;
+    this.#showButtons();
+    this.#endButton.focus();
+    this.#verdictElement.textContent = text('lesson_checking', { seed: 1, worlds });
+    let most_ms = LEAST_ROBOT_MS;
     try {
       await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, program);
-      while (check === this.#checks) {
-        const began = performance.now();
+      while (checkNumber === this.#checkCount) {
+        const began_ms = performance.now();
         /** @type {Answer} */
         const answer = await this.#page.python.ask({ do: 'lesson_go', most_ms });
-        if (check !== this.#checks) return;
+        if (checkNumber !== this.#checkCount) return;
         if (answer.verdict) {
-          if (answer.run) await this.#play(answer.run, answer.worlds);
-          if (check === this.#checks) this.#tell({ ...answer, verdict: answer.verdict });
+          if (answer.run) await this.#playRun(answer.run, answer.worlds);
+          if (checkNumber === this.#checkCount) this.#showVerdict({ ...answer, verdict: answer.verdict });
           return;
         }
-        this.#said.textContent = text('lesson_checking', { seed: answer.seed, worlds });
-        const part = BUSY_MS / Math.max(1, performance.now() - began);
-        most_ms = Math.round(Math.min(MOST_MS, Math.max(LEAST_MS, most_ms * Math.min(4, part))));
+        this.#verdictElement.textContent = text('lesson_checking', { seed: answer.seed, worlds });
+        const factor = PART_MS / Math.max(1, performance.now() - began_ms);
+        most_ms = Math.round(Math.min(MOST_ROBOT_MS, Math.max(LEAST_ROBOT_MS, most_ms * Math.min(4, factor))));
       }
-    } catch (why) {
-      if (check !== this.#checks) return;
-      this.#fail(why);
+    } catch (error) {
+      if (checkNumber !== this.#checkCount) return;
+      this.#showFailure(error);
     }
   }
 
   /** Shows what was judged, as far as it went well. @param {{seed: number, until_ms: number}} run @param {number} worlds */
-  async #play({ seed, until_ms }, worlds) {
-    const check = this.#checks;
+  async #playRun({ seed, until_ms }, worlds) {
+    const checkNumber = this.#checkCount;
     this.#isPlaying = true;
-    this.#said.textContent = text('lesson_playing', { seed, worlds });
-    this.#end.textContent = text('lesson_skip');
-    await this.#seeWorld(seed);
-    if (check === this.#checks) await this.#page.driving.play({ lesson: this.#number, seed, until_ms });
+    this.#verdictElement.textContent = text('lesson_playing', { seed, worlds });
+    this.#endButton.textContent = text('lesson_skip');
+    await this.#showWorld(seed);
+    if (checkNumber === this.#checkCount) await this.#page.simulatorPanel.play({ lesson: this.#lessonNumber, seed, until_ms });
   }
 
-  /** @param {unknown} why */
-  #fail(why) {
-    this.#forget();
-    this.#choice.value = String(this.#number); // so that another one can be chosen again
-    this.#said.textContent = bugSentence(why);
+  /** @param {unknown} error */
+  #showFailure(error) {
+    this.#forgetCheck();
+    this.#lessonSelect.value = String(this.#lessonNumber); // so that another one can be chosen again
+    this.#verdictElement.textContent = bugSentence(error);
   }
 
-  /** @param {Answer & {verdict: keyof typeof SAID}} answer */
-  #tell({ verdict, seed, worlds, said, block_said, spoken }) {
-    const hadFocus = document.activeElement === this.#end;
-    const lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+  /** @param {Answer & {verdict: keyof typeof VERDICT_KEYS}} answer */
+  #showVerdict({ verdict, seed, worlds, said: sentences, block_said, spoken }) {
+    const hadFocus = document.activeElement === this.#endButton;
+    const lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
     const stars = verdict === 'passed' ? worlds : verdict === 'failed' ? Math.max(0, seed - 1) : 0;
-    const areKept = keepStars(lesson.name, stars); // first: one that is done has a star
-    const isKept = (verdict !== 'passed' || keepDone(lesson.name)) && areKept;
-    this.#forget();
+    const areStarsStored = storeStars(lesson.name, stars); // first: one that is done has a star
+    const isStored = (verdict !== 'passed' || storeDone(lesson.name)) && areStarsStored;
+    this.#forgetCheck();
     this.#hasPassed = verdict === 'passed';
-    if (this.#hasPassed) this.#list();
-    this.#lay();
-    this.#said.dataset['verdict'] = verdict;
-    const [alone, inWorlds] = SAID[verdict];
+    if (this.#hasPassed) this.#listLessons();
+    this.#showButtons();
+    this.#verdictElement.dataset['verdict'] = verdict;
+    const [singleWorldKey, severalWorldsKey] = VERDICT_KEYS[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
-    const found = text(isInWorlds ? inWorlds : alone, { number: this.#number, worlds, seed });
-    this.#said.textContent = this.#hasPassed ? `${found} ${text('lesson_total', { count: starsInAll() })}` : found;
+    const sentence = text(isInWorlds ? severalWorldsKey : singleWorldKey, { number: this.#lessonNumber, worlds, seed });
+    this.#verdictElement.textContent = this.#hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : sentence;
     if (verdict !== 'mistakes') { // one for each world where it did its task
       element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
     }
-    this.#spoken = { ...this.#spoken, ...spoken };
-    this.#find({ said, block_said });
-    this.#hint.open = false;
+    this.#spokenBlocks = { ...this.#spokenBlocks, ...spoken };
+    this.#showFindings({ said: sentences, block_said });
+    this.#hintElement.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
-    if (!isKept) pageState.note.set(text('not_kept'));
+    if (!isStored) pageState.note.set(text('not_kept'));
     if (this.#hasPassed) {
-      this.#page.driving.cheer();
+      this.#page.simulatorPanel.cheer();
       celebrate();
     }
-    if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
+    if (hadFocus) (this.#nextButton.hidden ? this.#checkButton : this.#nextButton).focus();
   }
 }
 
 /** Names that a sentence has in small letters. @param {import('../blocks/said.js').Label} label @param {string} code */
-function asWritten({ text: said, colour }, code) {
+function withNamesAsWritten({ text: labelText, colour }, code) {
   const names = code.match(/[\p{Ll}_]{2,}/gu) ?? [];
-  return { text: names.reduce((whole, name) => whole.replace(name.toUpperCase(), name), said), colour };
+  return { text: names.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
 }

@@ -2,15 +2,15 @@
 
 import { makeButton, makeElement } from '../page/made.js';
 
-const PIXELS = 2.6; // of a picture of blocks, for one of the page
+const PICTURE_RATIO = 2.6; // of a picture of blocks, for one of the page
 
 /** @typedef {{kind: string, rows: string[][]}} Block */
 
 /**
  * @typedef {object} Reader what is done for who reads a step
- * @property {(program: string) => void} use what is done with a program of the page
- * @property {(code: string) => import('../blocks/said.js').Label | null} say the words on a block that is named in a sentence; null for its text
- * @property {((program: string, done: (address: string) => void) => void) | null} draw a program as blocks; null for its text
+ * @property {(program: string) => void} useProgram what is done with a program of the page
+ * @property {(code: string) => import('../blocks/said.js').Label | null} labelOfCode the words on a block that is named in a sentence; null for its text
+ * @property {((program: string, done: (address: string) => void) => void) | null} drawProgram a program as blocks; null for its text
  */
 
 /**
@@ -18,49 +18,49 @@ const PIXELS = 2.6; // of a picture of blocks, for one of the page
  * @param {Reader} reader
  * @returns {HTMLElement}
  */
-export function elementOf({ kind, rows }, reader) {
+export function makeBlockElement({ kind, rows }, reader) {
   const lines = rows.map(([line = '']) => line).join('\n');
-  return kind === 'program' ? programOf(lines, reader) : filled('p', lines, reader);
+  return kind === 'program' ? makeProgramElement(lines, reader) : makeTextElement('p', lines, reader);
 }
 
 /**
  * @param {string} program
  * @param {Reader} reader
  */
-function programOf(program, { use, draw }) {
-  const written = makeElement('pre', '', program);
-  const place = makeElement('div', '', written, makeButton('lesson_use', () => use(`${program}\n`)));
-  place.className = 'program';
+function makeProgramElement(program, { useProgram: use, drawProgram: draw }) {
+  const programElement = makeElement('pre', '', program);
+  const container = makeElement('div', '', programElement, makeButton('lesson_use', () => use(`${program}\n`)));
+  container.className = 'program';
   draw?.(program, (address) => {
     if (!address) return;
     const picture = makeElement('img');
     picture.alt = ''; // its text is read
     picture.addEventListener('load', () => {
-      picture.width = picture.naturalWidth / PIXELS;
-      written.className = 'heard';
+      picture.width = picture.naturalWidth / PICTURE_RATIO;
+      programElement.className = 'heard';
     });
     picture.src = address;
-    written.after(picture);
+    programElement.after(picture);
   });
-  return place;
+  return container;
 }
 
 /**
  * An element with a line of a page, in which `**` is around what is bold, and a back quote around code.
- * @param {'p' | 'span' | 'li'} kind
+ * @param {'p' | 'span' | 'li'} tag
  * @param {string} line
  * @param {Reader} reader
  */
-export function filled(kind, line, { say }) {
-  return makeElement(kind, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
-    const mark = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
-    if (!mark || part.length <= 2 * mark) return part;
-    const inside = part.slice(mark, -mark), label = mark === 1 ? say(inside) : null;
-    const place = makeElement(mark === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? inside);
+export function makeTextElement(tag, line, { labelOfCode: say }) {
+  return makeElement(tag, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
+    const markLength = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
+    if (!markLength || part.length <= 2 * markLength) return part;
+    const content = part.slice(markLength, -markLength), label = markLength === 1 ? say(content) : null;
+    const partElement = makeElement(markLength === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? content);
     if (label) {
-      place.className = 'on_block';
-      place.style.setProperty('--colour', label.colour);
+      partElement.className = 'on_block';
+      partElement.style.setProperty('--colour', label.colour);
     }
-    return place;
+    return partElement;
   }));
 }

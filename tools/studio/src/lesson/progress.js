@@ -4,44 +4,44 @@
 
 import { storeText, storedJson } from '../page/kept.js';
 
-const PLACE = 'tiniscript.lessons';
-const STARS_PLACE = 'tiniscript.stars';
-const MOST = 100;
+const STORAGE_KEY = 'tiniscript.lessons';
+const STARS_KEY = 'tiniscript.stars';
+const MOST_LESSONS = 100;
 const MOST_STARS = 100; // of a lesson
 
 /** @returns {Set<string>} names of lessons */
-export function lessonsDone() {
-  const kept = storedJson(PLACE);
-  return new Set(Array.isArray(kept) ? kept.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST) : []);
+export function loadDoneLessons() {
+  const stored = storedJson(STORAGE_KEY);
+  return new Set(Array.isArray(stored) ? stored.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST_LESSONS) : []);
 }
 
 /** Keeps that a lesson is done; returns whether that was possible. @param {string} name */
-export function keepDone(name) {
-  return storeText(PLACE, JSON.stringify([...lessonsDone().add(name)]));
+export function storeDone(name) {
+  return storeText(STORAGE_KEY, JSON.stringify([...loadDoneLessons().add(name)]));
 }
 
 /** @returns {Map<string, number>} the most stars that each lesson has brought; one that is done has one at least */
-export function lessonStars() {
-  const found = storedJson(STARS_PLACE);
-  const rows = Object.entries(found && typeof found === 'object' && !Array.isArray(found) ? found : {}).slice(0, MOST);
+export function loadStars() {
+  const stored = storedJson(STARS_KEY);
+  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MOST_LESSONS);
   const stars = new Map(rows.filter(([name, count]) => /^\w{1,60}$/.test(name) && Number.isInteger(count) && count > 0 && count <= MOST_STARS));
-  for (const name of lessonsDone()) stars.set(name, stars.get(name) ?? 1);
+  for (const name of loadDoneLessons()) stars.set(name, stars.get(name) ?? 1);
   return stars;
 }
 
 /** Keeps the stars of a lesson, unless there were more before; returns whether that was possible. @param {string} name @param {number} count */
-export function keepStars(name, count) {
-  const stars = lessonStars();
+export function storeStars(name, count) {
+  const stars = loadStars();
   if (count <= (stars.get(name) ?? 0)) return true;
-  return storeText(STARS_PLACE, JSON.stringify(Object.fromEntries(stars.set(name, count))));
+  return storeText(STARS_KEY, JSON.stringify(Object.fromEntries(stars.set(name, count))));
 }
 
 /** @param {string} name of a shipped world @returns {string} how its stars are kept; no lesson is called so */
-export function worldStars(name) {
+export function starsKeyOfWorld(name) {
   return `world_${name}`;
 }
 
 /** All stars of all lessons and worlds. */
-export function starsInAll() {
-  return [...lessonStars().values()].reduce((sum, count) => sum + count, 0);
+export function countAllStars() {
+  return [...loadStars().values()].reduce((sum, count) => sum + count, 0);
 }

@@ -51,7 +51,7 @@ export const pageState = {
   programText: new Observable(''),
   groupName: new Observable(''), // of pupils who edit this program together
   /** What the compiler says of the newest text; null while it is at work. */
-  checkResult: new Observable(/** @type {import('../python.js').Checked | null} */ (null)),
+  checkResult: new Observable(/** @type {import('../python.js').CheckResult | null} */ (null)),
   offeredFindingIndex: new Observable(-1), // the number of one of its findings, which has a button from now on
   note: new Observable(''), // a sentence about what has just been done
   /** Where the program is to stop; a point stays the same while its text moves. */

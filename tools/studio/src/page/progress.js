@@ -87,10 +87,10 @@ export async function watchedFetch(resource, { onWait, cancelSignal, onProgress 
     });
     answer.body.pipeTo(writable).catch(onFail);
     return new Response(readable, { status: answer.status, headers: answer.headers });
-  } catch (why) {
+  } catch (error) {
     progress.end();
-    onFail(why);
-    throw why;
+    onFail(error);
+    throw error;
   }
 }
 

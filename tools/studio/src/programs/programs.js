@@ -18,7 +18,7 @@ import { storeVersion, MOST_CHARACTERS, versionTitle, loadVersions } from './ver
 import { makeThumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { storeWork } from './work.js';
-import { whole } from '../writing/messages.js';
+import { messageWithFix } from '../writing/messages.js';
 
 /** @typedef {import('./versions.js').Version} Version */
 /** @typedef {{text: string} | {refusal: string}} ShareResult what is shared, or why it is not */
@@ -169,7 +169,7 @@ export class Programs {
     const request = { do: 'line', robot: this.#page.work.robot, language: currentLanguage() };
     const answer = await this.#page.python.ask(request, new TextEncoder().encode(this.#page.work.text));
     if (answer.text !== undefined) return { text: answer.text };
-    return { refusal: whole(answer) };
+    return { refusal: messageWithFix(answer) };
   }
 
   /**

@@ -19,8 +19,8 @@ export async function chooseDevice() {
       filters: [{ services: [NORDIC_SERVICE] }, { services: [HM10_SERVICE] }],
       optionalServices: [NORDIC_SERVICE, HM10_SERVICE],
     });
-  } catch (why) {
-    const { name, message } = /** @type {Error} */ (why);
+  } catch (error) {
+    const { name, message } = /** @type {Error} */ (error);
     if (name === 'SecurityError') throw new ConnectionFailure('port_forbidden');
     throw new ConnectionFailure(/adapter|disabled|unavailable/i.test(message) ? 'radio_off' : 'not_chosen');
   }
@@ -61,9 +61,9 @@ export class BluetoothPort {
         onData(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
       });
       await notifier.startNotifications();
-    } catch (why) {
-      if (why instanceof ConnectionFailure) throw why;
-      throw new ConnectionFailure(/** @type {Error} */ (why).name === 'NetworkError' ? 'link_silent' : 'radio_broken');
+    } catch (error) {
+      if (error instanceof ConnectionFailure) throw error;
+      throw new ConnectionFailure(/** @type {Error} */ (error).name === 'NetworkError' ? 'link_silent' : 'radio_broken');
     }
   }
 
@@ -76,15 +76,15 @@ export class BluetoothPort {
         out: await service.getCharacteristic(NORDIC_NOTIFY),
         isSlow: false,
       };
-    } catch (why) {
-      if (/** @type {Error} */ (why).name !== 'NotFoundError') throw why;
+    } catch (error) {
+      if (/** @type {Error} */ (error).name !== 'NotFoundError') throw error;
     }
     try {
       const characteristic = await (await server.getPrimaryService(HM10_SERVICE)).getCharacteristic(HM10_CHARACTERISTIC);
       return { in: characteristic, out: characteristic, isSlow: true };
-    } catch (why) {
-      if (/** @type {Error} */ (why).name === 'NotFoundError') throw new ConnectionFailure('no_robot');
-      throw why;
+    } catch (error) {
+      if (/** @type {Error} */ (error).name === 'NotFoundError') throw new ConnectionFailure('no_robot');
+      throw error;
     }
   }
 

@@ -5,9 +5,9 @@ import { pageState } from '../page/page_state.js';
 import { showRows, variableText } from '../page/rows.js';
 import { textKey, text } from '../page/texts.js';
 import { LINK } from '../page/words.js';
-import { Stops } from '../writing/parts.js';
+import { StopOffsets } from '../writing/parts.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { About, Answer, RobotEvent } from './transport.js' */
 
 /**
@@ -27,11 +27,11 @@ export class Debugging {
   #page;
   /** @type {About | null} */
   #about = null;
-  /** The newest program that the robot has from here. @type {Checked | null} */
+  /** The newest program that the robot has from here. @type {CheckResult | null} */
   #program = null;
-  /** Its places; none once the text is another one. @type {Checked['places']} */
+  /** Its places; none once the text is another one. @type {CheckResult['places']} */
   #places = [];
-  #stops = new Stops();
+  #stops = new StopOffsets();
   #sentPlaces = ''; // the places that the robot has
   #isRunning = false;
   #isStepping = false;
@@ -70,7 +70,7 @@ export class Debugging {
   /**
    * A program is about to be sent. Returns what gives the robot its places and then starts it; none where it can start at
    * once. A stop that was pressed meanwhile counts.
-   * @param {Checked} program
+   * @param {CheckResult} program
    * @param {boolean} isPaused before its first instruction
    * @returns {((starts: boolean) => Promise<void>) | null}
    */
@@ -128,7 +128,7 @@ export class Debugging {
   // -- places -------------------------------------------------------------------------------------
 
   #findPlaces() {
-    this.#stops.find(pageState.breakpoints.value, this.#places);
+    this.#stops.update(pageState.breakpoints.value, this.#places);
   }
 
   /** Where a robot halts that is to stop at the breakpoints: before a statement of its code. */

@@ -93,8 +93,8 @@ export class DirectRobot extends RequestQueue {
       await withTimeout(OPEN_LIMIT_MS, opened, 'link_silent');
       this.#isOpen = true;
       return await this.#sayHello(robotName);
-    } catch (why) {
-      const failure = why instanceof ConnectionFailure ? why : new ConnectionFailure('bug', String(why));
+    } catch (error) {
+      const failure = error instanceof ConnectionFailure ? error : new ConnectionFailure('bug', String(error));
       this.end(failure);
       throw failure;
     }
@@ -176,8 +176,8 @@ export class DirectRobot extends RequestQueue {
         }
         if (answer.wakes_ms !== null) wait_ms = Math.max(0, Math.min(LONGEST_WAIT_MS, answer.wakes_ms - performance.now()));
       } while (this.#isNewDue && !this.isOver);
-    } catch (why) {
-      this.end(why instanceof ConnectionFailure ? why : new ConnectionFailure(this.#port.goneBy, ''));
+    } catch (error) {
+      this.end(error instanceof ConnectionFailure ? error : new ConnectionFailure(this.#port.goneBy, ''));
     } finally {
       this.#isExchanging = false;
     }

@@ -65,9 +65,9 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
       calculateMD5Hash: (image) => (checksum.wanted = hexOfLetters(md5(image))),
     });
     await restartChip(transport);
-  } catch (why) {
-    if (why instanceof ConnectionFailure) throw why;
-    if (/MD5/.test(String(why))) throw new ConnectionFailure('flash_differs');
+  } catch (error) {
+    if (error instanceof ConnectionFailure) throw error;
+    if (/MD5/.test(String(error))) throw new ConnectionFailure('flash_differs');
     throw new ConnectionFailure(isWriting ? 'flash_broken_off' : 'flash_nobody_esp');
   } finally {
     await withTimeout(WRITE_LIMIT_MS, transport.disconnect(), 'port_stuck').catch(() => {});
@@ -78,9 +78,9 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
 async function detectChip(loader, cancelSignal) {
   try {
     await watchPromise(loader.detectChip('default_reset', DETECT_TRIES), { cancelSignal: cancelSignal });
-  } catch (why) {
+  } catch (error) {
     if (cancelSignal.aborted) throw new ConnectionFailure('flash_not_begun');
-    const { name } = /** @type {Error} */ (why);
+    const { name } = /** @type {Error} */ (error);
     if (name === 'TimeoutError') throw new ConnectionFailure('flash_held');
     if (name === 'InvalidStateError') throw new ConnectionFailure('port_busy');
     throw new ConnectionFailure(name === 'NetworkError' ? 'port_broken' : 'flash_nobody_esp');

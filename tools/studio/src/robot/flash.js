@@ -49,9 +49,9 @@ export async function flashBoard(port, board, data, onProgress, cancelSignal) {
   let firmware;
   try {
     firmware = readHex(new TextDecoder().decode(data), FLASH_BYTES);
-  } catch (why) {
-    if (why instanceof BadHex) throw new ConnectionFailure('flash_bad_file');
-    throw why;
+  } catch (error) {
+    if (error instanceof BadHex) throw new ConnectionFailure('flash_bad_file');
+    throw error;
   }
   await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, onProgress, cancelSignal);
 }
@@ -80,9 +80,9 @@ async function fetchBytes(fileName, watchOptions) {
   try {
     const response = await watchedFetch(`./${encodeURIComponent(fileName)}`, watchOptions);
     if (response.ok) return await response.arrayBuffer();
-  } catch (why) {
+  } catch (error) {
     if (watchOptions?.cancelSignal?.aborted) throw new ConnectionFailure('flash_not_begun');
-    if (/** @type {Error} */ (why).name === 'TimeoutError') throw new ConnectionFailure('flash_held');
+    if (/** @type {Error} */ (error).name === 'TimeoutError') throw new ConnectionFailure('flash_held');
     // no network, or a service worker without it
   }
   throw new ConnectionFailure('flash_none');

@@ -109,9 +109,9 @@ export class Flashing {
       setBusy(false);
       this.#cancelButton.hidden = true;
       await meet(port);
-    } catch (why) {
-      const reason = signal.aborted ? 'flash_not_begun' : /** @type {Error} */ (why).name === 'TimeoutError' ? 'flash_held' : 'bug';
-      speech.fail(why instanceof ConnectionFailure ? why : new ConnectionFailure(reason, reason === 'bug' ? String(why) : ''));
+    } catch (error) {
+      const reason = signal.aborted ? 'flash_not_begun' : /** @type {Error} */ (error).name === 'TimeoutError' ? 'flash_held' : 'bug';
+      speech.fail(error instanceof ConnectionFailure ? error : new ConnectionFailure(reason, reason === 'bug' ? String(error) : ''));
     } finally {
       this.#progressBar.hidden = this.#cancelButton.hidden = true;
       this.#file = null;

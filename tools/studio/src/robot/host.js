@@ -86,8 +86,8 @@ export async function post(request, options = {}, path = './robots') {
 export async function hostPorts() {
   try {
     return (await post({ do: 'ports' })).ports;
-  } catch (why) {
-    throw why instanceof ConnectionFailure ? why : new ConnectionFailure('host_gone');
+  } catch (error) {
+    throw error instanceof ConnectionFailure ? error : new ConnectionFailure('host_gone');
   }
 }
 
@@ -138,8 +138,8 @@ export class HostRobot extends RequestQueue {
         const answer = await this.#post('connect', request);
         if (answer.failure) this.end(new ConnectionFailure(answer.failure));
         this.#isConnected = true;
-      } catch (why) {
-        if (why instanceof ConnectionFailure) this.end(why);
+      } catch (error) {
+        if (error instanceof ConnectionFailure) this.end(error);
         else if (tryNumber === CONNECT_TRIES) this.end(new ConnectionFailure('host_gone'));
         else await pause(BEAT_MS);
       }
@@ -192,8 +192,8 @@ export class HostRobot extends RequestQueue {
         this.take(news);
         await undefined; // who has asked hears its answer before what comes next
       }
-    } catch (why) {
-      if (why instanceof ConnectionFailure) this.end(why);
+    } catch (error) {
+      if (error instanceof ConnectionFailure) this.end(error);
       else {
         isLost = true;
         this.requests.unshift(...this.withoutKeys(requests)); // it has not arrived, or has: an id is answered once

@@ -24,10 +24,10 @@ import { symbolPicture, replaceOptions, pictureOption } from '../page/pictures.j
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
-import { whole } from '../writing/messages.js';
-import { nameOfShow, showAt } from '../writing/shows.js';
+import { messageWithFix } from '../writing/messages.js';
+import { shownName, showAt } from '../writing/shows.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
 /** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} GroupRobotEvent of the group's robot: the number among all news, and that of a value in its run */
 /** @typedef {{label: string, symbolId: string, connect: () => Promise<void>, serial?: any}} ConnectionChoice */
@@ -60,11 +60,11 @@ export class RobotPanel {
   #choices = [];
   /** Words of a remote control that the newest program reads. @type {string[]} */
   #remoteWords = [];
-  /** @type {Checked | null} */
+  /** @type {CheckResult | null} */
   #sentProgram = null;
-  /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
+  /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, CheckResult>} */
   #knownPrograms = new Map();
-  /** The text of what runs, as it was when that began: another one may have the same code. @type {Checked | undefined} */
+  /** The text of what runs, as it was when that began: another one may have the same code. @type {CheckResult | undefined} */
   #runningProgram;
   #speech = new Speech();
   #stopping = new StopNotice(this.#speech);
@@ -198,8 +198,8 @@ export class RobotPanel {
           const label = plainText([name, details, port].filter(Boolean).join(' · '));
           choices.push({ label, symbolId: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.connectByHost(port) });
         }
-      } catch (why) {
-        failure = why;
+      } catch (error) {
+        failure = error;
       }
     }
     for (const [index, port] of (await knownPorts()).entries()) {
@@ -267,8 +267,8 @@ export class RobotPanel {
       clearTimeout(noticeTimer);
       this.#about = about;
       this.#onConnected(about);
-    } catch (why) {
-      if (this.#transport === transport) this.#onDisconnected(why instanceof ConnectionFailure ? why : new ConnectionFailure('bug', String(why))); // else it was told
+    } catch (error) {
+      if (this.#transport === transport) this.#onDisconnected(error instanceof ConnectionFailure ? error : new ConnectionFailure('bug', String(error))); // else it was told
     } finally {
       clearTimeout(noticeTimer);
       this.#isBusy = false;
@@ -352,7 +352,7 @@ export class RobotPanel {
   #upload(isStarted, isPaused = false) {
     const program = pageState.checkResult.value;
     if (!program?.image) {
-      this.#page.python.again(currentLanguage());
+      this.#page.python.tryAgain(currentLanguage());
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       if (isStarted && program) this.#stop('say_broken'); // what runs is not what is seen
       return;
@@ -397,12 +397,12 @@ export class RobotPanel {
     const stopCount = this.#stopCount;
     const robotName = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
-    /** @type {Checked} */
+    /** @type {CheckResult} */
     const checkResult = await this.#page.python.ask({ do: 'check', robot: robotName, language: currentLanguage() }, data);
     if (stopCount !== this.#stopCount) return; // STOP was pressed since
     const mistake = checkResult.findings.find((finding) => finding.severity === 'mistake');
     if (mistake) {
-      this.#speech.tell(whole(mistake));
+      this.#speech.tell(messageWithFix(mistake));
       return;
     }
     this.#rememberProgram(checkResult);
@@ -535,13 +535,13 @@ export class RobotPanel {
     this.#show();
   }
 
-  /** @param {Checked} program that the robot may run as the page's own */
+  /** @param {CheckResult} program that the robot may run as the page's own */
   #expectProgram(program) {
     this.#rememberProgram(program);
     this.#page.recorder.addProgram(program);
   }
 
-  /** @param {Checked} program before its robot may show anything */
+  /** @param {CheckResult} program before its robot may show anything */
   #rememberProgram(program) {
     this.#knownPrograms.delete(program.program);
     this.#knownPrograms.set(program.program, program);
@@ -559,7 +559,7 @@ export class RobotPanel {
     if (!program) return '';
     if (this.#runningProgram?.program !== program) this.#runningProgram = this.#programOf(program);
     const show = this.#runningProgram && showAt(this.#runningProgram, at);
-    return show ? nameOfShow(show, show[1], false) : '';
+    return show ? shownName(show, show[1], false) : '';
   }
 
   /** The robot is silent. */
@@ -568,7 +568,7 @@ export class RobotPanel {
     else this.#speech.say('why_link_lost');
   }
 
-  /** @param {RobotEvent} event @param {Checked | null | undefined} source a program @param {boolean} movesCaret whether the caret goes there */
+  /** @param {RobotEvent} event @param {CheckResult | null | undefined} source a program @param {boolean} movesCaret whether the caret goes there */
   #showFault(event, source, movesCaret) {
     const sentence = faultSentence(event.fault);
     const place = source?.program === event.program ? source?.places.findLast(([offset]) => offset <= Number(event.at)) : undefined;

@@ -8,7 +8,7 @@ import { Run } from '../virtual/runs.js';
 
 /** @typedef {import('./transport.js').About} About */
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 
 const MOST_EVENTS = 10_000; // events; then it is over
 const MOST_MS = 600_000;
@@ -17,7 +17,7 @@ const MOST_PROGRAMS = 20; // programs
 
 export class Recorder {
   #page;
-  /** The programs that robots have from here, by their checksums. @type {Map<string, {checkResult: Checked, text: string, robot: string}>} */
+  /** The programs that robots have from here, by their checksums. @type {Map<string, {checkResult: CheckResult, text: string, robot: string}>} */
   #sentPrograms = new Map();
   /** @type {Run | null} */
   #run = null;
@@ -43,7 +43,7 @@ export class Recorder {
     this.#lacksReadings = !about.has_readings;
   }
 
-  /** A robot gets a program, or may get it from others of the group. @param {Checked} checkResult */
+  /** A robot gets a program, or may get it from others of the group. @param {CheckResult} checkResult */
   addProgram(checkResult) {
     this.#sentPrograms.delete(checkResult.program);
     for (const [oldest] of this.#sentPrograms) if (this.#sentPrograms.size >= MOST_PROGRAMS) this.#sentPrograms.delete(oldest);

@@ -24,8 +24,8 @@ export async function knownPorts() {
 export async function choosePort() {
   try {
     return await SERIAL.requestPort({ allowedBluetoothServiceClassIds: [SPP_UUID] });
-  } catch (why) {
-    throw new ConnectionFailure(/** @type {Error} */ (why).name === 'SecurityError' ? 'port_forbidden' : 'not_chosen');
+  } catch (error) {
+    throw new ConnectionFailure(/** @type {Error} */ (error).name === 'SecurityError' ? 'port_forbidden' : 'not_chosen');
   }
 }
 
@@ -56,8 +56,8 @@ export class SerialPort {
   async open(onData, onGone) {
     try {
       await this.#port.open({ baudRate: this.#baud, bufferSize: 4096 });
-    } catch (why) {
-      const { name } = /** @type {Error} */ (why);
+    } catch (error) {
+      const { name } = /** @type {Error} */ (error);
       throw new ConnectionFailure(name === 'InvalidStateError' ? 'port_busy' : name === 'NetworkError' ? 'port_broken' : 'port_forbidden');
     }
     this.#writer = this.#port.writable.getWriter();
@@ -105,9 +105,9 @@ export class SerialPort {
   async write(data) {
     try {
       await withTimeout(WRITE_LIMIT_MS, this.#writer.write(data), 'port_stuck');
-    } catch (why) {
-      this.#isStuck ||= why instanceof ConnectionFailure;
-      throw why;
+    } catch (error) {
+      this.#isStuck ||= error instanceof ConnectionFailure;
+      throw error;
     }
   }
 

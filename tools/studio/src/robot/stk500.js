@@ -157,9 +157,9 @@ class Board {
     this.#throwIfCancelled();
     try {
       await this.#cable.write(Uint8Array.of(...command, END));
-    } catch (why) {
+    } catch (error) {
       this.#throwIfCancelled();
-      if (why instanceof ConnectionFailure && !this.#isWriting) throw why;
+      if (error instanceof ConnectionFailure && !this.#isWriting) throw error;
       this.#isGone = true;
     }
     if (!(await this.#waitForBytes(byteCount + 2, limit_ms))) {

@@ -14,7 +14,7 @@ import { devicesOf, deviceName, robotOf } from '../page/words.js';
 import { Plot } from '../virtual/plot.js';
 import { showAt } from '../writing/shows.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { About, Answer, RobotEvent } from './transport.js' */
 
 /**
@@ -47,7 +47,7 @@ export class SensorWatch {
   #isProgramWaiting = false; // the robot's program, for its button
   #beginTimer = 0;
   #frameRequest = 0;
-  /** The lines of this part of the page, by their checksums. @type {Map<string, Checked>} */
+  /** The lines of this part of the page, by their checksums. @type {Map<string, CheckResult>} */
   #lines = new Map();
   /** By the name of the sensor, as the robot has told them. @type {Map<string, string>} */
   #readings = new Map();
@@ -214,7 +214,7 @@ export class SensorWatch {
     return `LOOP(FOREVER);${statements.join('')}W(${Math.ceil(interval_ms / 50) / 20});END_LOOP`;
   }
 
-  /** @param {string} line @returns {Promise<Checked>} */
+  /** @param {string} line @returns {Promise<CheckResult>} */
   async #checkLine(line) {
     const checkResult = await this.#page.python.ask({ do: 'check', robot: this.#robotName, language: currentLanguage() }, new TextEncoder().encode(`SI|${line}`));
     this.#lines.set(checkResult.program, checkResult);

@@ -4,7 +4,7 @@ import { isDeed, Moments } from './moments.js';
 import { blocksOf } from './why.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @typedef {[number, string] | [number, string, number]} Row when, what, and of a SHOW where */
 /**
  * @typedef {object} RunOrigin whose run it is
@@ -33,7 +33,7 @@ export class Run {
   rows = [];
   /** Where what is recorded ends, by the robot's clock. @type {number | null} */
   end_ms = null;
-  /** What it says of the program. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
+  /** What it says of the program. @type {Pick<CheckResult, 'places' | 'shows' | 'variables'>} */
   program;
   /** The world as it is drawn. @type {import('../world/parts.js').World | null} */
   world;
@@ -56,7 +56,7 @@ export class Run {
 
   /**
    * @param {RunOrigin} origin
-   * @param {Pick<Checked, 'places' | 'shows' | 'variables'>} program
+   * @param {Pick<CheckResult, 'places' | 'shows' | 'variables'>} program
    * @param {import('../world/parts.js').World | null} world
    */
   constructor(origin, program, world) {

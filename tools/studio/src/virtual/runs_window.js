@@ -104,8 +104,8 @@ export class RunsWindow {
   async #saveRun(run) {
     try {
       download(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
-    } catch (why) {
-      this.#showNotice(bugSentence(why));
+    } catch (error) {
+      this.#showNotice(bugSentence(error));
     }
   }
 }

@@ -5,7 +5,7 @@
 import { bugSentence } from '../page/faults.js';
 import { currentLanguage } from '../page/texts.js';
 
-/** @import { Python, Checked, RobotState } from '../python.js' */
+/** @import { Python, CheckResult, RobotState } from '../python.js' */
 /** @import { Held } from '../remote/held.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
@@ -48,7 +48,7 @@ export class Simulator {
 
   /**
    * Switches the robot on at the start of its world, with the program.
-   * @param {Checked} program
+   * @param {CheckResult} program
    * @param {string} robotName
    * @param {unknown} world
    * @param {number[]} breakpoints offsets in its code
@@ -169,10 +169,10 @@ export class Simulator {
       if (leftRuns !== this.#leftRuns) this.#onChange();
       else if (answer.refused) this.#showRefusal(answer.refused);
       else this.#takeState(answer);
-    } catch (why) {
+    } catch (error) {
       this.phase = 'off';
       this.isStopping = false;
-      this.failure = bugSentence(why);
+      this.failure = bugSentence(error);
       this.#onChange();
     } finally {
       this.#isAsking = false;

@@ -5,8 +5,8 @@ import { element, hide, say } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
 import { download } from '../page/files.js';
-import { rangeAt, Stops } from '../writing/parts.js';
-import { nameOfShow, showAt } from '../writing/shows.js';
+import { rangeAt, StopOffsets } from '../writing/parts.js';
+import { shownName, showAt } from '../writing/shows.js';
 import { dialPicture, replaceOptions, pictureOption } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
@@ -22,21 +22,21 @@ import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { celebrate } from '../lesson/celebration.js';
-import { keepStars, worldStars } from '../lesson/progress.js';
+import { storeStars, starsKeyOfWorld } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, variableText } from '../page/rows.js';
 import { boutEnd, starsText, RunAnnouncer } from './where.js';
 import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @typedef {import('../python.js').RobotState} RobotState */
 
 /**
  * @typedef {object} Page what this part needs of the page
  * @property {import('../python.js').Python} python
  * @property {import('../programs/work.js').Work} work
- * @property {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
+ * @property {() => Promise<CheckResult | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
  * @property {() => void} remember
  * @property {import('../remote/pad.js').Pad} pad
  * @property {(program: {text: string, robot: string}) => void} put the program of a recorded run into the editor
@@ -74,7 +74,7 @@ export class SimulatorPanel {
   #shownValues = new Map();
   /** What each had shown when somebody looks back. @type {Map<string, string>} */
   #pastShownValues = new Map();
-  /** Whose run it is. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
+  /** Whose run it is. @type {Pick<CheckResult, 'places' | 'shows' | 'variables'>} */
   #program = { places: [], shows: [], variables: [] };
   #wasStopped = false;
   /** What the run reads of a remote control; nothing of one that was judged. @type {string[]} */
@@ -83,10 +83,10 @@ export class SimulatorPanel {
   #traceText = ''; // of the trace
   #lastShown_ms = 0; // when more than the robot was shown last
   #isReadingNext = false; // what is measured, not where the program is
-  /** @type {Checked['places']} */
+  /** @type {CheckResult['places']} */
   #places = [];
-  #stops = new Stops();
-  /** @type {Checked['variables']} */
+  #stops = new StopOffsets();
+  /** @type {CheckResult['variables']} */
   #variables = [];
   #runButton = element('run', HTMLButtonElement);
   #pauseButton = element('pause', HTMLButtonElement);
@@ -244,7 +244,7 @@ export class SimulatorPanel {
     if (!isSeen) showArena();
     const startNumber = ++this.#startCount;
     const request = { do: 'check', robot: pageState.robotName.value, language: pageState.language.value };
-    const checkResult = /** @type {Checked} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
+    const checkResult = /** @type {CheckResult} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
     if (startNumber !== this.#startCount) return;
     if (!checkResult.image) {
       pageState.note.set(text('alone_wrong', { why: checkResult.findings.find(({ severity }) => severity === 'mistake')?.message ?? '' }));
@@ -459,7 +459,7 @@ export class SimulatorPanel {
   }
 
   #findStops() {
-    this.#stops.find(pageState.breakpoints.value, this.#places);
+    this.#stops.update(pageState.breakpoints.value, this.#places);
   }
 
   /**
@@ -467,7 +467,7 @@ export class SimulatorPanel {
    * @param {import('../lesson/lessons.js').JudgedRun | null} judged
    * @param {number} leastSpeed times as quick as the robot
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay a recorded run
-   * @param {{text: string, checked: Checked} | null} part a part of the program
+   * @param {{text: string, checked: CheckResult} | null} part a part of the program
    */
   async #start(isPaused, judged = null, leastSpeed = 0, replay = null, part = null) {
     this.#onRunOver();
@@ -512,7 +512,7 @@ export class SimulatorPanel {
 
   /**
    * The run that begins, among those that are kept.
-   * @param {Checked} program
+   * @param {CheckResult} program
    * @param {unknown} world
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay
    * @param {string} [programText] its text
@@ -540,7 +540,7 @@ export class SimulatorPanel {
     this.#canEarnStars = false;
     const { request } = this.#worldChoice;
     if (typeof request === 'string') {
-      if (!keepStars(worldStars(request), stars)) pageState.note.set(text('not_kept'));
+      if (!storeStars(starsKeyOfWorld(request), stars)) pageState.note.set(text('not_kept'));
       this.#worldChoice.showStars();
     }
     this.cheer();
@@ -668,7 +668,7 @@ export class SimulatorPanel {
       if (!event.startsWith('SHOW ')) continue;
       const value = event.slice('SHOW '.length);
       const show = showAt(this.#timeLine.seenState ? this.#timeLine.run.program : this.#program, offset);
-      shownValues.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
+      shownValues.set(show ? shownName(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
       this.#arena.showBubble(value, at_ms);
     }
     return shownValues;

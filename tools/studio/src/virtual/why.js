@@ -1,7 +1,7 @@
 // Why a program was where it was at a moment: the conditions around the instruction with the values that were read, and
 // whose motors they were. Knows no page.
 
-/** @typedef {import('../python.js').Checked['places']} Places */
+/** @typedef {import('../python.js').CheckResult['places']} Places */
 /** @typedef {{line: number, condition: string, values: string, is: boolean | null}} Condition `is` null: it goes on being asked */
 
 const BLOCK_WORD = /\b(?:IF|WHILE|WHEN|ELSEIF|ELSE|END_?(?:IF|WHILE|WHEN))\b/gi;

@@ -7,7 +7,7 @@ import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
 import { OwnWorlds } from './own.js';
-import { lessonStars, worldStars } from '../lesson/progress.js';
+import { loadStars, starsKeyOfWorld } from '../lesson/progress.js';
 import { OWN_WORLD } from '../programs/work.js';
 
 /** @typedef {import('./parts.js').World} World */
@@ -138,11 +138,11 @@ export class WorldChoice {
 
   #show() {
     const broughtWorld = this.#broughtWorld;
-    const { newest, earlier } = this.#ownWorlds, stars = lessonStars();
+    const { newest, earlier } = this.#ownWorlds, stars = loadStars();
     /** @param {World} world */
     const labelOfWorld = (world) => labelOf(world.labels).trim() || text('world_own');
     this.#worldSelect.replaceChildren(
-      ...WORLDS.map((world) => pictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(worldStars(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
+      ...WORLDS.map((world) => pictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(starsKeyOfWorld(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
       ...(newest ? [pictureOption(labelOfWorld(newest), OWN_WORLD, worldPicture(newest))] : []),
       ...earlier.map((world, index) => pictureOption(text(index ? 'world_before_more' : 'world_before', { world: labelOfWorld(world), number: index + 1 }), `${EARLIER_PREFIX}${index}`, worldPicture(world))),
       ...(broughtWorld ? [new Option(broughtWorld.label(), BROUGHT_VALUE)] : []),

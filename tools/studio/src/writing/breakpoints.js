@@ -6,40 +6,40 @@ import { Decoration, EditorView, GutterMarker, gutter, keymap } from '@codemirro
 
 /** @typedef {import('@codemirror/view').BlockInfo} BlockInfo */
 
-class Breakpoint extends RangeValue {
+class BreakpointValue extends RangeValue {
   startSide = 1; // what is written in front of its part does not belong to it
   endSide = 1;
   mapMode = MapMode.TrackAfter; // it goes with its first character
 }
 
-class Dot extends GutterMarker {
+class DotMarker extends GutterMarker {
   toDOM() {
     return makeElement('span', '', '●');
   }
 }
 
-const DOT = new Dot();
-const FIRST = Decoration.mark({ class: 'cm-breakpoint' });
+const DOT_MARKER = new DotMarker();
+const FIRST_CHARACTER_MARK = Decoration.mark({ class: 'cm-breakpoint' });
 
-/** @type {import('@codemirror/state').StateEffectType<{at: number, isSet: boolean}>} */
-const change = StateEffect.define();
+/** @type {import('@codemirror/state').StateEffectType<{offset: number, isSet: boolean}>} */
+const setBreakpointEffect = StateEffect.define();
 
-/** @type {StateField<RangeSet<Breakpoint>>} */
-const field = StateField.define({
+/** @type {StateField<RangeSet<BreakpointValue>>} */
+const breakpointField = StateField.define({
   create: () => RangeSet.empty,
-  update(points, transaction) {
-    let found = points.map(transaction.changes);
+  update(breakpointSet, transaction) {
+    let updated = breakpointSet.map(transaction.changes);
     for (const effect of transaction.effects) {
-      if (!effect.is(change)) continue;
-      const { at, isSet } = effect.value;
-      found = found.update({ filter: (from) => from !== at, add: isSet ? [new Breakpoint().range(at)] : [] });
+      if (!effect.is(setBreakpointEffect)) continue;
+      const { offset, isSet } = effect.value;
+      updated = updated.update({ filter: (from) => from !== offset, add: isSet ? [new BreakpointValue().range(offset)] : [] });
     }
-    return found;
+    return updated;
   },
-  provide: (points) => EditorView.decorations.from(points, (set) => {
+  provide: (breakpointField) => EditorView.decorations.from(breakpointField, (breakpointSet) => {
     /** @type {import('@codemirror/state').Range<Decoration>[]} */
     const marks = [];
-    for (let each = set.iter(); each.value; each.next()) marks.push(FIRST.range(each.from, each.from + 1));
+    for (let cursor = breakpointSet.iter(); cursor.value; cursor.next()) marks.push(FIRST_CHARACTER_MARK.range(cursor.from, cursor.from + 1));
     return (view) => Decoration.set(marks.filter((mark) => mark.to <= view.state.doc.length));
   }),
 });
@@ -47,24 +47,24 @@ const field = StateField.define({
 /**
  * The extension. `toggle` is asked with a place of the text, or the beginning of a line in whose
  * margin somebody has pressed.
- * @param {(at: number, isLine: boolean) => void} toggle
- * @param {() => void} changed they, or the text they are in
+ * @param {(offset: number, isLine: boolean) => void} toggle
+ * @param {() => void} onChange they, or the text they are in
  */
-export function breakpoints(toggle, changed) {
+export function breakpointExtension(toggle, onChange) {
   return [
-    field,
+    breakpointField,
     gutter({
       class: 'cm-breakpoints',
-      lineMarker: (view, line) => (within(view.state, line.from, line.to).length ? DOT : null),
-      lineMarkerChange: (update) => update.startState.field(field) !== update.state.field(field),
-      domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) },
+      lineMarker: (view, line) => (offsetsBetween(view.state, line.from, line.to).length ? DOT_MARKER : null),
+      lineMarkerChange: (update) => update.startState.field(breakpointField) !== update.state.field(breakpointField),
+      domEventHandlers: { mousedown: (_, line, event) => onMarginPress(line, event, toggle) },
     }),
     keymap.of([{ key: 'F9', run: (view) => {
       toggle(view.state.selection.main.head, false);
       return true;
     } }]),
     EditorView.updateListener.of((update) => {
-      if (update.docChanged || placesOf(update.startState).join() !== placesOf(update.state).join()) changed();
+      if (update.docChanged || offsetsIn(update.startState).join() !== offsetsIn(update.state).join()) onChange();
     }),
   ];
 }
@@ -75,15 +75,15 @@ export function breakpoints(toggle, changed) {
  * @param {Event} event
  * @param {(at: number, isLine: boolean) => void} toggle
  */
-export function pressed(line, event, toggle) {
+export function onMarginPress(line, event, toggle) {
   if (!(event instanceof MouseEvent) || event.button !== 0 || event.ctrlKey) return false;
   toggle(line.from, true);
   return true;
 }
 
 /** @param {import('@codemirror/state').EditorState} state @returns {number[]} */
-export function placesOf(state) {
-  return within(state, 0, state.doc.length);
+export function offsetsIn(state) {
+  return offsetsBetween(state, 0, state.doc.length);
 }
 
 /**
@@ -91,13 +91,13 @@ export function placesOf(state) {
  * @param {import('@codemirror/state').EditorState} state
  * @returns {{at: number, point: object}[]}
  */
-export function pointsOf(state) {
+export function breakpointsIn(state) {
   /** @type {{at: number, point: object}[]} */
-  const found = [];
-  state.field(field).between(0, state.doc.length, (at, _, point) => {
-    found.push({ at, point });
+  const breakpoints = [];
+  state.field(breakpointField).between(0, state.doc.length, (offset, _, point) => {
+    breakpoints.push({ at: offset, point });
   });
-  return found;
+  return breakpoints;
 }
 
 /**
@@ -105,21 +105,21 @@ export function pointsOf(state) {
  * @param {number} from
  * @param {number} to
  */
-function within(state, from, to) {
+function offsetsBetween(state, from, to) {
   /** @type {number[]} */
-  const found = [];
-  state.field(field).between(from, to, (at) => {
-    found.push(at);
+  const offsets = [];
+  state.field(breakpointField).between(from, to, (offset) => {
+    offsets.push(offset);
   });
-  return found;
+  return offsets;
 }
 
 /**
  * Sets and removes breakpoints.
  * @param {EditorView} view
- * @param {number[]} places
+ * @param {number[]} offsets
  * @param {boolean} isSet
  */
-export function setBreakpoints(view, places, isSet) {
-  view.dispatch({ effects: places.map((at) => change.of({ at, isSet })) });
+export function setBreakpoints(view, offsets, isSet) {
+  view.dispatch({ effects: offsets.map((offset) => setBreakpointEffect.of({ offset, isSet })) });
 }

@@ -2,42 +2,42 @@
 
 import { pageState } from '../page/page_state.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
 
 const TYPING_MS = 150; // of silence before a text is compiled
-const PAUSE_MS = 300; // after which it is tried what buttons do
+const REPAIR_PAUSE_MS = 300; // after which it is tried what buttons do
 const { dataset } = document.documentElement;
 
-export class Checking {
+export class Checker {
   #python;
-  #fail;
-  /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
-  #newest = { key: '', answer: null };
+  #onFail;
+  /** The newest answer, and what it is about. @type {{key: string, answer: CheckResult | null}} */
+  #newestCheck = { key: '', answer: null };
   #isReady = false;
   #isBusy = false;
-  #typing = 0;
-  #pause = 0;
-  #turn = 0; // of an answer: the same one may be said again
-  /** Those who wait for the newest answer. @type {((answer: Checked | null) => void)[]} */
-  #waiting = [];
+  #typingTimer = 0;
+  #repairTimer = 0;
+  #answerCount = 0; // of an answer: the same one may be said again
+  /** Those who wait for the newest answer. @type {((answer: CheckResult | null) => void)[]} */
+  #waitingResolvers = [];
 
   /**
    * @param {import('../python.js').Python} python
-   * @param {(why: unknown) => void} fail the compiler cannot say it
+   * @param {(why: unknown) => void} onFail the compiler cannot say it
    */
-  constructor(python, fail) {
+  constructor(python, onFail) {
     this.#python = python;
-    this.#fail = fail;
+    this.#onFail = onFail;
     pageState.programText.subscribe(() => {
-      this.#forget();
-      clearTimeout(this.#typing);
-      this.#typing = window.setTimeout(() => this.#check(), TYPING_MS);
+      this.#forgetAnswer();
+      clearTimeout(this.#typingTimer);
+      this.#typingTimer = window.setTimeout(() => this.#check(), TYPING_MS);
     });
     pageState.robotName.subscribe(() => {
-      this.#forget();
+      this.#forgetAnswer();
       this.#check();
     });
-    pageState.language.subscribe(() => this.#forget());
+    pageState.language.subscribe(() => this.#forgetAnswer());
   }
 
   /** Python answers from now on. */
@@ -47,33 +47,33 @@ export class Checking {
   }
 
   /** It is tried again to have a compiler. */
-  begins() {
+  markBeginning() {
     dataset['state'] = 'changed';
   }
 
   /** There is no compiler. */
-  failed() {
+  markFailed() {
     dataset['state'] = 'failed';
-    this.#tell(null);
+    this.#resolveWaiting(null);
   }
 
   /** The same text is to be compiled again: what is said of it is in another language. */
-  again() {
-    this.#newest.key = '';
-    this.#forget();
+  checkAgain() {
+    this.#newestCheck.key = '';
+    this.#forgetAnswer();
     this.#check();
   }
 
-  /** What the compiler says of the newest text, as soon as it can; null if it cannot. One that did not come is tried again. @returns {Promise<Checked | null>} */
+  /** What the compiler says of the newest text, as soon as it can; null if it cannot. One that did not come is tried again. @returns {Promise<CheckResult | null>} */
   whenChecked() {
-    this.#python.again(pageState.language.value);
+    this.#python.tryAgain(pageState.language.value);
     return new Promise((resolve) => {
-      this.#waiting.push(resolve);
+      this.#waitingResolvers.push(resolve);
       this.#check();
     });
   }
 
-  #forget() {
+  #forgetAnswer() {
     if (dataset['state'] !== 'failed') dataset['state'] = 'changed';
     pageState.checkResult.set(null);
   }
@@ -82,26 +82,26 @@ export class Checking {
     if (!this.#isReady || this.#isBusy) return;
     this.#isBusy = true;
     try {
-      for (let now = asked(); this.#newest.key !== JSON.stringify(now); now = asked()) {
-        const request = { do: 'check', robot: now.robot, language: now.language };
-        const answer = /** @type {Checked} */ (await this.#python.ask(request, new TextEncoder().encode(now.text)));
-        this.#newest = { key: JSON.stringify(now), answer };
+      for (let source = currentSource(); this.#newestCheck.key !== JSON.stringify(source); source = currentSource()) {
+        const request = { do: 'check', robot: source.robot, language: source.language };
+        const answer = /** @type {CheckResult} */ (await this.#python.ask(request, new TextEncoder().encode(source.text)));
+        this.#newestCheck = { key: JSON.stringify(source), answer };
         pageState.isRobotNamed.set(answer.names_robot);
-        if (answer.robot !== now.robot && pageState.robotName.value === now.robot) pageState.robotName.set(answer.robot); // and once more
+        if (answer.robot !== source.robot && pageState.robotName.value === source.robot) pageState.robotName.set(answer.robot); // and once more
       }
-      const { answer } = this.#newest;
+      const { answer } = this.#newestCheck;
       if (answer && pageState.checkResult.value !== answer) { // also where a text has come back
         pageState.checkResult.set(answer);
-        clearTimeout(this.#pause);
-        this.#turn += 1;
-        this.#pause = window.setTimeout(() => this.#offer(answer, this.#turn), PAUSE_MS);
+        clearTimeout(this.#repairTimer);
+        this.#answerCount += 1;
+        this.#repairTimer = window.setTimeout(() => this.#tryRepairs(answer, this.#answerCount), REPAIR_PAUSE_MS);
       }
       dataset['state'] = 'checked';
       dataset['image'] = answer?.image ?? '';
-      this.#tell(answer);
-    } catch (why) {
-      this.#fail(why);
-      this.#tell(null);
+      this.#resolveWaiting(answer);
+    } catch (error) {
+      this.#onFail(error);
+      this.#resolveWaiting(null);
     } finally {
       this.#isBusy = false;
     }
@@ -109,31 +109,31 @@ export class Checking {
 
   /**
    * Tries what the buttons do, one after the other: each is a whole check.
-   * @param {Checked} answer
-   * @param {number} turn
+   * @param {CheckResult} answer
+   * @param {number} answerNumber
    */
-  async #offer(answer, turn) {
-    const isNewest = () => pageState.checkResult.value === answer && this.#turn === turn;
+  async #tryRepairs(answer, answerNumber) {
+    const isNewest = () => pageState.checkResult.value === answer && this.#answerCount === answerNumber;
     try {
-      for (const [which, finding] of answer.findings.entries()) {
+      for (const [findingIndex, finding] of answer.findings.entries()) {
         if (!isNewest()) return;
         if (!finding.may_repair) continue;
-        const request = { do: 'repair', robot: pageState.robotName.value, which };
+        const request = { do: 'repair', robot: pageState.robotName.value, which: findingIndex };
         finding.repair ??= (await this.#python.ask(request, new TextEncoder().encode(pageState.programText.value))).changes;
-        if (isNewest() && finding.repair?.length) pageState.offeredFindingIndex.set(which);
+        if (isNewest() && finding.repair?.length) pageState.offeredFindingIndex.set(findingIndex);
       }
-    } catch (why) {
-      this.#fail(why);
+    } catch (error) {
+      this.#onFail(error);
     }
   }
 
-  /** @param {Checked | null} answer */
-  #tell(answer) {
-    for (const each of this.#waiting.splice(0)) each(answer);
+  /** @param {CheckResult | null} answer */
+  #resolveWaiting(answer) {
+    for (const resolve of this.#waitingResolvers.splice(0)) resolve(answer);
   }
 }
 
 /** What the compiler is asked about now. */
-function asked() {
+function currentSource() {
   return { text: pageState.programText.value, robot: pageState.robotName.value, language: pageState.language.value };
 }

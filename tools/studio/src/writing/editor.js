@@ -9,25 +9,25 @@ import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { Compartment, EditorState, Prec, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
-import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
-import { colors, completionOf, languageOf } from './language.js';
-import { whole } from './messages.js';
+import { breakpointExtension, offsetsIn, breakpointsIn, onMarginPress, setBreakpoints } from './breakpoints.js';
+import { highlighting, completionsForRobot, languageOfRobot } from './language.js';
+import { messageWithFix } from './messages.js';
 import { partAt } from './parts.js';
 import { pageState } from '../page/page_state.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Finding, Change } from '../python.js' */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
-/** @typedef {string} Stand where blocks stand, as only they read it */
+/** @typedef {string} StandText where blocks stand, as only they read it */
 
 /** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */
-const setRunning = StateEffect.define();
-const running = StateField.define({
+const setRunningEffect = StateEffect.define();
+const runningField = StateField.define({
   create: () => Decoration.none,
   update(marks, transaction) {
     let decorations = transaction.docChanged ? Decoration.none : marks;
     for (const effect of transaction.effects) {
-      if (!effect.is(setRunning)) continue;
+      if (!effect.is(setRunningEffect)) continue;
       const marks = effect.value.filter(({ from, to }) => from < to);
       decorations = Decoration.set(marks.map(({ from, to }) => Decoration.mark({ class: 'cm-running' }).range(from, to)), true);
     }
@@ -36,10 +36,10 @@ const running = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
-/** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: Stand, after: Stand}>} */
-const setStand = StateEffect.define();
-const undoneStands = invertedEffects.of(({ effects }) => effects.flatMap((each) => (
-  each.is(setStand) ? [setStand.of({ before: each.value.after, after: each.value.before })] : [])));
+/** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: StandText, after: StandText}>} */
+const setStandEffect = StateEffect.define();
+const standInversion = invertedEffects.of(({ effects }) => effects.flatMap((effect) => (
+  effect.is(setStandEffect) ? [setStandEffect.of({ before: effect.value.after, after: effect.value.before })] : [])));
 
 const theme = EditorView.theme({
   '&': { height: '100%', fontSize: '1rem', backgroundColor: 'var(--card)', color: 'var(--ink)' },
@@ -65,66 +65,66 @@ const theme = EditorView.theme({
 });
 
 export class Editor {
-  #robot = new Compartment();
-  #words = new Compartment();
-  #history = new Compartment();
+  #robotCompartment = new Compartment();
+  #languageCompartment = new Compartment();
+  #historyCompartment = new Compartment();
   #view;
   /** What takes back what is not typed in a line that is being typed: in a group. @type {((how: 'undo' | 'redo') => void) | null} */
-  #takesBack = null;
+  #undoHandler = null;
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
-  #marked = ''; // what runs
-  #held = -1; // where the program is held, and the editor has been scrolled to
-  /** Hears where blocks stand again. @type {(stand: Stand) => void} */
-  #whenStood = () => {};
+  #markedKey = ''; // what runs
+  #heldOffset = -1; // where the program is held, and the editor has been scrolled to
+  /** Hears where blocks stand again. @type {(stand: StandText) => void} */
+  #onStand = () => {};
 
   /** @param {HTMLElement} parent */
   constructor(parent) {
-    /** @type {(at: number, isLine: boolean) => void} */
-    const toggle = (at, isLine) => this.#toggle(at, isLine);
+    /** @type {(offset: number, isLine: boolean) => void} */
+    const toggle = (at, isLine) => this.#toggleAt(at, isLine);
     const root = parent.attachShadow({ mode: 'open' });
-    const place = document.createElement('div');
-    place.style.cssText = 'position: absolute; inset: 0; overflow: hidden'; // laid out without the rest of the page
-    root.append(place);
+    const container = document.createElement('div');
+    container.style.cssText = 'position: absolute; inset: 0; overflow: hidden'; // laid out without the rest of the page
+    root.append(container);
     this.#view = new EditorView({
-      parent: place,
+      parent: container,
       root,
       state: EditorState.create({
         extensions: [
           EditorView.updateListener.of((update) => { // before breakpoints are told: they are of another text
             if (update.docChanged) {
               this.#places = null;
-              this.#marked = '';
+              this.#markedKey = '';
               pageState.programText.set(this.text);
             }
-            for (const each of update.transactions.filter((one) => one.isUserEvent('undo') || one.isUserEvent('redo'))) {
-              for (const effect of each.effects) if (effect.is(setStand)) this.#whenStood(effect.value.after);
+            for (const transaction of update.transactions.filter((transaction) => transaction.isUserEvent('undo') || transaction.isUserEvent('redo'))) {
+              for (const effect of transaction.effects) if (effect.is(setStandEffect)) this.#onStand(effect.value.after);
             }
           }),
-          undoneStands,
-          breakpoints(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
-          lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
-          this.#history.of(history()),
+          standInversion,
+          breakpointExtension(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
+          lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => onMarginPress(line, event, toggle) } }),
+          this.#historyCompartment.of(history()),
           Prec.high(keymap.of([
-            { key: 'Mod-z', run: () => this.#back('undo'), shift: () => this.#back('redo') },
-            { key: 'Mod-y', run: () => this.#back('redo') },
+            { key: 'Mod-z', run: () => this.#undoOrRedo('undo'), shift: () => this.#undoOrRedo('redo') },
+            { key: 'Mod-y', run: () => this.#undoOrRedo('redo') },
           ])),
           // Tab leaves the editor: who has no mouse must get out.
           keymap.of([...completionKeymap, ...lintKeymap, ...defaultKeymap, ...historyKeymap]),
           bracketMatching(),
           highlightActiveLine(),
           lintGutter(),
-          running,
-          colors,
+          runningField,
+          highlighting,
           theme,
           EditorView.lineWrapping,
-          this.#robot.of(forRobot()),
-          this.#words.of(this.#inLanguage()),
+          this.#robotCompartment.of(robotExtensions()),
+          this.#languageCompartment.of(this.#languageExtensions()),
         ],
       }),
     });
-    pageState.robotName.subscribe(() => this.#view.dispatch({ effects: this.#robot.reconfigure(forRobot()) }));
-    pageState.language.subscribe(() => this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) }));
+    pageState.robotName.subscribe(() => this.#view.dispatch({ effects: this.#robotCompartment.reconfigure(robotExtensions()) }));
+    pageState.language.subscribe(() => this.#view.dispatch({ effects: this.#languageCompartment.reconfigure(this.#languageExtensions()) }));
     pageState.checkResult.subscribe((answer) => {
       if (answer) this.#places = answer.places.length ? answer.places : null;
     });
@@ -134,9 +134,9 @@ export class Editor {
     return this.#view.state.doc.toString();
   }
 
-  /** Replaces the text; undo brings the one before back. @param {string} whole */
-  replace(whole) {
-    this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: whole }, annotations: isolateHistory.of('full') });
+  /** Replaces the text; undo brings the one before back. @param {string} newText */
+  replace(newText) {
+    this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: newText }, annotations: isolateHistory.of('full') });
   }
 
   get hasFocus() {
@@ -150,53 +150,53 @@ export class Editor {
   }
 
   undo() {
-    this.#back('undo');
+    this.#undoOrRedo('undo');
   }
 
   redo() {
-    this.#back('redo');
+    this.#undoOrRedo('redo');
   }
 
-  /** @param {'undo' | 'redo'} how */
-  #back(how) {
+  /** @param {'undo' | 'redo'} direction */
+  #undoOrRedo(direction) {
     const { state } = this.#view;
-    if (!this.#takesBack || (how === 'undo' ? undoDepth(state) : redoDepth(state))) (how === 'undo' ? undo : redo)(this.#view);
-    else this.#takesBack(how);
+    if (!this.#undoHandler || (direction === 'undo' ? undoDepth(state) : redoDepth(state))) (direction === 'undo' ? undo : redo)(this.#view);
+    else this.#undoHandler(direction);
     return true;
   }
 
-  /** From now on somebody else has what was done before; null: nobody has. @param {((how: 'undo' | 'redo') => void) | null} takesBack */
-  handUndo(takesBack) {
-    this.#takesBack = takesBack;
-    this.#view.dispatch({ effects: this.#history.reconfigure([]) });
-    this.#view.dispatch({ effects: this.#history.reconfigure(history()) });
+  /** From now on somebody else has what was done before; null: nobody has. @param {((how: 'undo' | 'redo') => void) | null} undoHandler */
+  setUndoHandler(undoHandler) {
+    this.#undoHandler = undoHandler;
+    this.#view.dispatch({ effects: this.#historyCompartment.reconfigure([]) });
+    this.#view.dispatch({ effects: this.#historyCompartment.reconfigure(history()) });
   }
 
-  /** @param {(stand: Stand) => void} act is done where an undo or a redo has blocks stand elsewhere */
-  whenStood(act) {
-    this.#whenStood = act;
+  /** @param {(stand: StandText) => void} onStand is done where an undo or a redo has blocks stand elsewhere */
+  onStandChange(onStand) {
+    this.#onStand = onStand;
   }
 
   /**
    * Puts in the text of changed blocks and where they stand, as one step of undo.
-   * @param {string} whole
-   * @param {{before: Stand, after: Stand}} stands
+   * @param {string} newText
+   * @param {{before: StandText, after: StandText}} stands
    */
-  replaceByBlocks(whole, stands) {
-    const before = this.text;
-    const effects = stands.before === stands.after ? [] : [setStand.of(stands)];
-    if (whole === before) {
+  replaceByBlocks(newText, stands) {
+    const oldText = this.text;
+    const effects = stands.before === stands.after ? [] : [setStandEffect.of(stands)];
+    if (newText === oldText) {
       if (effects.length) this.#view.dispatch({ effects, annotations: isolateHistory.of('full'), userEvent: 'move.blocks' });
       return;
     }
-    let from = 0;
-    while (from < Math.min(before.length, whole.length) && before[from] === whole[from]) from += 1;
-    let same = 0;
-    while (same < Math.min(before.length, whole.length) - from && before.at(-1 - same) === whole.at(-1 - same)) same += 1;
-    this.#view.dispatch({ selection: { anchor: from } }); // where an undo goes back to
+    let startLength = 0;
+    while (startLength < Math.min(oldText.length, newText.length) && oldText[startLength] === newText[startLength]) startLength += 1;
+    let endLength = 0;
+    while (endLength < Math.min(oldText.length, newText.length) - startLength && oldText.at(-1 - endLength) === newText.at(-1 - endLength)) endLength += 1;
+    this.#view.dispatch({ selection: { anchor: startLength } }); // where an undo goes back to
     this.#view.dispatch({
       scrollIntoView: true,
-      changes: { from, to: before.length - same, insert: whole.slice(from, whole.length - same) },
+      changes: { from: startLength, to: oldText.length - endLength, insert: newText.slice(startLength, newText.length - endLength) },
       effects,
       annotations: isolateHistory.of('full'),
       userEvent: 'input.blocks',
@@ -209,10 +209,10 @@ export class Editor {
    */
   showFindings(findings, repair) {
     const marks = findings.map((finding) => ({
-      ...this.#offsets(finding),
+      ...this.#offsetsOfRange(finding),
       /** @type {'error' | 'warning'} */
       severity: finding.severity === 'mistake' ? 'error' : 'warning',
-      message: whole(finding),
+      message: messageWithFix(finding),
       get actions() { // read whenever it is shown
         return finding.repair?.length ? [{ name: text('repair'), apply: () => repair(finding) }] : [];
       },
@@ -221,51 +221,51 @@ export class Editor {
   }
 
   get #breakpoints() {
-    return pointsOf(this.#view.state).map(({ at, point }) => ({ ...this.#placeAt(at), point }));
+    return breakpointsIn(this.#view.state).map(({ at: offset, point }) => ({ ...this.#positionAt(offset), point }));
   }
 
-  /** @param {{line: number, column: number}} place the beginning of a part, or of a block */
-  toggleBreakpoint(place) {
-    this.#toggle(this.#offset(place.line, place.column), false);
+  /** @param {{line: number, column: number}} position the beginning of a part, or of a block */
+  toggleBreakpoint(position) {
+    this.#toggleAt(this.#offsetOf(position.line, position.column), false);
   }
 
   /**
-   * @param {number} at
+   * @param {number} offset
    * @param {boolean} isLine of the whole line
    */
-  #toggle(at, isLine) {
-    const line = this.#view.state.doc.lineAt(at);
-    const here = placesOf(this.#view.state).filter((each) => each >= line.from && each <= line.to);
-    if (isLine && here.length) {
-      setBreakpoints(this.#view, here, false);
+  #toggleAt(offset, isLine) {
+    const line = this.#view.state.doc.lineAt(offset);
+    const offsetsInLine = offsetsIn(this.#view.state).filter((offset) => offset >= line.from && offset <= line.to);
+    if (isLine && offsetsInLine.length) {
+      setBreakpoints(this.#view, offsetsInLine, false);
       return;
     }
-    const begin = this.#partAt(at, isLine);
-    if (begin === null) pageState.note.set(text('no_breakpoint', { line: line.number }));
-    else setBreakpoints(this.#view, [begin], !placesOf(this.#view.state).includes(begin));
+    const partStart = this.#partAt(offset, isLine);
+    if (partStart === null) pageState.note.set(text('no_breakpoint', { line: line.number }));
+    else setBreakpoints(this.#view, [partStart], !offsetsIn(this.#view.state).includes(partStart));
   }
 
-  /** @param {number} at @param {boolean} isLine @returns {number | null} */
-  #partAt(at, isLine) {
+  /** @param {number} offset @param {boolean} isLine @returns {number | null} */
+  #partAt(offset, isLine) {
     if (this.#places) {
-      const part = partAt(this.#places, this.#placeAt(at), isLine);
-      return part && this.#offset(part.line, part.column);
+      const part = partAt(this.#places, this.#positionAt(offset), isLine);
+      return part && this.#offsetOf(part.line, part.column);
     }
-    const line = this.#view.state.doc.lineAt(at); // of a text with mistakes: what there is
-    const first = line.text.search(/\S/);
-    return first < 0 || line.text.startsWith('//', first) ? null : line.from + first;
+    const line = this.#view.state.doc.lineAt(offset); // of a text with mistakes: what there is
+    const firstColumn = line.text.search(/\S/);
+    return firstColumn < 0 || line.text.startsWith('//', firstColumn) ? null : line.from + firstColumn;
   }
 
-  /** @param {number} at */
-  #placeAt(at) {
-    const line = this.#view.state.doc.lineAt(at);
-    return { line: line.number, column: [...line.text.slice(0, at - line.from)].length + 1 };
+  /** @param {number} offset */
+  #positionAt(offset) {
+    const line = this.#view.state.doc.lineAt(offset);
+    return { line: line.number, column: [...line.text.slice(0, offset - line.from)].length + 1 };
   }
 
   /** @param {Change[]} changes */
-  change(changes) {
+  applyChanges(changes) {
     this.#view.dispatch({
-      changes: changes.map((change) => ({ ...this.#offsets(change), insert: change.text })),
+      changes: changes.map((change) => ({ ...this.#offsetsOfRange(change), insert: change.text })),
       userEvent: 'input.repair',
     });
     this.#view.focus();
@@ -273,7 +273,7 @@ export class Editor {
 
   /** @param {Range} range */
   goTo(range) {
-    this.#view.dispatch({ selection: { anchor: this.#offsets(range).from }, scrollIntoView: true });
+    this.#view.dispatch({ selection: { anchor: this.#offsetsOfRange(range).from }, scrollIntoView: true });
     this.#view.focus();
   }
 
@@ -283,15 +283,15 @@ export class Editor {
    * @param {boolean} isHeld at the first of them: it is scrolled to
    */
   showRunning(ranges, isHeld = false) {
-    const all = ranges.map((each) => this.#offsets(each));
-    const marked = all.length ? JSON.stringify([all, isHeld]) : '';
-    if (marked === this.#marked) return;
-    this.#marked = marked;
-    const [offsets] = all;
+    const allOffsets = ranges.map((range) => this.#offsetsOfRange(range));
+    const markedKey = allOffsets.length ? JSON.stringify([allOffsets, isHeld]) : '';
+    if (markedKey === this.#markedKey) return;
+    this.#markedKey = markedKey;
+    const [offsets] = allOffsets;
     /** @type {StateEffect<unknown>[]} */
-    const effects = [setRunning.of(all)];
-    if (offsets && isHeld && offsets.from !== this.#held) effects.push(EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }));
-    this.#held = offsets && isHeld ? offsets.from : -1;
+    const effects = [setRunningEffect.of(allOffsets)];
+    if (offsets && isHeld && offsets.from !== this.#heldOffset) effects.push(EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }));
+    this.#heldOffset = offsets && isHeld ? offsets.from : -1;
     this.#view.dispatch({ effects });
   }
 
@@ -299,24 +299,24 @@ export class Editor {
    * Lines and columns count from 1, columns in characters; the editor counts in halves of UTF-16.
    * @param {Range} range
    */
-  #offsets(range) {
-    const from = this.#offset(range.line, range.column);
-    return { from, to: Math.max(from, this.#offset(range.end_line, range.end_column)) };
+  #offsetsOfRange(range) {
+    const from = this.#offsetOf(range.line, range.column);
+    return { from, to: Math.max(from, this.#offsetOf(range.end_line, range.end_column)) };
   }
 
   /**
    * @param {number} line
    * @param {number} column
    */
-  #offset(line, column) {
+  #offsetOf(line, column) {
     const { doc } = this.#view.state;
     if (line > doc.lines) return doc.length;
-    const found = doc.line(line);
-    const before = [...found.text].slice(0, column - 1).join('').length;
-    return found.from + before;
+    const documentLine = doc.line(line);
+    const offsetInLine = [...documentLine.text].slice(0, column - 1).join('').length;
+    return documentLine.from + offsetInLine;
   }
 
-  #inLanguage() {
+  #languageExtensions() {
     return [
       EditorState.phrases.of(textsOf('editor')),
       EditorView.contentAttributes.of({
@@ -331,7 +331,7 @@ export class Editor {
   }
 }
 
-function forRobot() {
-  const robot = pageState.robotName.value;
-  return [languageOf(robot), autocompletion({ override: [completionOf(robot)], icons: false })];
+function robotExtensions() {
+  const robotName = pageState.robotName.value;
+  return [languageOfRobot(robotName), autocompletion({ override: [completionsForRobot(robotName)], icons: false })];
 }

@@ -5,25 +5,25 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/
 import { tags } from '@lezer/highlight';
 import { wordsOf } from '../page/words.js';
 
-const VALUES = new Set(['value', 'function', 'sensor', 'forever']);
-const KEYWORDS = new Set(['setup', 'block', 'arm', 'end', 'break', 'operator', 'unit']);
+const VALUE_ROLES = new Set(['value', 'function', 'sensor', 'forever']);
+const KEYWORD_ROLES = new Set(['setup', 'block', 'arm', 'end', 'break', 'operator', 'unit']);
 
 /**
  * @param {string | undefined} role
  * @returns {string}
  */
-function tokenOf(role) {
+function tokenOfRole(role) {
   if (role === undefined) return 'variableName';
-  if (KEYWORDS.has(role)) return 'keyword';
-  return VALUES.has(role) ? 'typeName' : 'atom';
+  if (KEYWORD_ROLES.has(role)) return 'keyword';
+  return VALUE_ROLES.has(role) ? 'typeName' : 'atom';
 }
 
 /**
  * Returns the language of a robot: its own words count.
- * @param {string} robot
+ * @param {string} robotName
  */
-export function languageOf(robot) {
-  const words = wordsOf(robot);
+export function languageOfRobot(robotName) {
+  const words = wordsOf(robotName);
   return StreamLanguage.define({
     name: 'tiniscript',
     token(stream) {
@@ -31,7 +31,7 @@ export function languageOf(robot) {
       if (stream.match(/^\/\/.*/)) return 'comment';
       if (stream.match(/^\d*\.?\d+/)) return 'number';
       const word = stream.match(/^[A-Za-z_]\w*/);
-      if (word && word !== true) return tokenOf(words.get(word[0].toUpperCase())?.role);
+      if (word && word !== true) return tokenOfRole(words.get(word[0].toUpperCase())?.role);
       stream.next();
       return 'punctuation';
     },
@@ -40,7 +40,7 @@ export function languageOf(robot) {
 }
 
 // Each has at least 4.5 times the contrast of the letters that a page must have.
-export const colors = syntaxHighlighting(
+export const highlighting = syntaxHighlighting(
   HighlightStyle.define([
     { tag: tags.keyword, color: 'var(--said-keyword)', fontWeight: '600' },
     { tag: tags.atom, color: 'var(--said-blue)', fontWeight: '600' },
@@ -52,29 +52,29 @@ export const colors = syntaxHighlighting(
 );
 
 /**
- * @param {string} robot
+ * @param {string} robotName
  * @returns {(context: import('@codemirror/autocomplete').CompletionContext) =>
  *   import('@codemirror/autocomplete').CompletionResult | null}
  */
-export function completionOf(robot) {
-  const words = [...wordsOf(robot).values()];
+export function completionsForRobot(robotName) {
+  const words = [...wordsOf(robotName).values()];
   return (context) => {
     const word = context.matchBefore(/[A-Za-z_]\w*/);
     if (!word && !context.explicit) return null;
-    const before = context.state.doc.lineAt(context.pos).text.slice(0, (word?.from ?? context.pos) - context.state.doc.lineAt(context.pos).from);
-    if (before.includes('//')) return null;
+    const lineBefore = context.state.doc.lineAt(context.pos).text.slice(0, (word?.from ?? context.pos) - context.state.doc.lineAt(context.pos).from);
+    if (lineBefore.includes('//')) return null;
     const names = new Set(
       [...context.state.doc.toString().matchAll(/\b([A-Za-z]\w*)\s*=(?!=)|\bDEF\s+([A-Za-z]\w*)/gi)]
-        .map((found) => String(found[1] ?? found[2]).toUpperCase())
+        .map((match) => String(match[1] ?? match[2]).toUpperCase())
         .filter((name) => name !== word?.text.toUpperCase()),
     );
     return {
       from: word?.from ?? context.pos,
       options: [
-        ...words.map((each) => ({
-          label: each.text,
-          type: tokenOf(each.role) === 'typeName' ? 'variable' : 'keyword',
-          detail: each.example === each.text ? '' : each.example,
+        ...words.map((word) => ({
+          label: word.text,
+          type: tokenOfRole(word.role) === 'typeName' ? 'variable' : 'keyword',
+          detail: word.example === word.text ? '' : word.example,
         })),
         ...[...names].map((label) => ({ label, type: 'variable' })),
       ],

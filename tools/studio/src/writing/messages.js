@@ -5,14 +5,14 @@ import { element, say } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 
-/** @import { Checked, Finding } from '../python.js' */
+/** @import { CheckResult, Finding } from '../python.js' */
 
-const MOST = 50; // messages that are shown at once
+const MOST_MESSAGES = 50; // messages that are shown at once
 
 /** What is said, and what to try, as one line. @param {{message?: string, fix?: string}} said @returns {string} */
-export function whole({ message = '', fix = '' }) {
-  const gap = /[.!?:]$/.test(message) ? ' ' : ' – ';
-  return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(gap);
+export function messageWithFix({ message = '', fix = '' }) {
+  const separator = /[.!?:]$/.test(message) ? ' ' : ' – ';
+  return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(separator);
 }
 
 /**
@@ -21,38 +21,38 @@ export function whole({ message = '', fix = '' }) {
  * @param {(finding: Finding) => void} goTo
  */
 export function showMessages(list, findings, goTo) {
-  let first = '';
-  const rows = findings.slice(0, MOST).map((finding) => {
-    const place = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
-    place.className = 'place';
-    place.ariaLabel = text('say_fault', { line: finding.line, what: whole(finding) });
-    first ||= place.ariaLabel;
-    const row = makeElement('li', '', place, ' ', whole(finding));
+  let firstMessage = '';
+  const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
+    const lineButton = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
+    lineButton.className = 'place';
+    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(finding) });
+    firstMessage ||= lineButton.ariaLabel;
+    const row = makeElement('li', '', lineButton, ' ', messageWithFix(finding));
     row.className = finding.severity;
     return row;
   });
-  if (findings.length > MOST) rows.push(makeElement('li', '', text('more', { count: findings.length - MOST })));
+  if (findings.length > MOST_MESSAGES) rows.push(makeElement('li', '', text('more', { count: findings.length - MOST_MESSAGES })));
   list.replaceChildren(...rows);
-  say(element('first_message', HTMLElement), first);
+  say(element('first_message', HTMLElement), firstMessage);
 }
 
 /**
  * Gives a message the button of its repair.
  * @param {HTMLElement} list that shows it
- * @param {number} which
+ * @param {number} findingIndex
  * @param {Finding} finding
  * @param {(finding: Finding) => void} repair
  */
-export function showRepair(list, which, finding, repair) {
-  const does = makeButton('repair', () => repair(finding));
-  does.className = 'repair';
-  does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
-  if (which < MOST) list.children[which]?.append(' ', does);
+export function showRepair(list, findingIndex, finding, repair) {
+  const repairButton = makeButton('repair', () => repair(finding));
+  repairButton.className = 'repair';
+  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
+  if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 
-/** @param {Checked} checked @returns {string} */
-export function summary({ findings, bytes, loose }) {
-  const mistakes = findings.filter((each) => each.severity === 'mistake').length;
+/** @param {CheckResult} checked @returns {string} */
+export function summaryOf({ findings, bytes, loose }) {
+  const mistakes = findings.filter((finding) => finding.severity === 'mistake').length;
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(text('mistakes', { count: mistakes }));

@@ -1,6 +1,6 @@
 // The parts of a program in front of which it can stop, as the compiler tells them.
 
-/** @typedef {import('../python.js').Checked['places']} Places */
+/** @typedef {import('../python.js').CheckResult['places']} Places */
 /** @typedef {{line: number, column: number}} Place */
 
 /** @param {Places[number]} place */
@@ -9,11 +9,11 @@ const startOf = ([, line, column]) => ({ line, column });
 /**
  * What is marked of the text while a program is at a place: of a block its head.
  * @param {Places} places
- * @param {number | null | undefined} at an offset in the code
+ * @param {number | null | undefined} codeOffset an offset in the code
  * @returns {import('./editor.js').Range | null}
  */
-export function rangeAt(places, at) {
-  const place = at == null ? undefined : places.findLast(([offset]) => offset <= at);
+export function rangeAt(places, codeOffset) {
+  const place = codeOffset == null ? undefined : places.findLast(([offset]) => offset <= codeOffset);
   if (!place) return null;
   const [, line, column, end_line, end_column] = place;
   return { line, column, ...(end_line > line ? { end_line: line, end_column: Infinity } : { end_line, end_column }) };
@@ -23,14 +23,14 @@ export function rangeAt(places, at) {
  * Where a program stops that is to stop at a place: at the last part that begins there or before
  * in the same line, or else at the next one.
  * @param {Places} places
- * @param {Place} at
+ * @param {Place} position
  * @param {boolean} isLine the part that begins first in this line
  * @returns {Place | null} the beginning of the part; null after the last line with one
  */
-export function partAt(places, at, isLine) {
-  const begins = places.map(startOf).sort((one, other) => one.line - other.line || one.column - other.column);
-  const here = isLine ? undefined : begins.findLast((each) => each.line === at.line && each.column <= at.column);
-  return here ?? begins.find((each) => each.line >= at.line) ?? null;
+export function partAt(places, position, isLine) {
+  const starts = places.map(startOf).sort((first, second) => first.line - second.line || first.column - second.column);
+  const partInLine = isLine ? undefined : starts.findLast((start) => start.line === position.line && start.column <= position.column);
+  return partInLine ?? starts.find((start) => start.line >= position.line) ?? null;
 }
 
 /**
@@ -40,31 +40,31 @@ export function partAt(places, at, isLine) {
  * @returns {number[]}
  */
 export function offsetsOf(places, breakpoints) {
-  const wanted = new Set();
-  for (const each of breakpoints) {
-    const part = partAt(places, each, false);
-    if (part) wanted.add(`${part.line}:${part.column}`);
+  const startKeys = new Set();
+  for (const breakpoint of breakpoints) {
+    const part = partAt(places, breakpoint, false);
+    if (part) startKeys.add(`${part.line}:${part.column}`);
   }
-  return places.filter(([, line, column]) => wanted.has(`${line}:${column}`)).map(([offset]) => offset);
+  return places.filter(([, line, column]) => startKeys.has(`${line}:${column}`)).map(([offset]) => offset);
 }
 
 /** Where a program that runs stops, for each breakpoint of the page. */
-export class Stops {
+export class StopOffsets {
   /** @type {Map<object, number[]>} */
-  #of = new Map();
+  #offsetsByPoint = new Map();
 
   /**
    * After a change of the text those remain whose breakpoints are still there.
    * @param {(Place & {point: object})[]} breakpoints
    * @param {Places} places of the text; none: it is another one than what runs
    */
-  find(breakpoints, places) {
-    this.#of = new Map(breakpoints.map((each) => [
-      each.point, places.length ? offsetsOf(places, [each]) : this.#of.get(each.point) ?? [],
+  update(breakpoints, places) {
+    this.#offsetsByPoint = new Map(breakpoints.map((breakpoint) => [
+      breakpoint.point, places.length ? offsetsOf(places, [breakpoint]) : this.#offsetsByPoint.get(breakpoint.point) ?? [],
     ]));
   }
 
   get offsets() {
-    return [...new Set([...this.#of.values()].flat())];
+    return [...new Set([...this.#offsetsByPoint.values()].flat())];
   }
 }

@@ -2,25 +2,25 @@
 
 import { text } from '../page/texts.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {Checked['shows'][number]} Show */
+/** @typedef {import('../python.js').CheckResult} CheckResult */
+/** @typedef {CheckResult['shows'][number]} Show */
 
 /**
- * @param {Pick<Checked, 'places' | 'shows'>} program
- * @param {number | undefined} at an offset in its code
+ * @param {Pick<CheckResult, 'places' | 'shows'>} program
+ * @param {number | undefined} codeOffset an offset in its code
  * @returns {Show | undefined} the SHOW there, if it has a name
  */
-export function showAt({ places, shows }, at = -1) {
-  const begin = places.findLast(([offset]) => offset <= at)?.[0];
-  return shows.find(([offset]) => offset === begin);
+export function showAt({ places, shows }, codeOffset = -1) {
+  const placeOffset = places.findLast(([offset]) => offset <= codeOffset)?.[0];
+  return shows.find(([offset]) => offset === placeOffset);
 }
 
 /**
  * @param {Show} show
- * @param {string} what its expression, or that in other words
+ * @param {string} name its expression, or that in other words
  * @param {boolean} isApart it is told from others of its line, too
  */
-export function nameOfShow([, , line, column, sharesText, sharesLine], what, isApart) {
-  if (!sharesText) return what;
-  return text('shown_line', { what, line: isApart && sharesLine ? `${line}:${column}` : line });
+export function shownName([, , line, column, sharesText, sharesLine], name, isApart) {
+  if (!sharesText) return name;
+  return text('shown_line', { what: name, line: isApart && sharesLine ? `${line}:${column}` : line });
 }

@@ -19,12 +19,12 @@ import { isShippedProgram } from '../start/beginnings.js';
  * @property {import('../programs/work.js').Work} work
  * @property {() => void} remember
  * @property {(program: string, isAsked: boolean) => Promise<void>} tryAlone on the virtual robot
- * @property {(hertz: number) => void} hear
+ * @property {(hertz: number) => void} playTone
  */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
-const TELL_MS = 300; // between two times that a group hears which block is chosen
-const BUSY_MS = 50; // until a block that is dragged is looked at again
+const GROUP_INTERVAL_MS = 300; // between two times that a group hears which block is chosen
+const BUSY_PAUSE_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
 export class Views {
@@ -32,80 +32,80 @@ export class Views {
   /** @type {Blocks | null} */
   #blocks = null;
   /** @type {Promise<void> | null} */
-  #fetching = null;
+  #fetchingBlocks = null;
   /** The text that the blocks show. @type {string | null} */
-  #shown = null;
+  #shownText = null;
   #isReady = false;
   #isAwake = false; // blocks may be fetched
   #isRefreshing = false;
   #isSending = false;
-  #isWanted = false; // blocks of a text that does not parse, too
-  #changes = 0; // of blocks that their text does not have yet
-  #form = ''; // what the blocks were when they and the text were the same
-  /** Where they stood then. @type {import('./editor.js').Stand} */
-  #stand = '';
-  #typing = 0;
-  #sending = 0;
+  #isForced = false; // blocks of a text that does not parse, too
+  #changeCount = 0; // of blocks that their text does not have yet
+  #shownForm = ''; // what the blocks were when they and the text were the same
+  /** Where they stood then. @type {import('./editor.js').StandText} */
+  #shownStand = '';
+  #typingTimer = 0;
+  #sendTimer = 0;
   /** @type {Finding[]} */
   #findings = [];
   /** @type {import('./editor.js').Range[]} */
-  #running = [];
-  #telling = 0;
+  #runningRanges = [];
+  #groupTimer = 0;
   /** @type {import('../class/together.js').MatePlace[]} */
-  #mates = [];
+  #matePlaces = [];
   /** Who edits the program, too. @type {import('../class/together.js').SharedEditor | null} */
   #group = null;
-  #pane = element('blocks', HTMLElement);
-  #note = element('blocks_note', HTMLElement);
-  #level = element('level', HTMLSelectElement);
+  #blocksPane = element('blocks', HTMLElement);
+  #noteElement = element('blocks_note', HTMLElement);
+  #levelSelect = element('level', HTMLSelectElement);
 
   /** @param {Page} page */
   constructor(page) {
     const { editor, work, remember } = page;
     this.#page = page;
     for (const view of /** @type {const} */ (['blocks', 'text'])) {
-      element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#choose(view));
+      element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#chooseView(view));
     }
-    this.#level.addEventListener('change', () => {
-      work.level = LEVELS.find(([level]) => level === this.#level.value)?.[0] ?? 'few';
+    this.#levelSelect.addEventListener('change', () => {
+      work.level = LEVELS.find(([level]) => level === this.#levelSelect.value)?.[0] ?? 'few';
       remember();
-      this.#offer(work.level);
+      this.#setLevel(work.level);
     });
-    element('undo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.undo()));
-    element('redo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.redo()));
+    element('undo', HTMLButtonElement).addEventListener('click', () => this.#undoOrRedo(() => editor.undo()));
+    element('redo', HTMLButtonElement).addEventListener('click', () => this.#undoOrRedo(() => editor.redo()));
     // A block that is touched while the text is ahead of it must not take the text back.
-    for (const kind of ['pointerdown', 'focusin']) {
-      this.#pane.addEventListener(kind, (event) => {
-        if (!this.#isStale() || (this.#group && this.#shown !== null)) return; // a group has changes by their blocks
-        if (kind === 'pointerdown') event.stopPropagation();
-        this.#refresh(true);
+    for (const eventName of ['pointerdown', 'focusin']) {
+      this.#blocksPane.addEventListener(eventName, (event) => {
+        if (!this.#isStale() || (this.#group && this.#shownText !== null)) return; // a group has changes by their blocks
+        if (eventName === 'pointerdown') event.stopPropagation();
+        this.#refreshBlocks(true);
       }, { capture: true });
     }
-    editor.whenStood((stand) => {
+    editor.onStandChange((stand) => {
       if (!this.#blocks) return;
       this.#blocks.stand = stand;
-      this.#shown = null; // also where the text is the same
-      if (this.#isOn) this.#refresh(true);
+      this.#shownText = null; // also where the text is the same
+      if (this.#isOn) this.#refreshBlocks(true);
     });
-    new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
+    new ResizeObserver(() => this.#blocks?.resize()).observe(this.#blocksPane);
     new MutationObserver(() => this.#blocks?.resize()).observe(document.documentElement, { attributeFilter: ['data-big'] }); // its groups are narrower then
-    pageState.language.subscribe(() => this.#showWords());
-    pageState.areWordsShown.subscribe(() => this.#showWords());
+    pageState.language.subscribe(() => this.#updateLanguage());
+    pageState.areWordsShown.subscribe(() => this.#updateLanguage());
     pageState.robotName.subscribe(() => this.#setRobot());
-    pageState.taughtBlocks.subscribe(() => this.#teach());
+    pageState.taughtBlocks.subscribe(() => this.#offerTaught());
     pageState.programText.subscribe(() => this.#textChanged());
     pageState.checkResult.subscribe((answer) => {
       if (answer) this.#showFindings(answer.findings);
     });
     pageState.breakpoints.subscribe(() => this.#showBreakpoints());
-    pageState.virtualRun.subscribe(() => this.#mark());
-    pageState.robotRun.subscribe(() => this.#mark());
-    pageState.sideId.subscribe(() => this.#mark());
+    pageState.virtualRun.subscribe(() => this.#markRunning());
+    pageState.robotRun.subscribe(() => this.#markRunning());
+    pageState.sideId.subscribe(() => this.#markRunning());
     pageState.fault.subscribe(({ range, sentence: said }) => {
       if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
     });
-    this.#showWords();
-    this.#lay();
+    this.#updateLanguage();
+    this.#showView();
   }
 
   get #isOn() {
@@ -115,13 +115,13 @@ export class Views {
   /** Python answers from now on. */
   ready() {
     this.#isReady = true;
-    if (this.#isOn) this.#refresh(true);
+    if (this.#isOn) this.#refreshBlocks(true);
   }
 
   /** The program is seen from now on. */
   wake() {
     this.#isAwake = true;
-    this.#lay();
+    this.#showView();
   }
 
   /** Has the file of the blocks fetched before they are seen. */
@@ -130,37 +130,37 @@ export class Views {
   }
 
   /** Offers what lessons have spoken of. The level rises to what the open one needs, and stays there: none takes blocks away. */
-  #teach() {
-    const taught = pageState.taughtBlocks.value;
-    this.#blocks?.setTaught(taught);
-    const order = LEVELS.map(([level]) => level);
-    const least = this.#blocks?.levelOf(taught.needed) ?? 'few';
-    if (order.indexOf(least) > order.indexOf(this.#page.work.level)) {
-      this.#page.work.level = least;
+  #offerTaught() {
+    const taughtBlocks = pageState.taughtBlocks.value;
+    this.#blocks?.setTaught(taughtBlocks);
+    const levelOrder = LEVELS.map(([level]) => level);
+    const leastLevel = this.#blocks?.levelOf(taughtBlocks.needed) ?? 'few';
+    if (levelOrder.indexOf(leastLevel) > levelOrder.indexOf(this.#page.work.level)) {
+      this.#page.work.level = leastLevel;
       this.#page.remember();
     }
-    this.#offer(this.#page.work.level);
+    this.#setLevel(this.#page.work.level);
   }
 
   /** @param {'few' | 'usual' | 'all'} level */
-  #offer(level) {
-    this.#level.value = level;
+  #setLevel(level) {
+    this.#levelSelect.value = level;
     this.#blocks?.setLevel(level);
   }
 
-  #showWords() {
-    const { value } = this.#level;
-    replaceOptions(this.#level, LEVELS.map(([level, name], k) => pictureOption(text(name), level, blocksPicture(k + 1))));
-    this.#level.value = value || this.#page.work.level;
+  #updateLanguage() {
+    const { value } = this.#levelSelect;
+    replaceOptions(this.#levelSelect, LEVELS.map(([level, levelKey], index) => pictureOption(text(levelKey), level, blocksPicture(index + 1))));
+    this.#levelSelect.value = value || this.#page.work.level;
     this.#blocks?.updateLanguage();
-    if (!this.#isStale()) this.#showAll();
-    if (this.#blocks) this.#refresh(true);
+    if (!this.#isStale()) this.#decorateBlocks();
+    if (this.#blocks) this.#refreshBlocks(true);
   }
 
   #setRobot() {
     this.#blocks?.setRobot(pageState.robotName.value);
-    this.#shown = null;
-    if (this.#isOn) this.#refresh(true);
+    this.#shownText = null;
+    if (this.#isOn) this.#refreshBlocks(true);
   }
 
   /** Another program comes. */
@@ -173,8 +173,8 @@ export class Views {
     this.#findings = []; // those are of the text before
     if (!this.#blocks || !this.#isStale()) return;
     this.#showState();
-    clearTimeout(this.#typing);
-    this.#typing = window.setTimeout(() => this.#refresh(!this.#page.editor.hasFocus), TYPING_MS);
+    clearTimeout(this.#typingTimer);
+    this.#typingTimer = window.setTimeout(() => this.#refreshBlocks(!this.#page.editor.hasFocus), TYPING_MS);
   }
 
   /** @param {Finding[]} findings of the newest text */
@@ -188,13 +188,13 @@ export class Views {
   }
 
   /** Where both robots run, that one is marked whose side is open. */
-  #mark() {
+  #markRunning() {
     const { ranges, isHeld } = pageState.virtualRun.value;
-    const there = pageState.robotRun.value;
-    const isThere = there.range && (!ranges.length || pageState.sideId.value === 'side_real');
-    this.#running = isThere && there.range ? [there.range] : ranges;
-    this.#page.editor.showRunning(this.#running, isThere ? there.isHeld : isHeld);
-    if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
+    const robotRun = pageState.robotRun.value;
+    const isRobotShown = robotRun.range && (!ranges.length || pageState.sideId.value === 'side_real');
+    this.#runningRanges = isRobotShown && robotRun.range ? [robotRun.range] : ranges;
+    this.#page.editor.showRunning(this.#runningRanges, isRobotShown ? robotRun.isHeld : isHeld);
+    if (!this.#isStale()) this.#blocks?.showRunning(this.#runningRanges);
   }
 
   /** @param {import('./editor.js').Range} finding */
@@ -209,41 +209,41 @@ export class Views {
    */
   async picture() {
     const { view } = this.#page.work;
-    if (view !== 'blocks') this.#choose('blocks');
+    if (view !== 'blocks') this.#chooseView('blocks');
     try {
-      await this.#fetching;
-      await this.#send();
-      this.#refresh(true);
-      while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+      await this.#fetchingBlocks;
+      await this.#sendBlocks();
+      this.#refreshBlocks(true);
+      while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
       return this.#blocks && !this.#isStale() ? await this.#blocks.picture() : null;
     } finally {
-      if (view !== 'blocks') this.#choose(view);
+      if (view !== 'blocks') this.#chooseView(view);
     }
   }
 
   /** @param {'blocks' | 'text'} view */
-  #choose(view) {
+  #chooseView(view) {
     this.#page.work.view = view;
     this.#page.remember();
-    this.#lay();
+    this.#showView();
     this.#blocks?.resize();
-    if (view === 'blocks') this.#refresh(true);
+    if (view === 'blocks') this.#refreshBlocks(true);
   }
 
-  #lay() {
+  #showView() {
     const { view } = this.#page.work;
     element('writing', HTMLElement).dataset['view'] = view;
-    for (const each of ['blocks', 'text']) {
-      element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
+    for (const viewName of ['blocks', 'text']) {
+      element(`view_${viewName}`, HTMLButtonElement).setAttribute('aria-pressed', String(viewName === view));
     }
-    this.#level.hidden = view !== 'blocks';
+    this.#levelSelect.hidden = view !== 'blocks';
     if (pageState.view.value !== view) pageState.view.set(view);
-    if (view === 'blocks' && this.#isAwake) this.#fetching ??= this.#fetch();
+    if (view === 'blocks' && this.#isAwake) this.#fetchingBlocks ??= this.#fetchBlocks();
   }
 
-  async #fetch() {
-    const { Blocks: Kind } = await import('../blocks/blocks.js');
-    this.#blocks = new Kind(this.#pane, pageState.robotName.value, this.#page.work.level, {
+  async #fetchBlocks() {
+    const { Blocks: BlocksClass } = await import('../blocks/blocks.js');
+    this.#blocks = new BlocksClass(this.#blocksPane, pageState.robotName.value, this.#page.work.level, {
       onChange: () => this.#blocksChanged(),
       toggleBreakpoint: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
@@ -252,30 +252,30 @@ export class Views {
         try {
           const { text: program } = await this.#page.python.ask({ do: 'text', form });
           await this.#page.tryAlone(program, isAsked);
-        } catch (why) {
-          this.#fail(why);
+        } catch (error) {
+          this.#showFailure(error);
         }
       },
-      playTone: this.#page.hear,
+      playTone: this.#page.playTone,
     });
-    this.#teach();
-    this.#pane.dataset['state'] = 'empty';
-    if (this.#isReady) this.#refresh(true);
+    this.#offerTaught();
+    this.#blocksPane.dataset['state'] = 'empty';
+    if (this.#isReady) this.#refreshBlocks(true);
   }
 
   /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').SharedEditor | null} group */
   join(group) {
     if (group === this.#group) return;
     this.#group = group;
-    clearInterval(this.#telling);
-    if (group) this.#telling = window.setInterval(() => group.chooseLine(this.#blocks?.chosenLine ?? 0, this.isBusy), TELL_MS);
-    this.#shown = null;
-    if (this.#isOn) this.#refresh(true);
+    clearInterval(this.#groupTimer);
+    if (group) this.#groupTimer = window.setInterval(() => group.chooseLine(this.#blocks?.chosenLine ?? 0, this.isBusy), GROUP_INTERVAL_MS);
+    this.#shownText = null;
+    if (this.#isOn) this.#refreshBlocks(true);
   }
 
   /** @param {import('../class/together.js').MatePlace[]} places where the others of a group are */
   showMates(places) {
-    this.#mates = places;
+    this.#matePlaces = places;
     if (!this.#isStale()) this.#blocks?.showMates(places);
   }
 
@@ -285,82 +285,82 @@ export class Views {
   }
 
   #isStale() {
-    return this.#shown !== this.#page.editor.text;
+    return this.#shownText !== this.#page.editor.text;
   }
 
-  /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} act */
-  async #again(act) {
+  /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} change */
+  async #undoOrRedo(change) {
     if (this.isBusy) return;
-    await this.#send();
-    act();
-    if (this.#isOn) this.#refresh(true);
+    await this.#sendBlocks();
+    change();
+    if (this.#isOn) this.#refreshBlocks(true);
   }
 
   #blocksChanged() {
-    this.#changes += 1;
-    if (this.#shown === null) return; // those are not the text's
-    this.#pane.dataset['state'] = 'changed';
-    clearTimeout(this.#sending);
-    this.#sending = window.setTimeout(() => this.#send(), 0);
+    this.#changeCount += 1;
+    if (this.#shownText === null) return; // those are not the text's
+    this.#blocksPane.dataset['state'] = 'changed';
+    clearTimeout(this.#sendTimer);
+    this.#sendTimer = window.setTimeout(() => this.#sendBlocks(), 0);
   }
 
   /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
-  async #send() {
-    if (!this.#blocks || this.#shown === null || this.#isSending || !this.#changes) return;
+  async #sendBlocks() {
+    if (!this.#blocks || this.#shownText === null || this.#isSending || !this.#changeCount) return;
     if (this.isBusy) {
-      clearTimeout(this.#sending);
-      this.#sending = window.setTimeout(() => this.#send(), BUSY_MS);
+      clearTimeout(this.#sendTimer);
+      this.#sendTimer = window.setTimeout(() => this.#sendBlocks(), BUSY_PAUSE_MS);
       return;
     }
     this.#isSending = true;
-    const before = this.#page.editor.text;
+    const textBefore = this.#page.editor.text;
     try {
-      if (this.#group) await this.#write(this.#group);
-      else while (this.#changes && this.#shown === before) {
-        this.#changes = 0;
+      if (this.#group) await this.#writeToGroup(this.#group);
+      else while (this.#changeCount && this.#shownText === textBefore) {
+        this.#changeCount = 0;
         const { form, ids } = this.#blocks.read();
-        const whole = JSON.stringify(form);
-        const stands = { before: this.#stand, after: this.#blocks.stand };
-        if (whole === this.#form) { // a block was only moved about
-          this.#stand = stands.after;
-          this.#page.editor.replaceByBlocks(before, stands);
+        const formText = JSON.stringify(form);
+        const stands = { before: this.#shownStand, after: this.#blocks.stand };
+        if (formText === this.#shownForm) { // a block was only moved about
+          this.#shownStand = stands.after;
+          this.#page.editor.replaceByBlocks(textBefore, stands);
           break;
         }
         const answer = await this.#page.python.ask({ do: 'text', form });
-        if (this.#changes || this.#page.editor.text !== before) continue;
-        this.#shown = answer.text;
-        this.#form = whole;
-        this.#stand = stands.after;
+        if (this.#changeCount || this.#page.editor.text !== textBefore) continue;
+        this.#shownText = answer.text;
+        this.#shownForm = formText;
+        this.#shownStand = stands.after;
         this.#blocks.setRanges(ids, answer.places);
         this.#page.editor.replaceByBlocks(answer.text, stands);
         this.#showBreakpoints();
       }
-    } catch (why) {
-      this.#fail(why);
+    } catch (error) {
+      this.#showFailure(error);
     } finally {
       this.#isSending = false;
     }
-    this.#changes = 0;
-    if (this.#isStale()) this.#refresh(true);
+    this.#changeCount = 0;
+    if (this.#isStale()) this.#refreshBlocks(true);
     else this.#showState();
   }
 
   /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').SharedEditor} group */
-  async #write(group) {
+  async #writeToGroup(group) {
     while (this.#blocks) {
-      this.#changes = 0;
+      this.#changeCount = 0;
       const { form, ids } = this.#blocks.read();
-      const whole = JSON.stringify(form);
-      const stands = { before: this.#stand, after: this.#blocks.stand };
-      this.#stand = stands.after;
-      if (whole === this.#form) { // which is no change of the group's
+      const formText = JSON.stringify(form);
+      const stands = { before: this.#shownStand, after: this.#blocks.stand };
+      this.#shownStand = stands.after;
+      if (formText === this.#shownForm) { // which is no change of the group's
         this.#page.editor.replaceByBlocks(this.#page.editor.text, stands);
         return;
       }
-      this.#form = whole;
+      this.#shownForm = formText;
       const answer = await group.writeBlocks(form, ids);
       if (!answer?.is_shown) return;
-      this.#shown = this.#page.editor.text;
+      this.#shownText = this.#page.editor.text;
       this.#blocks.setRanges(ids, answer.places ?? []);
       this.#showBreakpoints();
     }
@@ -369,10 +369,10 @@ export class Views {
   /**
    * Makes the blocks of the text. While somebody types a text that does not parse, the blocks stay
    * as they are, unless `isWanted`.
-   * @param {boolean} isWanted
+   * @param {boolean} isForced
    */
-  async #refresh(isWanted) {
-    this.#isWanted ||= isWanted;
+  async #refreshBlocks(isForced) {
+    this.#isForced ||= isForced;
     if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isOn) return;
     this.#isRefreshing = true;
     try {
@@ -382,77 +382,77 @@ export class Views {
           await this.#settle();
           if (!this.#isStale()) break;
         }
-        const now = this.#page.editor.text;
+        const newText = this.#page.editor.text;
         /** @type {Form & {size: number}} */
-        const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(now));
-        while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
-        if (now !== this.#page.editor.text || group !== this.#group || (group && this.#isTouched)) continue;
-        const isKept = !this.#isWanted && this.#page.editor.hasFocus && this.#shown !== null && hasGrey(form);
-        if (!form.body || isKept) {
+        const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(newText));
+        while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
+        if (newText !== this.#page.editor.text || group !== this.#group || (group && this.#isTouched)) continue;
+        const areBlocksKept = !this.#isForced && this.#page.editor.hasFocus && this.#shownText !== null && hasGrey(form);
+        if (!form.body || areBlocksKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
           return;
         }
-        this.#shown = now;
-        this.#changes = 0;
-        this.#blocks.setGiven(isShippedProgram(now) ? form : null);
+        this.#shownText = newText;
+        this.#changeCount = 0;
+        this.#blocks.setGiven(isShippedProgram(newText) ? form : null);
         this.#blocks.show(form);
-        this.#form = JSON.stringify(this.#blocks.read().form);
-        this.#stand = this.#blocks.stand;
-        if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shown = null;
-        this.#showAll();
+        this.#shownForm = JSON.stringify(this.#blocks.read().form);
+        this.#shownStand = this.#blocks.stand;
+        if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
+        this.#decorateBlocks();
       }
       this.#showState();
-    } catch (why) {
-      this.#fail(why);
+    } catch (error) {
+      this.#showFailure(error);
     } finally {
       this.#isRefreshing = false;
-      this.#isWanted = false;
+      this.#isForced = false;
     }
   }
 
   /** Whether blocks are others than they were shown. */
   get #isTouched() {
-    return this.#shown !== null && JSON.stringify(this.#blocks?.read().form) !== this.#form;
+    return this.#shownText !== null && JSON.stringify(this.#blocks?.read().form) !== this.#shownForm;
   }
 
   /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
   async #settle() {
-    while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
-    while (this.#isSending) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+    while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
+    while (this.#isSending) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
     if (this.#isTouched) {
-      this.#changes ||= 1; // Blockly tells of it a moment later
-      await this.#send();
+      this.#changeCount ||= 1; // Blockly tells of it a moment later
+      await this.#sendBlocks();
     }
     await this.#group?.settle();
   }
 
   /** Blocks that are new have nothing at them yet. */
-  #showAll() {
+  #decorateBlocks() {
     this.#blocks?.showFindings(this.#findings);
     this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.sentence);
-    this.#blocks?.showRunning(this.#running);
-    this.#blocks?.showMates(this.#mates);
+    this.#blocks?.showRunning(this.#runningRanges);
+    this.#blocks?.showMates(this.#matePlaces);
     this.#showBreakpoints();
   }
 
-  /** @param {unknown} why */
-  #fail(why) {
-    this.#note.textContent = bugSentence(why);
+  /** @param {unknown} error */
+  #showFailure(error) {
+    this.#noteElement.textContent = bugSentence(error);
   }
 
-  /** @param {string} note */
-  #showState(note = '') {
-    this.#note.textContent = note;
-    this.#pane.dataset['state'] = this.#isStale() ? 'stale' : 'shown';
+  /** @param {string} notice */
+  #showState(notice = '') {
+    this.#noteElement.textContent = notice;
+    this.#blocksPane.dataset['state'] = this.#isStale() ? 'stale' : 'shown';
   }
 }
 
 /** @param {Form} form */
 function hasGrey(form) {
-  const waiting = [...(form.body ?? [])];
-  for (let block = waiting.pop(); block; block = waiting.pop()) {
+  const pendingBlocks = [...(form.body ?? [])];
+  for (let block = pendingBlocks.pop(); block; block = pendingBlocks.pop()) {
     if (block.kind === 'grey') return true;
-    waiting.push(...block.bodies.flat());
+    pendingBlocks.push(...block.bodies.flat());
   }
   return false;
 }
