@@ -9,7 +9,7 @@ const { Moods } = await import(pathToFileURL(`${process.argv[2]}/virtual/moods.j
 const found = JSON.parse(await text(process.stdin)).map((states) => {
   const moods = new Moods();
   const seen = states.map((state) => {
-    moods.follow(state);
+    moods.followState(state);
     return moods.faceOf(state);
   });
   return { seen, again: states.map((state) => moods.faceOf(state)) };

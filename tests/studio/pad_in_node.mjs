@@ -33,7 +33,7 @@ const key = (kind, name, more = {}) => {
   dispatchEvent(event);
 };
 const does = {
-  offer: (side, driven) => pad.offer(side, driven && { ...driven, tell: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
+  offer: (side, driven) => pad.offerRobot(side, driven && { ...driven, tell: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
   down: (...given) => point('pointerdown', ...given),
   move: (...given) => point('pointermove', ...given),
   up: (...given) => point('pointerup', ...given),

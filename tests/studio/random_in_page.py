@@ -29,7 +29,7 @@ ROUND = """async ({name, forms}) => {
   place.hidden = true;  // nothing is measured
   document.body.append(place);
   const blocks = new Blocks(place, 'tinibot', 'all', {onChange() {}});
-  const found = forms.map((form) => { blocks.show(form); return blocks.read().form; });
+  const found = forms.map((form) => { blocks.show(form); return blocks.readForm().form; });
   place.remove();
   return found;
 }"""

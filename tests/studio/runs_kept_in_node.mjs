@@ -10,11 +10,11 @@ for (const story of JSON.parse(await text(process.stdin))) {
   const runs = new Runs();
   const kept = story.map(([count, length, file]) => {
     const run = new Run({ of: 'real', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
-    runs.begin(run);
+    runs.addRun(run);
     for (let k = 0; k < count; k += 1) run.addRow([k, 'x'.repeat(length)]);
     run.file = 'x'.repeat(file);
     runs.trim(); // at its end
-    return [runs.all.map(({ number }) => number), runs.size, run.size];
+    return [runs.newestFirst.map(({ number }) => number), runs.size, run.size];
   });
   console.log(JSON.stringify(kept));
 }

@@ -109,7 +109,7 @@ const PARTS = {
       const end = chance.of(['stop', 'leave', 'wait']);
       await passes(end === 'wait' ? 4000 : 0);
       simulator.stop();
-      if (end === 'leave') simulator.leave();
+      if (end === 'leave') simulator.leaveRun();
       await passes(100);
       if (end === 'leave' && (simulator.state || simulator.trace.length || simulator.phase !== 'off')) throw new Error('it was left, and is seen again');
       return { ends: [end, simulator.failure ? 'failure' : simulator.phase], seen: [notes, simulator.phase] };
@@ -125,7 +125,7 @@ const PARTS = {
     playsNavigator({});
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
-    const { storedText } = await page.load('page/kept.js');
+    const { loadText } = await page.load('page/kept.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
@@ -215,8 +215,8 @@ const PARTS = {
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
       over = chance.of(['', 'kept', 'erased']);
       await passes(5000);
-      if (over && (!join.hidden || late > 1 || storedText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
-      if (does('empty') !== Number(over === 'erased') || Boolean(storedText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${storedText('tiniscript.pupil_before')}`);
+      if (over && (!join.hidden || late > 1 || loadText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
+      if (does('empty') !== Number(over === 'erased') || Boolean(loadText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${loadText('tiniscript.pupil_before')}`);
       return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
@@ -286,7 +286,7 @@ const PARTS = {
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
+      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -303,7 +303,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
     const marked = [];
@@ -409,7 +409,7 @@ const PARTS = {
     const { LINK } = await page.load('page/words.js');
     let notes = [];
     let began_ms = 0;
-    const speech = { isHeld: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeld]) };
+    const speech = { isHeldByStop: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeldByStop]) };
     const stopping = new StopNotice(speech);
     const acts = {
       stop: () => stopping.begin(),
@@ -429,7 +429,7 @@ const PARTS = {
       if (end === 'confirm') stopping.confirm('SEQUENCE');
       if (end === 'over') notes.push(stopping.end()());
       if (isGood) await passes(2 * LINK.confirm_ms);
-      const seen = [notes, stopping.isOpen, speech.isHeld];
+      const seen = [notes, stopping.isOpen, speech.isHeldByStop];
       stopping.forget(); // something is started
       return { ends: [end], seen };
     };
@@ -447,8 +447,8 @@ const PARTS = {
     const page = freshPage({
       hasSerial: true,
       choosePort: () => failed('port', 'port'),
-      firmwares: async () => [{ board: 'uno' }],
-      firmwareOf: (which, board) => {
+      fetchFirmwares: async () => [{ board: 'uno' }],
+      loadFirmware: (which, board) => {
         notes.push([which.name ?? structuredClone(which), board, page.byId('flash_progress').value]);
         return failed('firmware', 'data');
       },
@@ -542,7 +542,7 @@ const PARTS = {
       if (answer && answer.image !== `of ${pageState.programText.value}`) throw new Error('it is said of another text');
       notes.push(answer?.image);
     });
-    checking.ready();
+    checking.markReady();
     let open = 0;
     return async (chance, isGood) => {
       breaks = () => !isGood && chance() < 0.3;
@@ -592,7 +592,7 @@ const PARTS = {
 
   // A check of a lesson, which may be ended at any time.
   async lessons() {
-    const page = freshPage({ replaceOptions() {}, pictureOption() {}, worldPicture() {} });
+    const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
@@ -661,7 +661,7 @@ const PARTS = {
       asking.send = async () => {
         const sent = asking.requests.splice(0);
         await later(isGood ? 5 : chance.below(300));
-        for (const { id, what } of sent) if (!isOver) asking.take({ id, ok: what });
+        for (const { id, what } of sent) if (!isOver) asking.takeNews({ id, ok: what });
       };
       for (let k = 0; k < 6; k += 1) {
         open += 1;
@@ -851,8 +851,8 @@ const PARTS = {
     let failure = '';
     let ways = [];
     const page = freshPage({
-      replaceOptions() {}, pictureOption() {}, symbolPicture() {}, hasSerial: false, choosePort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      hostPorts: async () => [],
+      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      fetchPorts: async () => [],
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -979,8 +979,8 @@ const PARTS = {
     let started = 0;
     let robot = null;
     const page = freshPage({
-      replaceOptions() {}, pictureOption() {}, symbolPicture() {}, hasSerial: false, choosePort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      hostPorts: async () => [],
+      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      fetchPorts: async () => [],
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -1116,7 +1116,7 @@ const PARTS = {
         if (!isGood) await passes(chance.below(300));
       }
       if (!isGood) return { ends: [count > 1 ? 'several' : 'one'], seen: [] };
-      own.earlier = [];
+      own.earlierWorlds = [];
       own.storeTexts('tinibot');
       await passes(2000);
       return { ends: ['good'], seen: loadWorldTexts().newest };
@@ -1218,7 +1218,7 @@ const PARTS = {
         run: () => page.byId('run').click(),
         opens: () => page.byId('my_programs').click(),
         new: () => page.byId('new').click(),
-        lesson: () => programs.replace({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
+        lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
         older: () => {
           page.byId('my_programs').click();
           chance.of([...page.byId('versions').children, null])?.children.at(-1).click();
@@ -1297,7 +1297,7 @@ const PARTS = {
         now_ms += chance.below(900);
         const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null, rivals: world.rivals.map((each) => [each.x_cm, each.y_cm, each.heading]),
           score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
-        arena.follow(state);
+        arena.followState(state);
         if (!isGood && chance() < 0.3) arena.showBubble(`${chance.below(9)}`, now_ms);
         if (!isGood && chance() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
         arena.draw(state);
@@ -1329,7 +1329,7 @@ const PARTS = {
 
   // The steps of the lesson that is chosen, after others that came late or not at all.
   async steps() {
-    const page = freshPage({ replaceOptions() {}, pictureOption() {}, worldPicture() {} });
+    const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
@@ -1493,7 +1493,7 @@ const PARTS = {
         acts[end](chance);
         await passes(chance.below(300));
         if (page.byId('record_play').hidden) continue;
-        const told = runs.all[0].rows;
+        const told = runs.newestFirst[0].rows;
         if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
       }
       return { ends: [end], seen: isGood && [...own] };
@@ -1708,7 +1708,7 @@ const PARTS = {
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, pictureOption() {}, dialPicture() {},
+      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -1737,7 +1737,7 @@ const PARTS = {
       return PROGRAM;
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offer() {} } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     return async (chance, isGood) => {

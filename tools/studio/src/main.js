@@ -11,7 +11,7 @@ import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { pictureOption, robotPicture } from './page/pictures.js';
+import { makePictureOption, makeRobotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { holdsProgram } from './programs/links.js';
@@ -93,7 +93,7 @@ const views = new Views({
     element('side_virtual', HTMLButtonElement).click();
     phone.show('robot');
   }),
-  playTone: (hertz) => simulatorPanel.hear(hertz),
+  playTone: (hertz) => simulatorPanel.playTone(hertz),
 });
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
@@ -101,11 +101,11 @@ const simulatorPanel = new SimulatorPanel({
   whenCompiled: () => checking.whenChecked(),
   put: ({ text: program, robot }) => {
     element('side_virtual', HTMLButtonElement).click();
-    if (program !== work.text || robot !== work.robot) programs.replace({ text: program, robot, name: '' });
+    if (program !== work.text || robot !== work.robot) programs.replaceProgram({ text: program, robot, name: '' });
     phone.show('robot');
   },
 });
-const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.picture() });
+const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.makePicture() });
 
 const recorder = new Recorder({ runs: simulatorPanel.runs, play: (run) => simulatorPanel.playAgain(run) });
 const runningPlace = new RunningPlace();
@@ -119,7 +119,7 @@ const robotPanel = new RobotPanel({
 const lessons = new Lessons({
   python,
   work,
-  put: (program) => programs.replace(program),
+  put: (program) => programs.replaceProgram(program),
   exchange: (program) => {
     programs.storeVersion();
     openProgram(program);
@@ -141,7 +141,7 @@ openFirstScreen(entryFailure !== '' || holdsProgram(location.hash), !('class' in
 if (storedWork) programs.storeVersion();
 new OwnWindow();
 new Start({
-  putProgram: (program) => programs.replace(program),
+  putProgram: (program) => programs.replaceProgram(program),
   runInWorld: (world) => {
     phone.show('robot');
     return simulatorPanel.run(world);
@@ -160,8 +160,8 @@ new Start({
 });
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
-    panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replace({ ...program, name: '' }),
-    newestRun: () => simulatorPanel.newestRun(), openRun: (file) => simulatorPanel.openRun(file),
+    panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
+    newestRun: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }
 
@@ -203,8 +203,8 @@ python.listen({
 });
 python.ready.then(() => {
   isReady = true;
-  checking.ready();
-  views.ready();
+  checking.markReady();
+  views.markReady();
   if (isStart()) views.fetchAhead();
 });
 
@@ -223,7 +223,7 @@ function repair(finding) {
 
 function showRobots() {
   robotSelect.replaceChildren(
-    ...ROBOTS.map((robot) => pictureOption(labelOf(robot.labels), robot.name, robotPicture(robot))),
+    ...ROBOTS.map((robot) => makePictureOption(labelOf(robot.labels), robot.name, makeRobotPicture(robot))),
   );
   robotSelect.value = work.robot;
 }
@@ -254,7 +254,7 @@ function openProgram(program) {
   pageState.note.set('');
   if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
-  views.begin();
+  views.beginProgram();
   editor.replace(program.text);
   simulatorPanel.beginAnew();
   remember();
@@ -288,7 +288,7 @@ onFileChosen('file', async (file) => {
     pageState.note.set(text('not_opened', { name: file.name, why: messageWithFix(answer) }));
     return;
   }
-  programs.replace({ text: answer.text, robot: work.robot, name: file.name });
+  programs.replaceProgram({ text: answer.text, robot: work.robot, name: file.name });
   pageState.note.set(text('opened', { name: file.name }));
 });
 
@@ -320,4 +320,4 @@ function hasItsOwnUndo(target) {
 }
 
 registerServiceWorker();
-programs.openLink();
+programs.openAddressProgram();

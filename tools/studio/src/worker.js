@@ -14,7 +14,7 @@ const moduleProgress = new Progress({ onWait: reportWait });
 const advanceModule = () => moduleProgress.advance();
 // What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
 const reportError = (/** @type {unknown} */ error) => postMessage({ id: 0, error: String(error) });
-self.fetch = (what, options) => watchedFetch(what, { ...options, onWait: reportWait, onProgress: advanceModule, onFail: reportError }, plainFetch);
+self.fetch = (resource, options) => watchedFetch(resource, { ...options, onWait: reportWait, onProgress: advanceModule, onFail: reportError }, plainFetch);
 
 const SOURCE_LANGUAGE = languages[0]?.[0] ?? ''; // the language that is always there
 

@@ -11,7 +11,7 @@ import { setTonePlayer } from './fields.js';
 import { insert } from './insert.js';
 import { pictureOf } from './picture.js';
 import { Search } from './search.js';
-import { blocklyOptions } from './styles.js';
+import { getOptions } from './styles.js';
 import { findItems, levelOf, makeToolbox } from './toolbox.js';
 import { RunFollower } from './sight.js';
 import { makeZoomButtons } from './zoom.js';
@@ -43,7 +43,7 @@ const MOST_KNOWN_STACKS = 200; // stacks whose places are known
 export class Blocks {
   #container;
   #listener;
-  #options = blocklyOptions();
+  #options = getOptions();
   /** @type {Blockly.WorkspaceSvg} */
   #workspace;
   /** @type {Level} */
@@ -80,7 +80,7 @@ export class Blocks {
   /** @type {SVGElement[]} */
   #mateMarks = [];
   /** Has what runs be seen. @type {RunFollower | null} */
-  #sight = null;
+  #runFollower = null;
 
   /**
    * @param {HTMLElement} container
@@ -106,7 +106,7 @@ export class Blocks {
     for (const eventName of ['pointerdown', 'wheel', 'keydown']) {
       container.addEventListener(eventName, () => {
         this.#isTouched = true;
-        this.#sight?.leave();
+        this.#runFollower?.leaveAlone();
       }, { capture: true, passive: true });
     }
   }
@@ -228,7 +228,7 @@ export class Blocks {
       this.#zoomButtons?.remove();
       this.#zoomButtons = makeZoomButtons(workspace, START_SCALE);
       this.#container.append(this.#zoomButtons);
-      this.#sight = new RunFollower(workspace);
+      this.#runFollower = new RunFollower(workspace);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
@@ -259,16 +259,16 @@ export class Blocks {
   }
 
   /** The line of the text whose block has the focus, or 0. */
-  get chosenLine() {
+  get focusedLine() {
     const id = this.hasFocus || this.isOpen || this.isBusy ? this.#focusedBlock()?.id : '';
     return this.#places.find(([blockId]) => blockId === id)?.[1][0] ?? 0;
   }
 
-  /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').MatePlace[]} places */
-  showMates(places) {
+  /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').MatePlace[]} matePlaces */
+  showMates(matePlaces) {
     const { createSvgElement } = Blockly.utils.dom;
     for (const mark of this.#mateMarks) mark.remove();
-    this.#mateMarks = places.flatMap(({ line, color, said }) => {
+    this.#mateMarks = matePlaces.flatMap(({ line, color, said: label }) => {
       const block = this.#workspace.getBlockById(this.#places.find(([, [firstLine]]) => firstLine === line)?.[0] ?? '');
       if (!block) return [];
       const { width, height } = block.getHeightWidth();
@@ -276,7 +276,7 @@ export class Blocks {
       const mark = createSvgElement('g', { class: 'mate_mark' }, block.getSvgRoot());
       mark.style.setProperty('--mate', color);
       createSvgElement('rect', { x: -5, y: 0, width: 5, height: bounds.getHeight() || height }, mark);
-      createSvgElement('text', { x: width + 8, y: 18 }, mark).textContent = said;
+      createSvgElement('text', { x: width + 8, y: 18 }, mark).textContent = label;
       return [mark];
     });
   }
@@ -318,8 +318,8 @@ export class Blocks {
   }
 
   /** No lesson takes away what another one has offered. @param {Taught} taught what the open lesson speaks of */
-  setTaught({ offered, fresh }) {
-    this.#taughtBlocks = [...new Set([...this.#taughtBlocks, ...offered])];
+  setTaught({ offered: offeredKinds, fresh }) {
+    this.#taughtBlocks = [...new Set([...this.#taughtBlocks, ...offeredKinds])];
     this.#newBlocks = fresh;
     this.#updateToolbox();
   }
@@ -353,7 +353,7 @@ export class Blocks {
   }
 
   /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */
-  picture() {
+  makePicture() {
     return pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox());
   }
 
@@ -363,7 +363,7 @@ export class Blocks {
     this.#search?.fitWidth();
     if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#scrollToBeginning();
-    this.#sight?.keepInView();
+    this.#runFollower?.keepInView();
     for (const [id] of this.#places) if (!this.#placeBubble(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
 
@@ -373,12 +373,12 @@ export class Blocks {
   }
 
   /** What is shown next has been brought by the page, so nobody has used its blocks. @param {Form | null} form null where somebody made it */
-  setGiven(form) {
+  setGivenBlocks(form) {
     this.#givenBlocks = form ? piecesIn(blocksOf(form)) : [];
   }
 
   /** The next blocks are of another program, which is seen from its beginning. */
-  begin() {
+  beginProgram() {
     this.#isTouched = false;
     this.#stackPlaces.clear();
     this.#nextPlaces = null;
@@ -400,7 +400,7 @@ export class Blocks {
     this.#faultAt = { id: '', said: '' };
     const ids = showForm(this.#workspace, form, knownStacks);
     labelCalls(this.#workspace);
-    this.setRanges(ids, flattened(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
+    this.setRanges(ids, flatten(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#noteUse(form);
     this.#markLoose();
     const block = focusIndex === null ? null : this.#workspace.getBlockById(ids[Math.min(focusIndex, ids.length - 1)] ?? '');
@@ -425,7 +425,7 @@ export class Blocks {
   }
 
   /** @returns {{form: Form, ids: string[]}} */
-  read() {
+  readForm() {
     makeRoom(this.#workspace);
     const result = formOf(this.#workspace);
     this.#noteUse(result.form);
@@ -433,18 +433,18 @@ export class Blocks {
     return result;
   }
 
-  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').StandText} */
-  get stand() {
+  /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').LayoutText} */
+  get layoutText() {
     /** @type {import('./form.js').StackPlaces} */
     const stackPlaces = new Map();
     keepPlaces(this.#workspace, stackPlaces);
     return JSON.stringify([...stackPlaces].sort(([a], [b]) => (a < b ? -1 : 1)));
   }
 
-  /** Has the next blocks stand there again. @param {import('../writing/editor.js').StandText} stand */
-  set stand(stand) {
+  /** Has the next blocks stand there again. @param {import('../writing/editor.js').LayoutText} layoutText */
+  set layoutText(layoutText) {
     /** @type {[string, {x: number, y: number}[]][]} */
-    const stackPlaces = JSON.parse(stand);
+    const stackPlaces = JSON.parse(layoutText);
     this.#nextPlaces = new Map(stackPlaces.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
   }
 
@@ -460,7 +460,7 @@ export class Blocks {
    * @param {Range[]} places
    */
   setRanges(ids, places) {
-    this.#places = ids.map((id, k) => [id, places[k] ?? [0, 0, 0, 0]]);
+    this.#places = ids.map((id, index) => [id, places[index] ?? [0, 0, 0, 0]]);
   }
 
   /** Offers the names that the program has. @param {Form} form */
@@ -468,13 +468,13 @@ export class Blocks {
     const blocks = blocksOf(form);
     const wordsOfKind = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
     const valueCounts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
-    const used = { names: wordsOfKind('assign'), words: [...valueCounts].sort() };
+    const namesInUse = { names: wordsOfKind('assign'), words: [...valueCounts].sort() };
     const pieces = piecesIn(blocks);
     const newlyTried = [...new Set(pieces)].filter((piece) => !this.#triedBlocks.has(piece) && countOf(pieces, piece) > countOf(this.#givenBlocks, piece));
     for (const piece of newlyTried) this.#triedBlocks.add(piece);
     const isNewTried = newlyTried.some((piece) => this.#newBlocks.includes(piece));
-    if (!isNewTried && JSON.stringify(used) === JSON.stringify(this.#usedNames)) return;
-    this.#usedNames = used;
+    if (!isNewTried && JSON.stringify(namesInUse) === JSON.stringify(this.#usedNames)) return;
+    this.#usedNames = namesInUse;
     if (!this.#workspace.isDragging()) this.#updateToolbox();
   }
 
@@ -497,7 +497,7 @@ export class Blocks {
       for (const block of this.#workspace.getAllBlocks(false)) {
         if (block.isShadow()) continue;
         const id = block.type === 'program' ? '' : block.id;
-        block.setWarningText(messages.get(id)?.map(wrapped).join('\n\n') ?? null);
+        block.setWarningText(messages.get(id)?.map(wrapLines).join('\n\n') ?? null);
         if (wrongIds.has(id)) block.addClass('wrong');
         else block.removeClass('wrong');
       }
@@ -565,7 +565,7 @@ export class Blocks {
   showRunning(ranges) {
     const ids = ranges.map(({ line, column }) => this.#blockAt(line, column) ?? '');
     this.#setMarked('running', ids);
-    this.#sight?.showRunning(ids);
+    this.#runFollower?.showRunning(ids);
   }
 
   /** Gives a look to these blocks, and to no others. @param {string} className @param {string[]} ids */
@@ -594,9 +594,9 @@ export class Blocks {
     this.showFindings(this.#findings);
   }
 
-  /** @param {{line: number, column: number}} place */
-  goTo(place) {
-    const block = this.#workspace.getBlockById(this.#blockAt(place.line, place.column) ?? '');
+  /** @param {{line: number, column: number}} position */
+  goTo(position) {
+    const block = this.#workspace.getBlockById(this.#blockAt(position.line, position.column) ?? '');
     if (!block) return;
     this.#isTouched = true;
     this.#workspace.centerOnBlock(block.id);
@@ -617,8 +617,8 @@ export class Blocks {
 }
 
 /** @param {import('./form.js').FormBlock[]} blocks @returns {import('./form.js').FormBlock[]} */
-function flattened(blocks) {
-  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(flattened)]);
+function flatten(blocks) {
+  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(flatten)]);
 }
 
 /** Blockly brings what is touched to the front: smaller piles that it would hide stay before it. @param {Blockly.WorkspaceSvg} workspace */
@@ -634,7 +634,7 @@ function keepSmallStacksSeen(workspace) {
 }
 
 /** @param {string} message */
-function wrapped(message) {
+function wrapLines(message) {
   return Blockly.utils.string.wrap(message, MOST_TIP_CHARACTERS);
 }
 
@@ -676,7 +676,7 @@ function withoutSound(make) {
 
 /** @param {Form} form @returns {import('./form.js').FormBlock[]} */
 function blocksOf(form) {
-  return flattened([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+  return flatten([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
 }
 
 /** @param {string[]} pieces @param {string} wantedPiece */

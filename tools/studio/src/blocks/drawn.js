@@ -38,7 +38,7 @@ export class Pictures {
    * @param {string} owner @param {Program} program @param {(address: string) => void} onDone
    */
   request(owner, program, onDone) {
-    this.#pendingRequests.set(owner, { owner: owner, program, onDone });
+    this.#pendingRequests.set(owner, { owner, program, onDone });
     this.#drawAll();
   }
 

@@ -101,7 +101,7 @@ function itemsOf(workspace) {
   const topBlocks = topBlocksOf(workspace);
   const program = stackFrom(topBlocks.find((block) => block.type === 'program')?.getNextBlock() ?? null);
   const shownBlocks = SHOWN_BLOCKS.get(workspace) ?? { program: [], hats: new Map(), earlyDefs: new Set() };
-  const indexOfId = new Map(shownBlocks.program.map((id, k) => [id, k]));
+  const indexOfId = new Map(shownBlocks.program.map((id, index) => [id, index]));
   const order = [...shownBlocks.hats.keys()];
   const hats = topBlocks.filter(isHat).sort((a, b) => order.indexOf(a.id) - order.indexOf(b.id));
   return inTextOrder(program.map(itemOf), hats.map((hat) => {
@@ -116,9 +116,9 @@ function itemsOf(workspace) {
 
 /** Whether somebody has put a hat where it stands, since it was made. @param {Blockly.Block} hat */
 function isMoved(hat) {
-  const place = SHOWN_BLOCKS.get(hat.workspace)?.hats.get(hat.id);
+  const shownPlace = SHOWN_BLOCKS.get(hat.workspace)?.hats.get(hat.id);
   const { x, y } = hat.getRelativeToSurfaceXY();
-  return !place || Math.abs(place.x - x) > 1 || Math.abs(place.y - y) > 1;
+  return !shownPlace || Math.abs(shownPlace.x - x) > 1 || Math.abs(shownPlace.y - y) > 1;
 }
 
 /** @param {Blockly.Block} block @returns {import('./hats.js').TextItem} */
@@ -165,8 +165,8 @@ export function keepPlaces(workspace, stackPlaces) {
  * @returns {StackPlaces}
  */
 export function knownPlaces(workspace, stackPlaces) {
-  const { left, top, width, height } = workspace.getMetricsManager().getViewMetrics(true);
-  const view = new Blockly.utils.Rect(top, top + height - CORNER_UNITS, left, left + width - CORNER_UNITS);
+  const { left: viewLeft, top: viewTop, width, height } = workspace.getMetricsManager().getViewMetrics(true);
+  const view = new Blockly.utils.Rect(viewTop, viewTop + height - CORNER_UNITS, viewLeft, viewLeft + width - CORNER_UNITS);
   const presentNames = new Set([...namesOf(hatsOf(workspace)), ...topBlocksOf(workspace).filter(isLoose).map((top) => stackName(top))]);
   return new Map([...stackPlaces].map(([name, places]) => [name, places.filter(({ x, y }) => presentNames.has(name) || view.contains(x, y))]));
 }
@@ -223,23 +223,23 @@ function blockOf(block, ids) {
     bodies: (isHat(block) ? [block.getNextBlock()] : firstInside).map((first) => bodyOf(first, ids)),
     note,
     is_apart: Boolean(data.isApart),
-    said: word === linesData.word ? data.said.map((/** @type {string} */ line, /** @type {number} */ k) => (lineOf(block, values, k) === linesData.lines[k] ? line : '')) : [],
+    said: word === linesData.word ? data.said.map((/** @type {string} */ line, /** @type {number} */ lineIndex) => (lineOf(block, values, lineIndex) === linesData.lines[lineIndex] ? line : '')) : [],
     comment: isNoteSame ? data.comment : '',
     is_behind: Boolean(data.isBehind),
   };
 }
 
-/** What a line of a block is made of besides its word. @param {Blockly.Block} block @param {Value[]} values @param {number} k */
-function lineOf(block, values, k) {
-  return JSON.stringify(block.type === 'if' ? values[k] : values) ?? '';
+/** What a line of a block is made of besides its word. @param {Blockly.Block} block @param {Value[]} values @param {number} lineIndex */
+function lineOf(block, values, lineIndex) {
+  return JSON.stringify(block.type === 'if' ? values[lineIndex] : values) ?? '';
 }
 
 /** Keeps what the lines of a block are in the text, as long as nobody changes them. @param {Blockly.Block} block @param {FormBlock} form */
-function remember(block, { word, is_apart, is_behind, said = [], comment }) {
+function remember(block, { word, is_apart, is_behind, said: oldLines = [], comment }) {
   const values = valuesOf(block);
   block.data = JSON.stringify({
-    word, isApart: is_apart, isBehind: is_behind, said, comment,
-    was: { word: String(wordOnBlock(block) ?? word), note: block.getCommentText() ?? '', lines: said.map((_, k) => lineOf(block, values, k)) },
+    word, isApart: is_apart, isBehind: is_behind, said: oldLines, comment,
+    was: { word: String(wordOnBlock(block) ?? word), note: block.getCommentText() ?? '', lines: oldLines.map((_, k) => lineOf(block, values, k)) },
   });
 }
 
@@ -402,7 +402,7 @@ function* makingSteps(form, makeBlock, ids) {
     } else hats.push([block, programIds.length]);
   }
   const loose = [];
-  for (const { body, value } of form.loose) loose.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : valueBlock(value, makeBlock));
+  for (const { body, value } of form.loose) loose.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : makeValueBlock(value, makeBlock));
   SHOWN_BLOCKS.set(program.workspace, { program: programIds, hats: new Map(), earlyDefs: findEarlyDefs(form.body) });
   return { program, hats, loose };
 }
@@ -417,8 +417,8 @@ function placeTopBlocks(workspace, { program, hats, loose }, stackPlaces) {
   const placesLeft = new Map([...stackPlaces].map(([name, places]) => [name, [...places]]));
   const shownBlocks = SHOWN_BLOCKS.get(workspace);
   program.moveTo(new Blockly.utils.Coordinate(CORNER_UNITS, CORNER_UNITS));
-  for (const [k, name] of namesOf(hats.map(([hat]) => hat)).entries()) {
-    const [hat, blocksBefore] = /** @type {TopBlocks['hats'][number]} */ (hats[k]);
+  for (const [index, name] of namesOf(hats.map(([hat]) => hat)).entries()) {
+    const [hat, blocksBefore] = /** @type {TopBlocks['hats'][number]} */ (hats[index]);
     const knownPlace = placesLeft.get(name)?.shift();
     if (knownPlace) hat.moveTo(knownPlace);
     const { x, y } = hat.getRelativeToSurfaceXY();
@@ -542,7 +542,7 @@ function putValue(value, connection, makeBlock) {
   } else if (value.length === 1 && (operation === 'TRUE' || operation === 'FALSE')) {
     connection.setShadowState({ type: 'truth', fields: { WORD: operation } });
   } else {
-    const block = valueBlock(value, makeBlock);
+    const block = makeValueBlock(value, makeBlock);
     if (block?.outputConnection) connection.connect(block.outputConnection);
   }
 }
@@ -552,7 +552,7 @@ function putValue(value, connection, makeBlock) {
  * @param {MakeBlock} makeBlock
  * @returns {Blockly.BlockSvg | null}
  */
-function valueBlock(value, makeBlock) {
+function makeValueBlock(value, makeBlock) {
   /** @type {Value[]} */
   const plainValues = []; // beside the blocks: what a plain value is, to be put as such
   /** @type {(Blockly.BlockSvg | null)[]} */

@@ -37,10 +37,10 @@ export const DEF = {
   /** @this {any} @param {string[]} names */
   setNames(names) {
     const input = this.getInput('NAMES');
-    for (let k = names.length; this.getField(`P${k}`); k += 1) input.removeField(`P${k}`);
-    names.forEach((name, k) => {
-      if (this.getField(`P${k}`)) this.setFieldValue(name, `P${k}`);
-      else input.insertFieldAt(k, new NameField(name), `P${k}`);
+    for (let index = names.length; this.getField(`P${index}`); index += 1) input.removeField(`P${index}`);
+    names.forEach((name, index) => {
+      if (this.getField(`P${index}`)) this.setFieldValue(name, `P${index}`);
+      else input.insertFieldAt(index, new NameField(name), `P${index}`);
     });
   },
 

@@ -43,7 +43,7 @@ export class Piano {
   /** @param {number} chosenKey */
   #drawKeys(chosenKey) {
     const names = text('notes').split(' ');
-    const keys = Array.from({ length: OCTAVE + 1 }, (_, k) => this.#firstKey + k);
+    const keys = Array.from({ length: OCTAVE + 1 }, (_, offset) => this.#firstKey + offset);
     this.#keysElement.replaceChildren(...keys.map((key) => {
       const isWhite = WHITE_KEYS.includes(key % OCTAVE);
       const keyButton = makeButton('', () => this.#onChoose(hertzOfKey(key)), isWhite ? keyName(key, names) : '');

@@ -47,7 +47,7 @@ function labelOfValue(value) {
   for (const [operation, operand] of value) {
     const kind = kindOf(operation);
     const count = KINDS[kind]?.values.length ?? 0;
-    const innerTexts = stack.splice(stack.length - count).map(({ text: said }) => said);
+    const innerTexts = stack.splice(stack.length - count).map(({ text }) => text);
     stack.push(operation === 'NUMBER' ? { text: operand, colour: COLOURS['numbers'] ?? '' } : labelOf(kind, operand || operation, innerTexts));
   }
   return stack.pop() ?? { text: GAP, colour: '' };
@@ -63,7 +63,7 @@ function kindOf(word) {
 export function labelOfBlock({ kind, word, values }) {
   const placeLabels = values.map((value) => labelOfValue(value));
   if (!kind) return placeLabels[0] ?? { text: '', colour: '' };
-  return labelOf(kind === 'set' && !deviceLabel(word) ? 'call' : kind, word, placeLabels.map(({ text: said }) => said));
+  return labelOf(kind === 'set' && !deviceLabel(word) ? 'call' : kind, word, placeLabels.map(({ text }) => text));
 }
 
 /**
@@ -78,7 +78,7 @@ export function labelOfLine(line) {
   const argumentMatches = argumentText.split(',').map((part) => /^\s*(-?\d+(?:\.\d+)?)\s*(CM|DEG)?\s*$/i.exec(part));
   const unit = argumentMatches[0]?.[2]?.toUpperCase() ?? '';
   /** @type {Value[]} */
-  const values = argumentMatches.map((part, k) => (part ? [['NUMBER', part[1] ?? '']] : k === 0 && /^\s*FOREVER\b/i.test(argumentText) ? [['FOREVER', '']] : []));
+  const values = argumentMatches.map((part, index) => (part ? [['NUMBER', part[1] ?? '']] : index === 0 && /^\s*FOREVER\b/i.test(argumentText) ? [['FOREVER', '']] : []));
   return labelOfBlock({ kind, word: `${word.toUpperCase()} ${unit}`.trim(), values }).text;
 }
 

@@ -57,7 +57,7 @@ export class Checker extends Blockly.ConnectionChecker {
  * @returns {Blockly.Field | null} what stands before its values
  */
 function makeFirstField(block, blockKind) {
-  if (blockKind.words.length) return optionsField(blockKind.words.map((word) => [blockLabel(word), word]));
+  if (blockKind.words.length) return makeOptionsField(blockKind.words.map((word) => [blockLabel(word), word]));
   if (blockKind.field === 'name') return new NameField('X');
   if (blockKind.field === 'line') return new LineField('');
   if (blockKind.field) return new DeviceField(blockKind.field);
@@ -65,7 +65,7 @@ function makeFirstField(block, blockKind) {
 }
 
 /** @param {string[][]} rows */
-function optionsField(rows) {
+function makeOptionsField(rows) {
   return new Blockly.FieldDropdown(/** @type {[string, string][]} */ (rows));
 }
 
@@ -76,8 +76,8 @@ class DeviceField extends Blockly.FieldDropdown {
     /** @this {any} */
     super(function () {
       const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
-      const value = /** @type {any} */ (this).kept;
-      if (value && !rows.some(([, name]) => name === value)) rows.push([value, value]);
+      const currentValue = /** @type {any} */ (this).kept;
+      if (currentValue && !rows.some(([, name]) => name === currentValue)) rows.push([currentValue, currentValue]);
       return rows.length ? rows : [['?', '?']];
     });
   }
@@ -139,7 +139,7 @@ function appendMessage(block, message, partAt, kindOf, isFolded = false, isBroke
 }
 
 /** @param {Blockly.Field} field @param {string} name */
-function nameField(field, name) {
+function setFieldName(field, name) {
   field.name = name;
   return field;
 }
@@ -177,8 +177,8 @@ function buildBlock(block, kind, blockKind) {
   if (kind === 'set') firstWordField?.setValidator((word) => fillPlaces(block, kind, blockKind.values, word));
   let valueIndex = 0;
   appendMessage(block, blockLabel(kind), (number) => {
-    if (firstWordField && number === 1) return nameField(firstWordField, 'WORD');
-    if (unit && number === 3) return nameField(unit, 'UNIT');
+    if (firstWordField && number === 1) return setFieldName(firstWordField, 'WORD');
+    if (unit && number === 3) return setFieldName(unit, 'UNIT');
     return `V${valueIndex++}`;
   }, (name) => blockKind.values[Number(name.slice(1))] ?? 'any', !blockKind.gives, isNarrow && FOLDED_KINDS.includes(kind));
   if (arrow) block.inputList.find(({ fieldRow }) => fieldRow.includes(/** @type {Blockly.Field} */ (firstWordField)))?.insertFieldAt(0, arrow);
@@ -205,13 +205,13 @@ function fillPlaces(block, kind, values, word = String(block.getFieldValue('WORD
   values.forEach((valueKind, index) => {
     const { sample } = rangeOf(kind, word, index);
     const device = kind === 'set' ? devicesOfRole('actuator').find((candidate) => candidate.text === word) : undefined;
-    const value = valueKind === 'truth' || device?.is_yes_no ? truthShadow() : { type: 'number', fields: { WORD: Number(sample) } };
+    const value = valueKind === 'truth' || device?.is_yes_no ? makeTruthShadow() : { type: 'number', fields: { WORD: Number(sample) } };
     const connection = block.getInput(`V${index}`)?.connection;
     if (connection?.getShadowState()?.type !== value.type) connection?.setShadowState(value);
   });
 }
 
-function truthShadow() {
+function makeTruthShadow() {
   return { type: 'truth', fields: { WORD: 'TRUE' } };
 }
 
@@ -240,7 +240,7 @@ const IF = {
     for (let k = 0; k < arms; k += 1) {
       if (this.getInput(`V${k}`)) continue;
       appendMessage(this, blockLabel(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
-      this.getInput(`V${k}`).connection.setShadowState(truthShadow());
+      this.getInput(`V${k}`).connection.setShadowState(makeTruthShadow());
       this.appendStatementInput(`B${k}`);
       if (this.getInput('ELSE')) {
         for (const name of [`V${k}`, `B${k}`]) this.moveInputBefore(name, 'ELSE');
@@ -304,7 +304,7 @@ export function defineBlocks() {
   Blockly.Blocks['program'] = {
     /** @this {Blockly.Block} */
     init() {
-      this.appendDummyInput().appendField(optionsField(['SI', 'SB', 'PING'].map((word) => [blockLabel(word), word])), 'WORD');
+      this.appendDummyInput().appendField(makeOptionsField(['SI', 'SB', 'PING'].map((word) => [blockLabel(word), word])), 'WORD');
       this.setNextStatement(true);
       this.setDeletable(false);
       this.setMovable(false); // what is dragged is all that is seen
@@ -322,14 +322,14 @@ export function defineBlocks() {
         markNew(this, kind);
         if (kind === 'def') /** @type {any} */ (this).addNames();
         this.setTooltip(tipOf(kind));
-        if (blockKind.field === 'sensor' || blockKind.field === 'actuator') this.setTooltip(() => deviceTip(this));
+        if (blockKind.field === 'sensor' || blockKind.field === 'actuator') this.setTooltip(() => tipOfDevice(this));
       },
     };
   }
 }
 
 /** @param {Blockly.Block} block of a device */
-function deviceTip(block) {
+function tipOfDevice(block) {
   const name = block.getFieldValue('WORD');
   const device = [...devicesOfRole('sensor'), ...REMOTE, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
   const label = device && `${name}: ${labelOf(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;

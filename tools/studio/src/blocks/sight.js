@@ -38,7 +38,7 @@ export class RunFollower {
   }
 
   /** Somebody is at the blocks: what they see stays until the run is over. */
-  leave() {
+  leaveAlone() {
     this.#isLeftAlone = this.#runningIds.length > 0;
     if (this.#isLeftAlone) this.#viewBefore = null;
   }
@@ -103,8 +103,8 @@ function boundsOf(boxes) {
 
 /**
  * Where what is seen begins, so that all from `low` to `high` is seen, or its beginning.
- * @param {number} start where it begins now @param {number} size @param {number} low @param {number} high
+ * @param {number} start where it begins now @param {number} viewSize @param {number} low @param {number} high
  */
-function nearestStart(start, size, low, high) {
-  return Math.min(Math.max(start, high + EDGE_UNITS - size), low - EDGE_UNITS);
+function nearestStart(start, viewSize, low, high) {
+  return Math.min(Math.max(start, high + EDGE_UNITS - viewSize), low - EDGE_UNITS);
 }

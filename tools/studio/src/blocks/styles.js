@@ -46,7 +46,7 @@ function adoptCommonCss() {
 let cachedOptions = null;
 
 /** @returns {Blockly.BlocklyOptions} */
-export function blocklyOptions() {
+export function getOptions() {
   cachedOptions ??= makeOptions();
   return cachedOptions;
 }

@@ -12,13 +12,13 @@ export function hertzOfKey(key) {
 
 /** @param {number} hertz @returns {number} the key that is nearest, of those that there are */
 export function keyOfHertz(hertz) {
-  return clampedKey(Math.round(A4.key + OCTAVE * Math.log2(Math.max(1, hertz) / A4.hertz)));
+  return clampKey(Math.round(A4.key + OCTAVE * Math.log2(Math.max(1, hertz) / A4.hertz)));
 }
 
 /** @param {number} hertz @param {number} direction 1 or -1 @returns {number} the next key there */
 export function nextKeyFrom(hertz, direction) {
   const key = keyOfHertz(hertz), isPast = direction * (hertzOfKey(key) - hertz) > 0;
-  return clampedKey(isPast ? key : key + direction);
+  return clampKey(isPast ? key : key + direction);
 }
 
 /** @param {number} key @param {string[]} names of the seven notes from C on @returns {string} */
@@ -28,6 +28,6 @@ export function keyName(key, names) {
 }
 
 /** @param {number} key */
-function clampedKey(key) {
+function clampKey(key) {
   return Math.min(HIGHEST_KEY, Math.max(LOWEST_KEY, key));
 }

@@ -18,7 +18,7 @@ const AHEAD_SENSOR = 'DISTANCE'; // of a robot that looks ahead
 const OFFERED_REMOTE_WORDS = ['KEY_A', 'PAD_Y']; // the field of each offers the others
 
 /** @param {number} value */
-function numberShadow(value) {
+function makeNumberShadow(value) {
   return { shadow: { type: 'number', fields: { WORD: value } } };
 }
 
@@ -29,78 +29,78 @@ function numberShadow(value) {
  * @returns {ToolboxItem}
  */
 function makeItem(type, values = [], word = '') {
-  const inputs = Object.fromEntries(values.map((value, k) => [`V${k}`, numberShadow(value)]));
+  const inputs = Object.fromEntries(values.map((value, index) => [`V${index}`, makeNumberShadow(value)]));
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
 /** @param {typeof PLAIN_WORDS[number]} word @returns {ToolboxItem} */
-function plainWordItem({ text, arguments: values }) {
+function makePlainWordItem({ text, arguments: values }) {
   return makeItem(plainKind(values.length), values.map(({ sample }) => Number(sample)), text);
 }
 
 /** @param {string} name of a word of one's own @param {number} count of its values @returns {ToolboxItem} */
-function callItem(name, count) {
+function makeCallItem(name, count) {
   return { ...makeItem('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
 }
 
 /** What a question asks: what is ahead of the robot, where it can tell. */
-function askedSensor() {
+function sensorToAsk() {
   const sensors = devicesOfRole('sensor');
   return sensors.find((device) => device.text === AHEAD_SENSOR) ?? sensors[0];
 }
 
 /** A question that a robot can answer, to put into an IF. @param {string} [operator] between sensor and number */
-function questionInputs(operator = 'LT') {
-  const sensor = askedSensor();
+function makeQuestionInputs(operator = 'LT') {
+  const sensor = sensorToAsk();
   if (!sensor) return {};
   const block = { type: 'sensor', fields: { WORD: sensor.text } };
-  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: operator }, inputs: { V0: { block }, V1: numberShadow(20) } } } };
+  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: operator }, inputs: { V0: { block }, V1: makeNumberShadow(20) } } } };
 }
 
 /** A comparison, where the robot has something to compare. */
-function comparisonItem() {
-  const { block } = /** @type {any} */ (questionInputs()).V0 ?? {};
+function makeComparisonItem() {
+  const { block } = /** @type {any} */ (makeQuestionInputs()).V0 ?? {};
   return block?.type === 'compare' ? { kind: /** @type {const} */ ('block'), ...block } : { ...makeItem('compare', [1, 1]), fields: { WORD: 'LT' } };
 }
 
 /** @param {string} type @param {object} [extraState] @returns {ToolboxItem} */
-function questionItem(type, extraState) {
+function makeQuestionItem(type, extraState) {
   // A WHILE goes on until something is near.
-  return { kind: 'block', type, inputs: questionInputs(type === 'while' ? 'GT' : 'LT'), ...(extraState ? { extraState } : {}) };
+  return { kind: 'block', type, inputs: makeQuestionInputs(type === 'while' ? 'GT' : 'LT'), ...(extraState ? { extraState } : {}) };
 }
 
 /** @param {string} type @param {number[]} values @param {string} word @returns {ToolboxItem} */
-function untilItem(type, values, word = '') {
+function makeUntilItem(type, values, word = '') {
   const item = makeItem(type, values, word);
-  return { ...item, inputs: { ...item.inputs, [`V${values.length}`]: /** @type {any} */ (questionInputs()).V0 } };
+  return { ...item, inputs: { ...item.inputs, [`V${values.length}`]: /** @type {any} */ (makeQuestionInputs()).V0 } };
 }
 
 /**
  * @param {UsedNames} usedNames
  * @returns {[string, [Level, ToolboxItem][]][]} each group, and from which level on each block is in it
  */
-function groupsOf(usedNames) {
+function makeGroups(usedNames) {
   const sensors = devicesOfRole('sensor').map((device) => device.text);
   const actuators = devicesOfRole('actuator');
-  const measuredSensor = askedSensor();
+  const measuredSensor = sensorToAsk();
   return [
     ['move', [
       ['few', makeItem('move', [2, 80], 'F')], ['few', makeItem('move', [2, 80], 'B')],
       ['few', makeItem('move', [0.5, 60], 'L')], ['few', makeItem('move', [0.5, 60], 'R')], ['few', makeItem('stop')],
-      ['usual', untilItem('move_until', [5, 60], 'F')], ['all', makeItem('motors', [50, 80])],
+      ['usual', makeUntilItem('move_until', [5, 60], 'F')], ['all', makeItem('motors', [50, 80])],
     ]],
     ['time', [
       ['few', makeItem('wait', [1])], ['few', makeItem('beep', [0.5, 440])], ['usual', makeItem('show', [1])],
-      ...PLAIN_WORDS.map((word) => /** @type {[Level, ToolboxItem]} */ (['few', plainWordItem(word)])),
-      ['usual', untilItem('wait_until', [5])], ['all', makeItem('time')], ['all', makeItem('endless')],
+      ...PLAIN_WORDS.map((word) => /** @type {[Level, ToolboxItem]} */ (['few', makePlainWordItem(word)])),
+      ['usual', makeUntilItem('wait_until', [5])], ['all', makeItem('time')], ['all', makeItem('endless')],
     ]],
     ['control', [
-      ['few', makeItem('loop', [3])], ['few', makeItem('forever')], ['usual', questionItem('while')], ['usual', makeItem('break')],
+      ['few', makeItem('loop', [3])], ['few', makeItem('forever')], ['usual', makeQuestionItem('while')], ['usual', makeItem('break')],
     ]],
     ['choose', [
-      ['few', questionItem('if', { arms: 1, hasElse: false })], ['few', questionItem('if', { arms: 1, hasElse: true })],
+      ['few', makeQuestionItem('if', { arms: 1, hasElse: false })], ['few', makeQuestionItem('if', { arms: 1, hasElse: true })],
     ]],
-    ['events', [['few', questionItem('when')], ['few', makeItem('task')]]],
+    ['events', [['few', makeQuestionItem('when')], ['few', makeItem('task')]]],
     ['sensors', [
       ...sensors.map((name) => /** @type {[Level, ToolboxItem]} */ (['few', makeItem('sensor', [], name)])),
       ...actuators.map((device) => /** @type {[Level, ToolboxItem]} */ (['few', makeItem('set', device.is_yes_no ? [] : [0], device.text)])),
@@ -108,7 +108,7 @@ function groupsOf(usedNames) {
       ...OFFERED_REMOTE_WORDS.map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('sensor', [], name)])),
     ]],
     ['decide', [
-      ['few', comparisonItem()], ['usual', { ...makeItem('logic'), fields: { WORD: 'AND' } }],
+      ['few', makeComparisonItem()], ['usual', { ...makeItem('logic'), fields: { WORD: 'AND' } }],
       ['usual', makeItem('not')], ['usual', makeItem('truth')],
     ]],
     ['numbers', [
@@ -122,7 +122,7 @@ function groupsOf(usedNames) {
     ]],
     ['words', [
       ['usual', makeItem('def', [], 'HOP')],
-      ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', callItem(name, count)])),
+      ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', makeCallItem(name, count)])),
     ]],
     ['others', [['usual', makeItem('comment')], ['all', makeItem('start')]]],
   ];
@@ -150,7 +150,7 @@ const RANK_COUNT = 5;
  */
 export function findItems(words, usedNames) {
   const wantedWords = withoutAccents(words).split(/\s+/).filter(Boolean);
-  const rankedItems = groupsOf(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
+  const rankedItems = makeGroups(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
     const word = wordOfItem(item);
     const choices = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
     const label = withoutAccents([labelOf(item.type, word, null).text, word, item.type, ...choices].join(' '));
@@ -174,7 +174,7 @@ function wordsOfPeople(kind, word) {
  * @returns {Level} the lowest one that offers them all
  */
 export function levelOf(kinds, usedNames) {
-  const levelItems = groupsOf(usedNames).flatMap(([, items]) => items);
+  const levelItems = makeGroups(usedNames).flatMap(([, items]) => items);
   const leastLevels = kinds.flatMap((kind) => {
     const levels = levelItems.filter(([, { type }]) => type === kind).map(([level]) => LEVELS.indexOf(level));
     return levels.length ? Math.min(...levels) : [];
@@ -192,7 +192,7 @@ export function levelOf(kinds, usedNames) {
 export function makeToolbox(level, usedNames, taughtKinds, newPieces) {
   const levelIndex = LEVELS.indexOf(level);
   const isShown = (/** @type {[Level, ToolboxItem]} */ [fromLevel, { type }]) => LEVELS.indexOf(fromLevel) <= levelIndex || taughtKinds.includes(type);
-  const shownGroups = groupsOf(usedNames).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
+  const shownGroups = makeGroups(usedNames).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
   return {
     kind: 'categoryToolbox',
     contents: shownGroups.filter(([, items]) => items.length).map(([name, items]) => ({

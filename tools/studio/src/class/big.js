@@ -3,7 +3,7 @@
 import { correction, generate } from 'lean-qr';
 import { makeButton, makeElement } from '../page/made.js';
 import { makeSign } from './signs.js';
-import { element, say } from '../page/elements.js';
+import { element, setText } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
 const QUIET_MODULES = 4; // white modules around a QR code
@@ -85,12 +85,12 @@ export class BigPupil extends BigWindow {
   /** @param {PupilView} shown */
   show({ key, title, stateText, picture, text: program, history, drives, hand }) {
     this.key = key;
-    say(this.title, title);
-    say(this.#stateElement, stateText);
-    say(this.#programElement, program);
+    setText(this.title, title);
+    setText(this.#stateElement, stateText);
+    setText(this.#programElement, program);
     this.#programElement.setAttribute('aria-label', text('class_program_of', { name: title }));
     this.#historyElement.hidden = !history.length;
-    say(this.#historyElement, [text('class_history'), '', ...history].join('\n'));
+    setText(this.#historyElement, [text('class_history'), '', ...history].join('\n'));
     this.#historyElement.setAttribute('aria-label', text('class_history'));
     const paper = /** @type {HTMLElement} */ (this.#pictureElement.parentElement);
     paper.hidden = !picture;
@@ -112,7 +112,7 @@ export class BigCode extends BigWindow {
     this.head.append(makeElement('span'));
     this.addButtons();
     this.title.dataset['text'] = 'class_come';
-    say(this.title, text('class_come'));
+    setText(this.title, text('class_come'));
     this.#qrCanvas.setAttribute('role', 'img');
     this.#qrCanvas.dataset['label'] = 'class_picture';
     this.#qrCanvas.setAttribute('aria-label', text('class_picture'));
@@ -132,6 +132,6 @@ export class BigCode extends BigWindow {
 
   /** @param {string} code */
   setCode(code) {
-    say(this.#codeElement, code);
+    setText(this.#codeElement, code);
   }
 }

@@ -1,8 +1,8 @@
 // Work that is kept of who is not here goes to one pupil, whom the teacher chooses: anybody can write a name.
 
 import { makeButton, makeElement } from '../page/made.js';
-import { element, say } from '../page/elements.js';
-import { plainText } from '../robot/plain_text.js';
+import { element, setText } from '../page/elements.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').KeptRow} KeptRow */
@@ -57,16 +57,16 @@ export class GivingWindow {
   }
 
   /** @param {KeptRowElements} row @param {KeptRow} kept @param {PupilRow[]} pupils */
-  #fillRow({ nameElement, pupilSelect: pupilSelect, giveButton, stateElement }, { name: makerName, given, alike }, pupils) {
-    say(nameElement, plainText(makerName));
-    const receiver = pupils.find(({ number }) => number === given);
-    say(stateElement, receiver ? text('class_giving', { name: plainText(receiver.name) }) : '');
-    pupilSelect.setAttribute('aria-label', text('class_give_to', { name: plainText(makerName) }));
-    const optionsKey = JSON.stringify([alike, pupils.map(({ number, name: pupilName }) => [number, pupilName])]);
+  #fillRow({ nameElement, pupilSelect, giveButton, stateElement }, { name: makerName, given: receiverNumber, alike: alikeNumbers }, pupils) {
+    setText(nameElement, asPlainText(makerName));
+    const receiver = pupils.find(({ number }) => number === receiverNumber);
+    setText(stateElement, receiver ? text('class_giving', { name: asPlainText(receiver.name) }) : '');
+    pupilSelect.setAttribute('aria-label', text('class_give_to', { name: asPlainText(makerName) }));
+    const optionsKey = JSON.stringify([alikeNumbers, pupils.map(({ number, name: pupilName }) => [number, pupilName])]);
     if (pupilSelect.dataset['seen'] === optionsKey) return;
     pupilSelect.dataset['seen'] = optionsKey;
-    const chosenNumber = pupilSelect.dataset['chosen'] || (alike.length === 1 ? String(alike[0]) : ''); // of two, nobody
-    pupilSelect.replaceChildren(new Option('—', ''), ...pupils.map(({ number, name: pupilName }) => new Option(plainText(pupilName), String(number))));
+    const chosenNumber = pupilSelect.dataset['chosen'] || (alikeNumbers.length === 1 ? String(alikeNumbers[0]) : ''); // of two, nobody
+    pupilSelect.replaceChildren(new Option('—', ''), ...pupils.map(({ number, name: pupilName }) => new Option(asPlainText(pupilName), String(number))));
     pupilSelect.value = pupils.some(({ number }) => String(number) === chosenNumber) ? chosenNumber : '';
     giveButton.disabled = !pupilSelect.value;
   }

@@ -1,13 +1,13 @@
 // A pupil's group: joins one by its name, shows who is in it, and leaves it.
 
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
-import { element, say } from '../page/elements.js';
+import { element, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { bugSentence } from '../page/faults.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
-import { hearStops, post } from '../robot/host.js';
-import { plainText } from '../robot/plain_text.js';
+import { noteStopCount, post } from '../robot/host.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { Membership } from './member.js';
 import { nameElements } from './together.js';
@@ -34,8 +34,8 @@ export class Group {
   constructor(page, parent) {
     this.#membership = new Membership(page, {
       say: (key) => this.#showState(key),
-      onBug: (error) => say(this.#statusElement, bugSentence(error)),
-      onOthers: (others) => this.#matesElement.replaceChildren(...nameElements(others.map((other) => ({ ...other, name: plainText(other.name) })))),
+      onBug: (error) => setText(this.#statusElement, bugSentence(error)),
+      onOthers: (others) => this.#matesElement.replaceChildren(...nameElements(others.map((other) => ({ ...other, name: asPlainText(other.name) })))),
     });
     this.#section = makeElement('section', '', makeElement('h2', 'group'), this.#joinForm, this.#groupList, this.#statusElement, this.#matesElement, this.#leaveButton);
     this.#section.id = 'class_group';
@@ -76,7 +76,7 @@ export class Group {
     const groupsKey = JSON.stringify(groups);
     if (this.#groupList.dataset['groups'] === groupsKey) return;
     this.#groupList.dataset['groups'] = groupsKey;
-    this.#groupList.replaceChildren(...groups.map(({ name, members }) => makeButton('', () => this.#join(name), members.length ? `${plainText(name)} (${members.map((member) => plainText(member)).join(', ')})` : plainText(name))));
+    this.#groupList.replaceChildren(...groups.map(({ name, members }) => makeButton('', () => this.#join(name), members.length ? `${asPlainText(name)} (${members.map((member) => asPlainText(member)).join(', ')})` : asPlainText(name))));
   }
 
   leave() {
@@ -95,7 +95,7 @@ export class Group {
     const group_stops = ++this.#stopCount;
     for (let tryNumber = 0; tryNumber < STOP_TRIES; tryNumber += 1) {
       try {
-        hearStops((await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true })).stops ?? 0);
+        noteStopCount((await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true })).stops ?? 0);
         return;
       } catch {
         await pause(100);
@@ -108,6 +108,6 @@ export class Group {
     const { isInGroup: isIn } = this.#membership;
     this.#joinForm.hidden = this.#groupList.hidden = isIn;
     this.#leaveButton.hidden = !isIn;
-    say(this.#statusElement, key ? text(key, { group: plainText(pageState.groupName.value) }) : text('group_told'));
+    setText(this.#statusElement, key ? text(key, { group: asPlainText(pageState.groupName.value) }) : text('group_told'));
   }
 }

@@ -16,8 +16,8 @@ export async function fetchWork() {
 /** Saves the work of all; returns of how many. */
 export async function saveWork() {
   const pupils = await fetchWork();
-  const now = new Date();
-  const day = [now.getFullYear(), now.getMonth() + 1, now.getDate()].map((part) => String(part).padStart(2, '0')).join('-');
+  const today = new Date();
+  const day = [today.getFullYear(), today.getMonth() + 1, today.getDate()].map((part) => String(part).padStart(2, '0')).join('-');
   const fileText = JSON.stringify({ tiniscript_class: CLASS.form, day, pupils }, null, 1);
   downloadFile(`${text('class_file')}-${day}.json`, new Blob([fileText], { type: 'application/json' }));
   return pupils.length;

@@ -1,7 +1,7 @@
 // A page's part in a group: the editor, the blocks and what is said of the robot are the group's until it leaves. The
 // teacher's computer has the program (`together.js`); the page's own one from before stays in My programs.
 
-import { storeText, storedJson } from '../page/kept.js';
+import { storeText, loadJson } from '../page/kept.js';
 import { pageState } from '../page/page_state.js';
 import { textKey, text } from '../page/texts.js';
 import { post } from '../robot/host.js';
@@ -16,7 +16,7 @@ export class Membership {
   #page;
   #listener;
   /** @type {SharedEditor | null} */
-  #together = null;
+  #sharedEditor = null;
   #isJoining = false;
 
   /** @param {import('./classroom.js').Page} page @param {MembershipListener} listener */
@@ -25,16 +25,16 @@ export class Membership {
     this.#listener = listener;
   }
 
-  get isInGroup() { return this.#together !== null; }
+  get isInGroup() { return this.#sharedEditor !== null; }
 
   /** What is finished becomes the group's. */
   finishEdit() {
-    this.#together?.finishEdit();
+    this.#sharedEditor?.finishEdit();
   }
 
   /** A page that was loaded again goes on, if it was in a group; returns whether it was. */
   resume() {
-    const stored = storedJson(STORAGE_KEY, 'sessionStorage');
+    const stored = loadJson(STORAGE_KEY, 'sessionStorage');
     const wasIn = Boolean(stored?.request?.do && stored.page?.name);
     if (wasIn) this.join(stored.request, stored.page);
     return wasIn;
@@ -42,7 +42,7 @@ export class Membership {
 
   /** @param {Record<string, unknown>} request @param {{name: string}} [storedPage] */
   async join(request, storedPage) {
-    if (this.#isJoining || this.#together) return;
+    if (this.#isJoining || this.#sharedEditor) return;
     this.#isJoining = true;
     try {
       const { work, python, editor, views, panel } = this.#page;
@@ -53,7 +53,7 @@ export class Membership {
         this.#listener.say(textKey(answer.failure));
         return;
       }
-      const together = this.#together = new SharedEditor(python, editor, {
+      const together = this.#sharedEditor = new SharedEditor(python, editor, {
         left: () => {
           this.endMembership();
           this.#listener.say('group_left');
@@ -65,14 +65,14 @@ export class Membership {
         others: (others) => this.#listener.onOthers(others),
         refused: () => pageState.note.set(text('group_refused')),
         places: (places) => views.showMates(places),
-        runs: (event) => panel.witness(event),
+        runs: (event) => panel.onGroupEvent(event),
         isBusy: () => views.isBusy,
         answers: (isHeard) => this.#listener.say(isHeard ? 'group_in' : 'class_silent'),
         keep: (page) => storeText(STORAGE_KEY, JSON.stringify({ request, page }), 'sessionStorage'),
       });
       pageState.groupName.set(String(answer.group));
       this.#listener.say('group_in');
-      await together.begin(answer, storedPage ?? null).then(() => {
+      await together.showProgram(answer, storedPage ?? null).then(() => {
         views.join(together);
         document.documentElement.dataset['group'] = 'in';
       }, (error) => {
@@ -93,8 +93,8 @@ export class Membership {
 
   /** It is over here; the program stays in the page. */
   endMembership() {
-    this.#together?.end();
-    this.#together = null;
+    this.#sharedEditor?.end();
+    this.#sharedEditor = null;
     this.#page.views.join(null);
     this.#page.panel.endWitness();
     delete document.documentElement.dataset['group'];

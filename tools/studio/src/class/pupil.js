@@ -6,10 +6,10 @@
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
-import { element, say } from '../page/elements.js';
-import { askAs, hearStops, post } from '../robot/host.js';
+import { element, setText } from '../page/elements.js';
+import { setToken, noteStopCount, post } from '../robot/host.js';
 import { storeDone, loadDoneLessons } from '../lesson/progress.js';
-import { plainText } from '../robot/plain_text.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
 import { giveRun } from './run.js';
@@ -18,7 +18,7 @@ import { clockText } from './wall.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
-import { forgetAll, storeText, storedText } from '../page/kept.js';
+import { forgetAll, storeText, loadText } from '../page/kept.js';
 
 const TOKEN_KEY = 'tiniscript.pupil';
 const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
@@ -45,7 +45,7 @@ export class Pupil {
   #panel;
   #work;
   #page;
-  #box = element('class_pupil', HTMLElement);
+  #boxElement = element('class_pupil', HTMLElement);
   /** Where the box is until the pupil has joined: whoever opens the class's address sees nothing before it. */
   #entry = element('class_entry', HTMLElement);
   #codeInput = makeElement('input');
@@ -59,14 +59,14 @@ export class Pupil {
   /** There is no first screen in a class. */
   #ownRobotButton = makeButton('own_robot', () => element('start_own', HTMLButtonElement).click());
   #handButton = makeButton('', () => {
-    this.#stay.isHandWanted = !this.#isHandUp;
+    this.#stayState.isHandWanted = !this.#isHandUp;
     this.#poll();
   }, makeSign('hand', 26));
   #isHandUp = false;
   #group;
   #isEntering = false;
-  #stay = newStayState(); // in one class: an answer of the one before is none of the next one
-  #timer = 0;
+  #stayState = newStayState(); // in one class: an answer of the one before is none of the next one
+  #pollTimer = 0;
 
   /** @param {import('./classroom.js').Page} page */
   constructor(page) {
@@ -91,10 +91,10 @@ export class Pupil {
       event.preventDefault();
       this.#joinClass();
     });
-    this.#box.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
-    this.#box.hidden = false;
-    this.#group = new Group(page, this.#box);
-    const token = storedText(TOKEN_KEY, 'sessionStorage');
+    this.#boxElement.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
+    this.#boxElement.hidden = false;
+    this.#group = new Group(page, this.#boxElement);
+    const token = loadText(TOKEN_KEY, 'sessionStorage');
     if (token) this.#onJoined(token);
     else {
       this.#leaveClass('class_welcome');
@@ -106,22 +106,22 @@ export class Pupil {
     if (this.#isEntering) return; // who presses twice is one pupil
     this.#isEntering = true;
     try {
-      const answer = await post({ do: 'join', code: this.#codeInput.value, name: this.#nameInput.value, before: storedText(LAST_TOKEN_KEY) });
-      if (answer.failure) this.#say(answer.failure);
+      const answer = await post({ do: 'join', code: this.#codeInput.value, name: this.#nameInput.value, before: loadText(LAST_TOKEN_KEY) });
+      if (answer.failure) this.#showStatus(answer.failure);
       else this.#onJoined(answer.token);
     } catch {
-      this.#say('class_silent');
+      this.#showStatus('class_silent');
     }
     this.#isEntering = false;
   }
 
   /** @param {string} token */
   #onJoined(token) {
-    askAs(token);
+    setToken(token);
     storeText(TOKEN_KEY, token, 'sessionStorage'); // without a storage, a reload joins anew
     storeText(LAST_TOKEN_KEY, token);
     this.#joinForm.hidden = this.#entry.hidden = true;
-    element('class_place', HTMLElement).append(this.#box);
+    element('class_place', HTMLElement).append(this.#boxElement);
     this.#handButton.hidden = false;
     this.#group.enter();
     this.#poll();
@@ -129,27 +129,27 @@ export class Pupil {
 
   /** @param {import('../page/texts.js').Key} key */
   #leaveClass(key) {
-    clearTimeout(this.#timer);
-    this.#stay = newStayState();
+    clearTimeout(this.#pollTimer);
+    this.#stayState = newStayState();
     this.#showHand(false);
     this.#group.exit();
-    askAs('');
+    setToken('');
     storeText(TOKEN_KEY, '', 'sessionStorage');
     this.#joinForm.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
-    this.#entry.append(this.#box);
+    this.#entry.append(this.#boxElement);
     this.#askButton.hidden = this.#quitButton.hidden = this.#connectButton.hidden = this.#handButton.hidden = true;
-    this.#say(key);
+    this.#showStatus(key);
   }
 
   /** @param {boolean} wantsRobot */
   #wantRobot(wantsRobot) {
-    this.#stay.wantsRobot = wantsRobot;
+    this.#stayState.wantsRobot = wantsRobot;
     this.#poll();
   }
 
   async #poll() {
-    clearTimeout(this.#timer);
-    const stay = this.#stay;
+    clearTimeout(this.#pollTimer);
+    const stay = this.#stayState;
     const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
     const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
@@ -161,7 +161,7 @@ export class Pupil {
     let wait_ms = POLL_MS;
     try {
       const answer = /** @type {PupilState} */ (await post(request));
-      if (stay !== this.#stay) return;
+      if (stay !== this.#stayState) return;
       if (stay.wantsRobot === wantsRobot) stay.wantsRobot = null;
       if (stay.isHandWanted === isHandWanted) stay.isHandWanted = null;
       stay.sentFields = fields;
@@ -178,15 +178,15 @@ export class Pupil {
       }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (error) {
-      if (stay !== this.#stay) return;
+      if (stay !== this.#stayState) return;
       if (error instanceof ConnectionFailure && error.reason === 'host_other') {
         this.#leaveClass('class_gone');
         return;
       }
-      this.#say('class_silent');
+      this.#showStatus('class_silent');
     }
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#poll(), wait_ms);
+    clearTimeout(this.#pollTimer);
+    this.#pollTimer = window.setTimeout(() => this.#poll(), wait_ms);
   }
 
   /** What the teacher sees of this page, each as JSON. @returns {Record<string, string>} */
@@ -208,7 +208,7 @@ export class Pupil {
    */
   #takeGiven(work) {
     if (!work) return;
-    const stay = this.#stay;
+    const stay = this.#stayState;
     if (stay.takenWork?.key !== work.key) {
       if (stay.refusedKey === work.key && pageState.groupName.value) return;
       if (!this.#page.putProgram({ text: work.text, robot: isRobot(work.robot) ? work.robot : this.#work.robot })) {
@@ -233,22 +233,22 @@ export class Pupil {
   }
 
   /** @param {PupilState} here */
-  #showState({ place, waiting, robots, robot: robotName, left_s, name, hand: isHandUp, groups = [], driver: driverName = '', stops = 0 }) {
-    hearStops(stops);
+  #showState({ place: queuePlace, waiting: waitingCount, robots: robotCount, robot: robotName, left_s, name, hand: isHandUp, groups = [], driver: driverName = '', stops = 0 }) {
+    noteStopCount(stops);
     this.#showHand(isHandUp);
     this.#group.showGroups(groups, driverName);
-    const isTurnNew = place === 0 && this.#stay.queuePlace !== 0 && !driverName;
-    this.#stay.queuePlace = place;
-    this.#askButton.hidden = place >= 0;
-    this.#quitButton.hidden = place <= 0;
+    const isTurnNew = queuePlace === 0 && this.#stayState.queuePlace !== 0 && !driverName;
+    this.#stayState.queuePlace = queuePlace;
+    this.#askButton.hidden = queuePlace >= 0;
+    this.#quitButton.hidden = queuePlace <= 0;
     const timeLeft = clockText(left_s);
-    const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : driverName ? 'group_drives' : waiting ? 'class_turn' : 'class_turn_alone';
-    this.#say(key, { place, waiting, robots, time: timeLeft, name: plainText(driverName || name), robot: plainText(robotName) });
+    const key = queuePlace > 0 ? 'class_place' : queuePlace < 0 ? 'class_in' : driverName ? 'group_drives' : waitingCount ? 'class_turn' : 'class_turn_alone';
+    this.#showStatus(key, { place: queuePlace, waiting: waitingCount, robots: robotCount, time: timeLeft, name: asPlainText(driverName || name), robot: asPlainText(robotName) });
     if (isTurnNew && this.#panel.isFree) {
       element('side_real', HTMLButtonElement).click();
       this.#panel.connectByHost();
     }
-    this.#connectButton.hidden = place !== 0 || !this.#panel.isFree;
+    this.#connectButton.hidden = queuePlace !== 0 || !this.#panel.isFree;
   }
 
   /** The class is over. @param {boolean} isErased */
@@ -261,8 +261,8 @@ export class Pupil {
   }
 
   /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
-  #say(key, values = {}) {
-    say(this.#statusElement, text(key, values));
+  #showStatus(key, values = {}) {
+    setText(this.#statusElement, text(key, values));
     document.documentElement.dataset['pupil'] = key;
   }
 }

@@ -11,10 +11,10 @@ import { fetchRun } from './run.js';
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { makeSign } from './signs.js';
 import { clockText, Wall } from './wall.js';
-import { element, say } from '../page/elements.js';
+import { element, setText } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
-import { hostPorts, post } from '../robot/host.js';
-import { plainText } from '../robot/plain_text.js';
+import { fetchPorts, post } from '../robot/host.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { pageState } from '../page/page_state.js';
 import { textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
@@ -37,7 +37,7 @@ export class Teacher {
     join: (key) => this.#visitGroup(key),
   });
   #page;
-  #pictures;
+  #blockPictures;
   #bigPupil = new BigPupil({
     step: (offset) => this.#stepTile(offset),
     stop: (key) => this.#requestForTile('class_stop', key),
@@ -83,7 +83,7 @@ export class Teacher {
   /** @param {import('./classroom.js').Page} page */
   constructor(page) {
     this.#page = page;
-    this.#pictures = new Pictures(page.python, 'class_blocks');
+    this.#blockPictures = new Pictures(page.python, 'class_blocks');
     this.#membership = new Membership(page, {
       say: (key) => this.#showVisit(key),
       onBug: (error) => pageState.note.set(bugSentence(error)),
@@ -186,9 +186,9 @@ export class Teacher {
 
   /** @param {import('../page/texts.js').Key | ''} key */
   #showVisit(key) {
-    const group = plainText(pageState.groupName.value);
+    const group = asPlainText(pageState.groupName.value);
     this.#leaveButton.hidden = !this.#membership.isInGroup;
-    say(this.#leaveButton, text('class_leave_of', { name: group }));
+    setText(this.#leaveButton, text('class_leave_of', { name: group }));
     if (this.#visitKey === key) return;
     this.#visitKey = key;
     pageState.note.set(key ? text(key, { group }) : '');
@@ -199,13 +199,13 @@ export class Teacher {
     const pupilRow = this.#pupilRowOf(key);
     if (!pupilRow || this.#playedKey) return;
     this.#playedKey = key;
-    this.#setNotice(text('class_run_asked', { name: plainText(pupilRow.name) }));
+    this.#setNotice(text('class_run_asked', { name: asPlainText(pupilRow.name) }));
     const run = await fetchRun(pupilRow.number).catch(() => null);
     this.#playedKey = '';
-    this.#setNotice(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: plainText(pupilRow.name) }));
+    this.#setNotice(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: asPlainText(pupilRow.name) }));
     if (!run) return;
     this.#showStudio();
-    await this.#page.openRun(new File([run], `${plainText(pupilRow.name)}.tsr`));
+    await this.#page.openRun(new File([run], `${asPlainText(pupilRow.name)}.tsr`));
   }
 
   /** @param {string} notice beside the count, until the next one */
@@ -215,13 +215,13 @@ export class Teacher {
   }
 
   #updateLanguage() {
-    this.#pictures.updateLanguage();
+    this.#blockPictures.updateLanguage();
     for (const program of this.#knownPrograms.values()) program.version = -1; // the words of the pictures are others
     if (this.#classState) this.#showState(this.#classState);
   }
 
   /** The pupils of a tile, which are several where it is a group's. @param {string} key */
-  #pupils(key) {
+  #pupilsOfTile(key) {
     const { pupils: pupilRowsOf = [], groups = [] } = this.#classState ?? {};
     const numbers = groups.find((group) => groupTileKey(group.key) === key)?.pupils;
     return pupilRowsOf.filter(({ number }) => (numbers ? numbers.includes(number) : pupilTileKey(number) === key));
@@ -248,7 +248,7 @@ export class Teacher {
 
   /** @param {string} action @param {string} key */
   #requestForTile(action, key) {
-    const pupilRows = this.#pupils(key);
+    const pupilRows = this.#pupilsOfTile(key);
     for (const { number, hand, robot } of pupilRows) {
       if (pupilRows.length === 1 || (action === 'class_hand' ? hand : robot)) this.#request({ do: action, pupil: number });
     }
@@ -267,8 +267,8 @@ export class Teacher {
 
   async #lookForPorts() {
     try {
-      const hostPortList = await hostPorts();
-      this.#portSelect.replaceChildren(...hostPortList.map(({ port, name }) => new Option(plainText([name, port].filter(Boolean).join(' · ')), port)));
+      const hostPortList = await fetchPorts();
+      this.#portSelect.replaceChildren(...hostPortList.map(({ port, name }) => new Option(asPlainText([name, port].filter(Boolean).join(' · ')), port)));
     } catch {
       this.#sayInBar('why_host_gone');
     }
@@ -289,7 +289,7 @@ export class Teacher {
     this.#fileInput.value = '';
     if (!file) return;
     const count = await openWork(file);
-    this.#notice = count ? text('class_opened', { count }) : text('class_not_opened', { name: plainText(file.name) });
+    this.#notice = count ? text('class_opened', { count }) : text('class_not_opened', { name: asPlainText(file.name) });
     this.#knownPrograms.forEach((program, key) => {
       if (!this.#pupilRowOf(key)) program.version = -1;
     });
@@ -301,8 +301,8 @@ export class Teacher {
 
   /** @param {ClassState} state */
   #showState(state) {
-    const { code, turn_s, places, over: overReason, goes_on, lessons, kept, pupils, robots } = this.#classState = state;
-    say(this.#codeElement, code);
+    const { code, turn_s, places, over: overReason, goes_on, lessons, kept: keptRows, pupils, robots } = this.#classState = state;
+    setText(this.#codeElement, code);
     this.#bigCode.setCode(code);
     if (document.activeElement !== this.#minutesInput) this.#minutesInput.value = String(Math.round(turn_s / 60));
     if (document.activeElement !== this.#placesInput) this.#placesInput.value = String(places);
@@ -315,12 +315,12 @@ export class Teacher {
       return;
     }
     const hands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
-    const handNames = hands.slice(0, MOST_NAMED_HANDS).map(({ name }) => plainText(name)).join(', ') + (hands.length > MOST_NAMED_HANDS ? ` +${hands.length - MOST_NAMED_HANDS}` : '');
+    const handNames = hands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (hands.length > MOST_NAMED_HANDS ? ` +${hands.length - MOST_NAMED_HANDS}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
-    say(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
+    setText(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
-    this.#giveBackButton.hidden = !kept.length || !pupils.length;
-    this.#givingWindow.show(kept, pupils);
+    this.#giveBackButton.hidden = !keptRows.length || !pupils.length;
+    this.#givingWindow.show(keptRows, pupils);
     this.#anewButton.hidden = !goes_on;
     this.#showRobots(robots);
     const tiles = this.#makeTiles();
@@ -331,25 +331,25 @@ export class Teacher {
     for (const key of [...this.#knownPrograms.keys()]) {
       if (tiles.some((tile) => tile.key === key)) continue;
       this.#knownPrograms.delete(key);
-      this.#pictures.forget(key);
+      this.#blockPictures.forget(key);
     }
     if (this.#bigPupil.key) this.#showBigPupil(this.#bigPupil.key);
   }
 
   /** Who is here, and the work of who is not, by name. */
   #makeTiles() {
-    const { pupils = [], kept = [], groups = [] } = this.#classState ?? {};
-    const nonEmptyGroups = groups.map((group) => ({ ...group, members: this.#pupils(groupTileKey(group.key)) })).filter(({ members }) => members.length);
+    const { pupils = [], kept: keptRows = [], groups = [] } = this.#classState ?? {};
+    const nonEmptyGroups = groups.map((group) => ({ ...group, members: this.#pupilsOfTile(groupTileKey(group.key)) })).filter(({ members }) => members.length);
     const ungroupedPupils = pupils.filter(({ number }) => !nonEmptyGroups.some(({ members }) => members.some((member) => member.number === number)));
     const tiles = ungroupedPupils.map((pupil) => ({ key: pupilTileKey(pupil.number), name: pupil.name, lessons: pupil.lessons, pupil: /** @type {PupilRow | null} */ (pupil) }));
-    for (const { key, name, members, version } of nonEmptyGroups) tiles.push(groupTile(groupTileKey(key), name, members, version));
-    for (const { key, name, lessons } of kept) tiles.push({ key: `kept ${key}`, name, lessons, pupil: null });
+    for (const { key, name, members, version } of nonEmptyGroups) tiles.push(makeGroupTile(groupTileKey(key), name, members, version));
+    for (const { key, name, lessons } of keptRows) tiles.push({ key: `kept ${key}`, name, lessons, pupil: null });
     return tiles.sort((first, second) => first.name.localeCompare(second.name, undefined, { numeric: true }) || (first.key < second.key ? -1 : 1));
   }
 
   /** @param {RobotRow[]} robots */
   #showRobots(robots) {
-    const rows = robots.map((robot) => ({ ...robot, title: plainText(robot.name || robot.port), said: robot.pupil ? text('class_held', { name: plainText(robot.pupil), time: clockText(robot.left_s) }) : text('class_free') }));
+    const rows = robots.map((robot) => ({ ...robot, title: asPlainText(robot.name || robot.port), said: robot.pupil ? text('class_held', { name: asPlainText(robot.pupil), time: clockText(robot.left_s) }) : text('class_free') }));
     const chipsKey = JSON.stringify(rows.map(({ title, pupil }) => [title, Boolean(pupil)]));
     if (this.#robotChips.dataset['seen'] !== chipsKey) {
       this.#robotChips.dataset['seen'] = chipsKey;
@@ -360,11 +360,11 @@ export class Teacher {
       }));
       this.#robotChips.hidden = !rows.length;
     }
-    rows.forEach(({ said }, index) => say(/** @type {HTMLElement} */ (this.#robotChips.children[index]?.lastElementChild), said));
+    rows.forEach(({ said: stateText }, index) => setText(/** @type {HTMLElement} */ (this.#robotChips.children[index]?.lastElementChild), stateText));
     const portsKey = JSON.stringify(robots.map(({ port, name }) => [port, name]));
     if (this.#robotList.dataset['seen'] === portsKey) return;
     this.#robotList.dataset['seen'] = portsKey;
-    this.#robotList.replaceChildren(...robots.map(({ port, name }) => makeElement('li', '', makeElement('strong', '', plainText([name, port].filter(Boolean).join(' · '))), ' ',
+    this.#robotList.replaceChildren(...robots.map(({ port, name }) => makeElement('li', '', makeElement('strong', '', asPlainText([name, port].filter(Boolean).join(' · '))), ' ',
       makeButton('class_take', () => this.#request({ do: 'class_robot', port, gives: false })))));
   }
 
@@ -378,7 +378,7 @@ export class Teacher {
       const answer = await post({ do: 'class_text', ...owner });
       const program = { text: String(answer.text), robot: String(answer.robot || 'tinibot'), version: Number(answer.version), history: answer.history ?? [] };
       this.#knownPrograms.set(key, program);
-      this.#pictures.request(key, program, (address) => {
+      this.#blockPictures.request(key, program, (address) => {
         if (!this.#wall.setPicture(key, address)) URL.revokeObjectURL(address);
         if (this.#bigPupil.key === key) this.#showBigPupil(key);
       });
@@ -399,10 +399,10 @@ export class Teacher {
     }
     const { pupil } = tile;
     const program = this.#knownPrograms.get(key);
-    const drivesText = pupil?.robot ? text('class_drives', { robot: plainText(pupil.robot) }) : '';
+    const drivesText = pupil?.robot ? text('class_drives', { robot: asPlainText(pupil.robot) }) : '';
     const lessonsText = text('class_lessons', { done: tile.lessons.length, all: this.#classState?.lessons ?? 0 });
     this.#bigPupil.show({
-      key, title: plainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],
+      key, title: asPlainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],
       drives: Boolean(drivesText), hand: Boolean(pupil?.hand),
     });
   }
@@ -417,7 +417,7 @@ export class Teacher {
 
   /** @param {import('../page/texts.js').Key} key */
   #sayInBar(key) {
-    say(this.#statusElement, text(key));
+    setText(this.#statusElement, text(key));
     document.documentElement.dataset['teacher'] = key;
   }
 }
@@ -447,7 +447,7 @@ function groupTileKey(key) {
 }
 
 /** A tile of a group: what any of its pupils has, it has. @param {string} key @param {string} name @param {PupilRow[]} members @param {number} version */
-function groupTile(key, name, members, version) {
+function makeGroupTile(key, name, members, version) {
   const mainMember = /** @type {PupilRow} */ (members.find(({ robot }) => robot) ?? members[0]);
   const lessons = [...new Set(members.flatMap((member) => member.lessons))];
   const pupil = {
@@ -471,10 +471,10 @@ function keptWorkKey(key) {
   return key.replace(/^kept /, '');
 }
 
-/** @param {string} least @param {string} most */
-function makeNumberInput(least, most) {
+/** @param {string} lowest @param {string} highest */
+function makeNumberInput(lowest, highest) {
   const field = makeElement('input');
-  Object.assign(field, { type: 'number', min: least, max: most });
+  Object.assign(field, { type: 'number', min: lowest, max: highest });
   return field;
 }
 

@@ -68,9 +68,9 @@ class NameWidget extends WidgetType {
   }
 
   toDOM() {
-    const { name, mark, writes } = this.other;
+    const { name, mark: colorIndex, writes } = this.other;
     const nameElement = makeElement('span', '', writes ? `${name} …` : name);
-    nameElement.className = `cm-mate cm-mate-${mark}`;
+    nameElement.className = `cm-mate cm-mate-${colorIndex}`;
     return nameElement;
   }
 }
@@ -101,15 +101,15 @@ const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8', '#a3145c'];
 const baseTheme = EditorView.baseTheme({
   '.cm-beside': { boxShadow: 'inset 4px 0 var(--mate)' },
   '.cm-mate': { marginLeft: '1ch', padding: '0 6px', borderRadius: '6px', backgroundColor: 'var(--mate)', color: '#fff', fontSize: '0.85em' },
-  ...Object.fromEntries(COLORS.map((color, mark) => [`.cm-mate-${mark}`, { '--mate': color }])),
+  ...Object.fromEntries(COLORS.map((color, colorIndex) => [`.cm-mate-${colorIndex}`, { '--mate': color }])),
 });
 
 /** Mates as a list of names in their colours. @param {Other[]} mates */
 export function nameElements(mates) {
-  return mates.map(({ name, mark }) => {
+  return mates.map(({ name, mark: colorIndex }) => {
     const nameElement = makeElement('span', '', name);
     nameElement.className = 'mate';
-    nameElement.style.setProperty('--mate', COLORS[mark] ?? '');
+    nameElement.style.setProperty('--mate', COLORS[colorIndex] ?? '');
     return nameElement;
   });
 }
@@ -157,7 +157,7 @@ export class SharedEditor {
   }
 
   /** Shows the program of a group. @param {any} news of the class @param {unknown} storedPage by this page, before it was loaded again */
-  async begin(news, storedPage) {
+  async showProgram(news, storedPage) {
     for (;;) {
       const { doc } = this.#view.state;
       const answer = await this.#python.ask({ do: 'group_begin', news, kept: storedPage }, new TextEncoder().encode(doc.toString()));
@@ -293,7 +293,7 @@ export class SharedEditor {
   #showOthers() {
     const places = this.#otherPupils.map((other) => ({ line: this.#pythonState.ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
     this.#view.dispatch({ effects: setOthersEffect.of(places) });
-    this.#listener.places(places.map(({ line, other: { name, mark, writes } }) => ({ line, color: COLORS[mark] ?? '', said: writes ? `${name} …` : name })));
+    this.#listener.places(places.map(({ line, other: { name, mark: colorIndex, writes } }) => ({ line, color: COLORS[colorIndex] ?? '', said: writes ? `${name} …` : name })));
   }
 
   /** The blocks have the focus in this line, or nowhere. @param {number} line @param {boolean} writes */
@@ -305,8 +305,8 @@ export class SharedEditor {
   // -- the class --
 
   #request() {
-    const { since, epoch, kept } = this.#pythonState;
-    return { do: 'group', page: kept.name, since, epoch, saw: this.#seenNumber, ran: this.#seenRunEvents };
+    const { since, epoch, kept: storedPage } = this.#pythonState;
+    return { do: 'group', page: storedPage.name, since, epoch, saw: this.#seenNumber, ran: this.#seenRunEvents };
   }
 
   /** Hears what is new, for as long as this page is in the group. */
@@ -365,9 +365,9 @@ export class SharedEditor {
   }
 
   /** Two answers may tell the same. @param {{ran: [string, number], runs?: import('../robot/panel.js').GroupRobotEvent[]}} news */
-  #takeRunEvents({ ran: [key, newest], runs = [] }) {
+  #takeRunEvents({ ran: [key, newestNumber], runs = [] }) {
     const knownNumber = key === this.#seenRunEvents[0] ? this.#seenRunEvents[1] : 0;
-    this.#seenRunEvents = [key, Math.max(knownNumber, newest)];
+    this.#seenRunEvents = [key, Math.max(knownNumber, newestNumber)];
     for (const event of runs) if (event.number > knownNumber) this.#listener.runs(event);
   }
 

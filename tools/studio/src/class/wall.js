@@ -2,11 +2,11 @@
 // hand that is up, and the robot or the place in the queue. All tiles are as large as fits the window.
 // Names and robots are put there as text, never as markup.
 
-import { say } from '../page/elements.js';
+import { setText } from '../page/elements.js';
 import { makeButton, makeSvg, makeElement } from '../page/made.js';
 import { COLOURS } from '../page/own_robot.js';
 import { makeSign } from './signs.js';
-import { plainText } from '../robot/plain_text.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */
@@ -96,16 +96,16 @@ export class Wall {
   /** @param {Tile} tile @param {TileContent} seen @param {number} lessonCount */
   #fillTile(tile, { key, name, lessons: lessonsDone, pupil }, lessonCount) {
     const isGroup = key.startsWith('group '); // whose pupils leave it
-    const plainName = plainText(name);
+    const plainName = asPlainText(name);
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
-    const drivenRobot = pupil?.robot ? plainText(pupil.robot) : '';
+    const drivenRobot = pupil?.robot ? asPlainText(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
     const { name: ownRobotName = '', colour = 0 } = pupil?.own_robot ?? {};
     const [body, edge] = COLOURS[colour] ?? COLOURS[0];
     tile.own.style.setProperty('--robot', body);
     tile.own.style.setProperty('--robot-edge', edge);
-    say(tile.name, [plainName, plainText(ownRobotName)].filter(Boolean).join(' · '));
-    say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
+    setText(tile.name, [plainName, asPlainText(ownRobotName)].filter(Boolean).join(' · '));
+    setText(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
     tile.play.hidden = isGroup || state === 'gone' || state === 'away';
     tile.out.hidden = isGroup;

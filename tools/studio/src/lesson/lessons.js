@@ -11,7 +11,7 @@ import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement, makeTextElement } from './page.js';
 import { celebrate } from './celebration.js';
 import { storeDone, storeStars, loadDoneLessons, countAllStars } from './progress.js';
-import { replaceOptions, pictureOption, worldPicture } from '../page/pictures.js';
+import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
@@ -21,7 +21,7 @@ import { isSecondPress } from '../page/twice.js';
 /** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
- * @typedef {object} Answer
+ * @typedef {object} CheckAnswer
  * @property {'' | 'passed' | 'failed' | 'mistakes'} verdict
  * @property {number} seed
  * @property {number} worlds
@@ -185,8 +185,8 @@ export class Lessons {
   #listLessons() {
     const doneLessons = loadDoneLessons();
     replaceOptions(this.#lessonSelect, this.#lessons.map((lesson, index) => {
-      const mark = doneLessons.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return pictureOption(`${index + 1}. ${this.#titleOf(lesson)}${mark}`, String(index + 1), worldPicture(lesson.world));
+      const doneMark = doneLessons.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
+      return makePictureOption(`${index + 1}. ${this.#titleOf(lesson)}${doneMark}`, String(index + 1), makeWorldPicture(lesson.world));
     }));
     this.#lessonSelect.value = String(this.#lessonNumber);
   }
@@ -205,7 +205,7 @@ export class Lessons {
     const requestNumber = ++this.#requestCount;
     const language = currentLanguage();
     this.#forgetCheck();
-    const { steps, block_steps, offered, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number: lessonNumber, language });
+    const { steps, block_steps, offered: offeredKinds, needed: neededKinds, new: newPieces, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number: lessonNumber, language });
     if (requestNumber !== this.#requestCount) return;
     const isOther = lessonNumber !== this.#lessonNumber || !this.#steps.length;
     this.#lessonNumber = lessonNumber; // from now on: until then the one before is seen and checked
@@ -213,7 +213,7 @@ export class Lessons {
     this.#steps = steps;
     this.#blockSteps = block_steps;
     this.#spokenBlocks = spoken;
-    pageState.taughtBlocks.set({ offered, needed, fresh });
+    pageState.taughtBlocks.set({ offered: offeredKinds, needed: neededKinds, fresh: newPieces });
     this.#goToStep(isOther ? 0 : this.#stepIndex);
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#enterLesson();
     this.#setReady(true);
@@ -243,12 +243,12 @@ export class Lessons {
 
   /** Shows what the step says and what a check has found, as this person writes programs. */
   #fillStep() {
-    const step = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
-    if (!step || !lesson) return;
+    const shownStep = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
+    if (!shownStep || !lesson) return;
     const reader = this.#makeReader(lesson);
     element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
-    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => makeBlockElement(block, reader)));
-    element('lesson_hint_said', HTMLElement).replaceChildren(makeTextElement('span', step.hint, reader));
+    element('lesson_step', HTMLElement).replaceChildren(...shownStep.blocks.map((block) => makeBlockElement(block, reader)));
+    element('lesson_hint_said', HTMLElement).replaceChildren(makeTextElement('span', shownStep.hint, reader));
     this.#showFindings(this.#findings);
   }
 
@@ -271,8 +271,8 @@ export class Lessons {
         const spokenBlock = this.#spokenBlocks[code];
         return this.#areBlocks ? spokenBlock ? withNamesAsWritten(labelOfBlock(spokenBlock), code) : labelOfWord(code) : null;
       },
-      drawProgram: this.#areBlocks ? (program, done) => {
-        this.#pictures.request(program, { text: program, robot: pageState.robotName.value }, done);
+      drawProgram: this.#areBlocks ? (program, onDone) => {
+        this.#pictures.request(program, { text: program, robot: pageState.robotName.value }, onDone);
       } : null,
     };
   }
@@ -356,7 +356,7 @@ export class Lessons {
       await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, program);
       while (checkNumber === this.#checkCount) {
         const began_ms = performance.now();
-        /** @type {Answer} */
+        /** @type {CheckAnswer} */
         const answer = await this.#page.python.ask({ do: 'lesson_go', most_ms });
         if (checkNumber !== this.#checkCount) return;
         if (answer.verdict) {
@@ -391,7 +391,7 @@ export class Lessons {
     this.#verdictElement.textContent = bugSentence(error);
   }
 
-  /** @param {Answer & {verdict: keyof typeof VERDICT_KEYS}} answer */
+  /** @param {CheckAnswer & {verdict: keyof typeof VERDICT_KEYS}} answer */
   #showVerdict({ verdict, seed, worlds, said: sentences, block_said, spoken }) {
     const hadFocus = document.activeElement === this.#endButton;
     const lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);

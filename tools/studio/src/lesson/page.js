@@ -52,10 +52,10 @@ function makeProgramElement(program, { useProgram: use, drawProgram: draw }) {
  * @param {Reader} reader
  */
 export function makeTextElement(tag, line, { labelOfCode: say }) {
-  return makeElement(tag, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
-    const markLength = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
-    if (!markLength || part.length <= 2 * markLength) return part;
-    const content = part.slice(markLength, -markLength), label = markLength === 1 ? say(content) : null;
+  return makeElement(tag, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((segment) => {
+    const markLength = segment.startsWith('**') ? 2 : segment.startsWith('`') ? 1 : 0;
+    if (!markLength || segment.length <= 2 * markLength) return segment;
+    const content = segment.slice(markLength, -markLength), label = markLength === 1 ? say(content) : null;
     const partElement = makeElement(markLength === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? content);
     if (label) {
       partElement.className = 'on_block';

@@ -2,7 +2,7 @@
 //
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
-import { storeText, storedJson } from '../page/kept.js';
+import { storeText, loadJson } from '../page/kept.js';
 
 const STORAGE_KEY = 'tiniscript.lessons';
 const STARS_KEY = 'tiniscript.stars';
@@ -11,7 +11,7 @@ const MOST_STARS = 100; // of a lesson
 
 /** @returns {Set<string>} names of lessons */
 export function loadDoneLessons() {
-  const stored = storedJson(STORAGE_KEY);
+  const stored = loadJson(STORAGE_KEY);
   return new Set(Array.isArray(stored) ? stored.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST_LESSONS) : []);
 }
 
@@ -22,7 +22,7 @@ export function storeDone(name) {
 
 /** @returns {Map<string, number>} the most stars that each lesson has brought; one that is done has one at least */
 export function loadStars() {
-  const stored = storedJson(STARS_KEY);
+  const stored = loadJson(STARS_KEY);
   const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MOST_LESSONS);
   const stars = new Map(rows.filter(([name, count]) => /^\w{1,60}$/.test(name) && Number.isInteger(count) && count > 0 && count <= MOST_STARS));
   for (const name of loadDoneLessons()) stars.set(name, stars.get(name) ?? 1);

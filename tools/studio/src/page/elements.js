@@ -13,11 +13,11 @@ export function element(id, kind) {
 }
 
 /** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} target @param {string} text */
-export function say(target, text) {
+export function setText(target, text) {
   if (target.textContent !== text) target.textContent = text;
 }
 
 /** Hides it or shows it, unless it is so. @param {HTMLElement} target @param {boolean} isHidden */
-export function hide(target, isHidden) {
+export function setHidden(target, isHidden) {
   if (target.hidden !== isHidden) target.hidden = isHidden;
 }

@@ -1,11 +1,11 @@
 // What is said of a fault of a program, on the virtual robot and on a real one, and of a mistake of ours.
 
-import { plainText } from '../robot/plain_text.js';
+import { asPlainText } from '../robot/plain_text.js';
 import { hasText, text } from './texts.js';
 
 /** @param {unknown} fault its name @returns {string} a sentence that stands after its line */
 export function faultSentence(fault) {
-  const name = plainText(String(fault));
+  const name = asPlainText(String(fault));
   const key = `fault_${name}`;
   return text(hasText(key) ? key : 'fault_other', { name });
 }

@@ -10,7 +10,7 @@ let isForgetting = false;
 const memoryStore = new Map();
 
 /** What is kept at a place; empty for nothing. @param {string} key @param {StoreName} [storeName] @returns {string} */
-export function storedText(key, storeName = 'localStorage') {
+export function loadText(key, storeName = 'localStorage') {
   if (isForgetting) return memoryStore.get(storeName + key) ?? '';
   try {
     return window[storeName].getItem(key) ?? '';
@@ -20,9 +20,9 @@ export function storedText(key, storeName = 'localStorage') {
 }
 
 /** What is kept at a place as JSON; null for nothing. @param {string} key @param {StoreName} [storeName] @returns {any} */
-export function storedJson(key, storeName) {
+export function loadJson(key, storeName) {
   try {
-    return JSON.parse(storedText(key, storeName) || 'null');
+    return JSON.parse(loadText(key, storeName) || 'null');
   } catch {
     return null; // not what we have put there
   }

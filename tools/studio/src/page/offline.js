@@ -27,7 +27,7 @@ export async function removeForeignWorkers() {
   const registrations = (await navigator.serviceWorker?.getRegistrations()) ?? [];
   const areOwn = await Promise.all(registrations.map(isOwnWorker));
   if (areOwn.every(Boolean)) return false;
-  await Promise.all(registrations.map((registration, k) => areOwn[k] || registration.unregister()));
+  await Promise.all(registrations.map((registration, index) => areOwn[index] || registration.unregister()));
   for (const name of await caches.keys()) await caches.delete(name);
   return true;
 }

@@ -1,7 +1,7 @@
 // The colour and the name that somebody has given the virtual robot, kept on this device. What is kept may be damaged, or
 // somebody else's: all of it is checked.
 
-import { storeText, storedJson } from './kept.js';
+import { storeText, loadJson } from './kept.js';
 import { pageState } from './page_state.js';
 
 /** @typedef {{name: string, colour: number}} OwnRobot `colour` is a number of COLOURS */
@@ -31,11 +31,11 @@ export function showOwnRobot() {
     document.documentElement.style.setProperty('--robot', body);
     document.documentElement.style.setProperty('--robot-edge', edge);
   });
-  pageState.ownRobot.set(ownRobotOf(storedJson(STORAGE_KEY)));
+  pageState.ownRobot.set(ownRobotOf(loadJson(STORAGE_KEY)));
 }
 
 /** @param {OwnRobot} ownRobot @returns {boolean} whether it could be kept */
-export function chooseOwnRobot(ownRobot) {
+export function storeOwnRobot(ownRobot) {
   pageState.ownRobot.set(ownRobotOf(ownRobot));
   return storeText(STORAGE_KEY, JSON.stringify(pageState.ownRobot.value));
 }

@@ -12,25 +12,25 @@ const WIDTH_PX = 96, HEIGHT_PX = 66; // pixels of a robot's picture
 const VISIBLE_CM = 34; // that are seen of one
 
 /** @param {World} world @returns {SVGElement} it from above */
-export function worldPicture(world) {
+export function makeWorldPicture(world) {
   const { width_cm, height_cm, start } = world;
   const borderColour = world.has_border ? '#6b4a2f' : '#c8d2dc';
   const floor = makeSvg('g', { transform: `translate(0 ${height_cm}) scale(1 -1)`, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' },
     makeSvg('rect', { width: width_cm, height: height_cm, fill: '#fffdf6', stroke: borderColour, 'stroke-width': 5 }),
-    ...world.rings.flatMap(({ x_cm, y_cm, radius_cm, edge_cm }) => [discPicture(x_cm, y_cm, radius_cm + 2, '#8b97a3'), discPicture(x_cm, y_cm, radius_cm, '#fff'), discPicture(x_cm, y_cm, Math.max(0, radius_cm - edge_cm), '#3b434c')]),
-    ...world.lamps.flatMap(({ x_cm, y_cm }) => [discPicture(x_cm, y_cm, 20, '#ffe9a3'), discPicture(x_cm, y_cm, 7, '#e08a1e')]),
-    ...world.lines.map(({ points }) => polyline(points, 'none', '#20242a')),
-    ...world.boxes.map((box) => polyline([...cornersOf(box), ...cornersOf(box).slice(0, 1)], '#c79a6b', '#6b4a2f')),
-    ...world.walls.map(({ points }) => polyline(points, 'none', '#6b4a2f')),
-    ...world.flags.map(({ x_cm: x, y_cm: y }) => polyline([[x, y - 6], [x, y + 20], [x + 18, y + 13], [x, y + 6]], '#ffd84d', '#0d6040')),
-    ...world.rivals.map(({ x_cm, y_cm }) => discPicture(x_cm, y_cm, 11, '#9a4fc0')),
-    discPicture(start.x_cm, start.y_cm, 11, '#2a9d6f'),
+    ...world.rings.flatMap(({ x_cm, y_cm, radius_cm, edge_cm }) => [makeDisc(x_cm, y_cm, radius_cm + 2, '#8b97a3'), makeDisc(x_cm, y_cm, radius_cm, '#fff'), makeDisc(x_cm, y_cm, Math.max(0, radius_cm - edge_cm), '#3b434c')]),
+    ...world.lamps.flatMap(({ x_cm, y_cm }) => [makeDisc(x_cm, y_cm, 20, '#ffe9a3'), makeDisc(x_cm, y_cm, 7, '#e08a1e')]),
+    ...world.lines.map(({ points }) => makePolyline(points, 'none', '#20242a')),
+    ...world.boxes.map((box) => makePolyline([...cornersOf(box), ...cornersOf(box).slice(0, 1)], '#c79a6b', '#6b4a2f')),
+    ...world.walls.map(({ points }) => makePolyline(points, 'none', '#6b4a2f')),
+    ...world.flags.map(({ x_cm: x, y_cm: y }) => makePolyline([[x, y - 6], [x, y + 20], [x + 18, y + 13], [x, y + 6]], '#ffd84d', '#0d6040')),
+    ...world.rivals.map(({ x_cm, y_cm }) => makeDisc(x_cm, y_cm, 11, '#9a4fc0')),
+    makeDisc(start.x_cm, start.y_cm, 11, '#2a9d6f'),
   );
   return makeSvg('svg', { viewBox: `-3 -3 ${width_cm + 6} ${height_cm + 6}`, 'aria-hidden': 'true' }, floor);
 }
 
 /** @param {typeof import('./words.js').ROBOTS[number]} robot @returns {HTMLCanvasElement} it from above */
-export function robotPicture(robot) {
+export function makeRobotPicture(robot) {
   const picture = document.createElement('canvas');
   Object.assign(picture, { width: WIDTH_PX, height: HEIGHT_PX });
   const pen = picture.getContext('2d');
@@ -41,14 +41,14 @@ export function robotPicture(robot) {
 }
 
 /** @param {number} count @returns {SVGElement} so many blocks */
-export function blocksPicture(count) {
+export function makeBlocksPicture(count) {
   const firstTop = 14 - 4.5 * count;
   return makeSvg('svg', { viewBox: '0 0 28 28', 'aria-hidden': 'true' }, ...['var(--said-blue)', '#c56a1b', '#2a9d6f'].slice(0, count)
-    .map((fill, k) => makeSvg('path', { d: `M3 ${firstTop + 9 * k}h5q1 2.500 3 2.500t3-2.500h11v8H14q-1 2.500-3 2.500t-3-2.500H3z`, fill })));
+    .map((fill, index) => makeSvg('path', { d: `M3 ${firstTop + 9 * index}h5q1 2.500 3 2.500t3-2.500h11v8H14q-1 2.500-3 2.500t-3-2.500H3z`, fill })));
 }
 
 /** @param {number} share of what it can show @returns {SVGElement} a dial */
-export function dialPicture(share) {
+export function makeDialPicture(share) {
   const angle = Math.PI * share;
   const handPath = `M14 19L${14 - 9 * Math.cos(angle)} ${19 - 9 * Math.sin(angle)}`;
   return makeSvg('svg', { viewBox: '0 0 28 28', 'aria-hidden': 'true' },
@@ -56,12 +56,12 @@ export function dialPicture(share) {
 }
 
 /** @param {string} id of a drawing of the page @returns {SVGElement} it alone */
-export function symbolPicture(id) {
+export function makeSymbolPicture(id) {
   return makeSvg('svg', { viewBox: '-30 -24 60 48', 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));
 }
 
 /** An option with a picture, where the browser shows one. @param {string} label @param {string} value @param {Element} picture */
-export function pictureOption(label, value, picture) {
+export function makePictureOption(label, value, picture) {
   const option = new Option('', value);
   option.append(picture, makeElement('span', '', label));
   return option;
@@ -73,11 +73,11 @@ export function replaceOptions(select, options) {
 }
 
 /** @param {number} cx @param {number} cy @param {number} r @param {string} fill */
-function discPicture(cx, cy, r, fill) {
+function makeDisc(cx, cy, r, fill) {
   return makeSvg('circle', { cx, cy, r, fill });
 }
 
 /** @param {Point[]} points @param {string} fill @param {string} stroke */
-function polyline(points, fill, stroke) {
+function makePolyline(points, fill, stroke) {
   return makeSvg('polyline', { points: points.map((point) => point.join(' ')).join(' '), fill, stroke, 'stroke-width': 5 });
 }

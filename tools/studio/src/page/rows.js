@@ -1,6 +1,6 @@
 // Names and their values, in rows.
 
-import { say } from './elements.js';
+import { setText } from './elements.js';
 import { makeElement } from './made.js';
 
 const SHORT_NAME_CHARACTERS = 12; // characters of a name whose value stands beside another one
@@ -18,7 +18,7 @@ export function showRows(container, rows) {
     else row.removeAttribute('style');
     [name, value].forEach((cellText, column) => {
       const cell = row.children[column];
-      if (cell) say(cell, cellText);
+      if (cell) setText(cell, cellText);
     });
   });
 }

@@ -11,7 +11,7 @@
  */
 export function drawPath(pen, points, color, width, fill = '') {
   pen.beginPath();
-  points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  points.forEach(([x = 0, y = 0], index) => (index ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   if (fill) pen.closePath();
   pen.strokeStyle = color;
   pen.lineWidth = width;

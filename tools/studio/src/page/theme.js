@@ -1,7 +1,7 @@
 // Light or dark: as the system has it, until somebody chooses, which this device keeps.
 
 import { element } from './elements.js';
-import { storeText, storedText } from './kept.js';
+import { storeText, loadText } from './kept.js';
 
 const STORAGE_KEY = 'tiniscript.theme';
 const DARK_QUERY = matchMedia('(prefers-color-scheme: dark)');
@@ -18,7 +18,7 @@ export function startTheme() {
 }
 
 function isDark() {
-  const chosenTheme = storedText(STORAGE_KEY);
+  const chosenTheme = loadText(STORAGE_KEY);
   return chosenTheme === 'dark' || (chosenTheme !== 'light' && DARK_QUERY.matches);
 }
 

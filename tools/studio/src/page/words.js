@@ -43,13 +43,13 @@ const WORDS = new Map(
 );
 
 /** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
-export function blockText(label) {
+export function visibleLabel(label) {
   return pageState.areWordsShown.value ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
 }
 
 /** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */
 export function deviceName(device) {
-  return blockText(`{${device.text}} ${labelOf(device.labels)}`);
+  return visibleLabel(`{${device.text}} ${labelOf(device.labels)}`);
 }
 
 /** @typedef {'number' | 'truth' | 'any'} ValueKind what a value there is */
@@ -78,7 +78,7 @@ export const PLAIN_WORDS = description.words.filter(({ text: word, arguments: va
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
 export function blockLabel(name) {
   const key = `block/${name}`;
-  return blockText(hasText(key) ? text(key) : CHOICE_LABELS[name] ?? '');
+  return visibleLabel(hasText(key) ? text(key) : CHOICE_LABELS[name] ?? '');
 }
 
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string[]} the words of the text that stand on it */

@@ -6,7 +6,7 @@ import { correction, generate } from 'lean-qr';
 import { element } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
 import { downloadFile } from '../page/files.js';
-import { storeText, storedText } from '../page/kept.js';
+import { storeText, loadText } from '../page/kept.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { makeLink, readLink } from './links.js';
 import { isAddress, reachOf } from './reach.js';
@@ -59,7 +59,7 @@ export class Programs {
     // The page's own is behind this window.
     element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
     for (const id of ['new', 'bar_new']) element(id, HTMLButtonElement).addEventListener('click', () => {
-      this.replace({ text: '', robot: page.work.robot, name: '' });
+      this.replaceProgram({ text: '', robot: page.work.robot, name: '' });
       this.#window.close();
     });
     this.#shareDetails.addEventListener('toggle', () => {
@@ -79,7 +79,7 @@ export class Programs {
     document.addEventListener('visibilitychange', () => { // a phone ends a page without a word
       if (document.hidden) this.storeVersion();
     });
-    addEventListener('hashchange', () => this.openLink());
+    addEventListener('hashchange', () => this.openAddressProgram());
   }
 
   /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
@@ -94,7 +94,7 @@ export class Programs {
    * @param {{text: string, robot: string, name: string}} program
    * @returns {boolean} whether it is there
    */
-  replace(program) {
+  replaceProgram(program) {
     if (pageState.groupName.value && !confirm(text('group_replace'))) return false;
     this.storeVersion();
     this.#page.put(program);
@@ -102,7 +102,7 @@ export class Programs {
   }
 
   /** Opens the program of the page's address, if there is one; it does not run. */
-  async openLink() {
+  async openAddressProgram() {
     let program;
     try {
       program = await readLink(location.hash);
@@ -112,7 +112,7 @@ export class Programs {
     if (program === null) return;
     showProgramInstead();
     if (!program) return;
-    this.replace({ ...program, name: '' });
+    this.replaceProgram({ ...program, name: '' });
     pageState.note.set(text('link_opened'));
   }
 
@@ -120,7 +120,7 @@ export class Programs {
     this.storeVersion();
     this.#showVersions();
     this.#nameInput.value = this.#page.work.name.replace(/\.\w+$/, '');
-    this.#publicInput.value = publicAddress();
+    this.#publicInput.value = loadPublicAddress();
     this.#shareDetails.open = false;
     delete this.#window.dataset['shared'];
     this.#window.showModal();
@@ -154,12 +154,12 @@ export class Programs {
 
   /** Where others find the page. */
   get #pageAddress() {
-    return isAddress(publicAddress()) ? publicAddress() : location.href;
+    return isAddress(loadPublicAddress()) ? loadPublicAddress() : location.href;
   }
 
   /** @returns {Promise<ShareResult>} */
   async #makeLink() {
-    if (publicAddress() && !isAddress(publicAddress())) return { refusal: text('public_wrong') };
+    if (loadPublicAddress() && !isAddress(loadPublicAddress())) return { refusal: text('public_wrong') };
     const link = await makeLink(this.#page.work, this.#pageAddress);
     return link === null ? { refusal: text('link_too_long') } : { text: link };
   }
@@ -219,14 +219,14 @@ export class Programs {
   #showVersions() {
     const language = currentLanguage();
     const timeFormat = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
-    const rows = loadVersions().map((version, index, all) => {
+    const rows = loadVersions().map((version, index, versions) => {
       const storedAt = new Date(version.at_ms);
       const timeText = timeFormat.format(storedAt);
       const timeElement = makeElement('time', '', timeText);
       timeElement.dateTime = storedAt.toISOString();
-      const title = versionTitle(version, all.length - index), robotLabel = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
+      const title = versionTitle(version, versions.length - index), robotLabel = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
       const openButton = makeButton('', () => {
-        this.replace(version);
+        this.replaceProgram(version);
         this.#window.close();
         pageState.note.set(text('opened_again', { time: timeText }));
       }, makeThumbnail(version.text, version.robot), makeElement('strong', '', title), timeElement);
@@ -239,6 +239,6 @@ export class Programs {
 }
 
 /** Where others find this page, as somebody has told it; empty for nothing. */
-function publicAddress() {
-  return storedText(PUBLIC_ADDRESS_KEY).slice(0, 200);
+function loadPublicAddress() {
+  return loadText(PUBLIC_ADDRESS_KEY).slice(0, 200);
 }

@@ -6,7 +6,7 @@ import { labelOfLine } from '../blocks/said.js';
 import { pageState } from '../page/page_state.js';
 import { text as said } from '../page/texts.js';
 import { isRobot } from '../page/words.js';
-import { storeText, storedJson } from '../page/kept.js';
+import { storeText, loadJson } from '../page/kept.js';
 
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
@@ -16,7 +16,7 @@ export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five mi
 
 /** @returns {Version[]} */
 export function loadVersions() {
-  const stored = storedJson(STORAGE_KEY);
+  const stored = loadJson(STORAGE_KEY);
   return Array.isArray(stored) ? stored.filter(isVersion).slice(0, MOST_VERSIONS) : [];
 }
 
@@ -42,12 +42,12 @@ export function storeVersion({ text, robot, name }, at_ms = Date.now()) {
  * @param {Version} version @param {number} number @returns {string}
  */
 export function versionTitle({ name, text }, number) {
-  const beginning = pageState.view.value === 'blocks' ? labelOfLine(firstLine(text)) || said('program_unnamed', { number }) : beginningOf(text);
+  const beginning = pageState.view.value === 'blocks' ? labelOfLine(firstInstruction(text)) || said('program_unnamed', { number }) : beginningOf(text);
   return name.replace(/\.\w+$/, '') || beginning;
 }
 
 /** Its first instruction. @param {string} text @returns {string} */
-function firstLine(text) {
+function firstInstruction(text) {
   return text.replace(/\/\/.*$/gm, '').replace(/^\s*(?:SI|SB|PING)\s*\|/i, '').split(/[;\n]/).map((line) => line.trim()).find(Boolean) ?? '';
 }
 

@@ -2,7 +2,7 @@
 //
 // What is kept may be damaged, or from somebody else on this device: all of it is checked.
 
-import { storeText, storedText, storedJson } from '../page/kept.js';
+import { storeText, loadText, loadJson } from '../page/kept.js';
 import { languageOf } from '../page/texts.js';
 import { isRobot, WORLDS } from '../page/words.js';
 
@@ -21,20 +21,20 @@ let ownWorlds = new Set();
 
 /** @returns {Work | null} */
 export function loadWork() {
-  return validWork(storedJson(STORAGE_KEY, 'sessionStorage')) ?? validWork(storedJson(STORAGE_KEY));
+  return validWork(loadJson(STORAGE_KEY, 'sessionStorage')) ?? validWork(loadJson(STORAGE_KEY));
 }
 
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
 export function loadWorldTexts() {
-  const newest = storedText(WORLD_KEY, 'sessionStorage') || storedText(WORLD_KEY);
-  const before = loadEarlierWorlds('sessionStorage') ?? loadEarlierWorlds() ?? [];
-  ownWorlds = new Set([newest, ...before]);
-  return { newest, before };
+  const newestText = loadText(WORLD_KEY, 'sessionStorage') || loadText(WORLD_KEY);
+  const earlierTexts = loadEarlierWorlds('sessionStorage') ?? loadEarlierWorlds() ?? [];
+  ownWorlds = new Set([newestText, ...earlierTexts]);
+  return { newest: newestText, before: earlierTexts };
 }
 
 /** @param {import('../page/kept.js').StoreName} [storeName] @returns {string[] | null} */
 function loadEarlierWorlds(storeName) {
-  const texts = storedJson(EARLIER_WORLDS_KEY, storeName);
+  const texts = loadJson(EARLIER_WORLDS_KEY, storeName);
   return Array.isArray(texts) ? texts.filter((worldText) => typeof worldText === 'string' && worldText) : null;
 }
 
@@ -50,26 +50,26 @@ export function storeWork(work) {
 /**
  * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
  * The next tab finds those of other tabs, too: as they are now, after the ones before. Returns whether it does.
- * @param {string} newest
- * @param {string[]} earlierWorlds the last one first
+ * @param {string} newestText
+ * @param {string[]} earlierTexts the last one first
  * @returns {boolean}
  */
-export function storeWorldTexts(newest, earlierWorlds) {
-  for (const worldText of [newest, ...earlierWorlds]) ownWorlds.add(worldText);
+export function storeWorldTexts(newestText, earlierTexts) {
+  for (const worldText of [newestText, ...earlierTexts]) ownWorlds.add(worldText);
   // What lasts was put there by the tab that changed last, with the worlds of all tabs as it found them.
   const otherWorlds = [...new Set(loadLastingWorlds())].filter((worldText) => !ownWorlds.has(worldText)).slice(0, MOST_OTHER_WORLDS);
   let charactersLeft = MOST_CHARACTERS;
-  const fittingWorlds = [...earlierWorlds, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
-  const ownEarlier = fittingWorlds.filter((worldText) => earlierWorlds.includes(worldText));
+  const fittingWorlds = [...earlierTexts, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
+  const ownEarlier = fittingWorlds.filter((worldText) => earlierTexts.includes(worldText));
   const areEarlierStored = storeInBoth(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlier), JSON.stringify(fittingWorlds));
-  const isStored = newest ? storeInBoth(WORLD_KEY, newest) && areEarlierStored : areEarlierStored;
-  if (isStored) ownWorlds = new Set([newest, ...earlierWorlds]);
+  const isStored = newestText ? storeInBoth(WORLD_KEY, newestText) && areEarlierStored : areEarlierStored;
+  if (isStored) ownWorlds = new Set([newestText, ...earlierTexts]);
   return isStored;
 }
 
 /** Those that the next tab would find. @returns {string[]} */
 function loadLastingWorlds() {
-  return [storedText(WORLD_KEY), ...(loadEarlierWorlds() ?? [])].filter(Boolean);
+  return [loadText(WORLD_KEY), ...(loadEarlierWorlds() ?? [])].filter(Boolean);
 }
 
 /** @param {string} key @param {string} content @param {string} [lastingContent] for the next tab @returns {boolean} whether that is kept, too */

@@ -4,7 +4,7 @@
 // What is held is said at each change, and again while it is held. All is let go at a STOP, when the window or the robot
 // is not seen any more, and for another robot: then a hand has to press anew.
 
-import { element, say } from '../page/elements.js';
+import { element, setText } from '../page/elements.js';
 import { makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
@@ -12,11 +12,11 @@ import { LINK, REMOTE } from '../page/words.js';
 import { readGamepads } from './gamepads.js';
 import { HeldByHolder, isSameHeld, heldOfStick, NOTHING_HELD } from './held.js';
 
-/** @import { Held } from './held.js' */
+/** @import { HeldControls } from './held.js' */
 /**
  * @typedef {object} DrivenRobot a robot that can be driven
  * @property {string[]} reads words of a remote control that its program reads
- * @property {(held: Held) => void} tell says it to the robot
+ * @property {(held: HeldControls) => void} tell says it to the robot
  * @property {boolean} [isDeaf] it has no remote control
  */
 
@@ -29,8 +29,8 @@ const PRESSING_KEYS = [' ', 'Enter']; // what presses a button that has the focu
 const TAKEN_SELECTOR = 'input, textarea, select, dialog, [contenteditable=true], #blocks, #arena, [tabindex="0"]';
 
 export class Pad {
-  #holders = new HeldByHolder();
-  /** @type {Held} */
+  #heldByHolder = new HeldByHolder();
+  /** @type {HeldControls} */
   #lastHeld = NOTHING_HELD;
   #timer = 0;
   #frameRequest = 0; // at the gamepads
@@ -61,7 +61,7 @@ export class Pad {
     });
     element('pad_arrows', HTMLElement).append(...this.#keyButtons.slice(0, 4));
     element('pad_letters', HTMLElement).append(...this.#keyButtons.slice(4));
-    this.#listenToFingers(this.#stickElement, (event) => this.#stickAt(event), true);
+    this.#listenToFingers(this.#stickElement, (event) => this.#controlsAt(event), true);
     this.#padElement.addEventListener('contextmenu', (event) => event.preventDefault()); // of a finger that stays
     addEventListener('keydown', (event) => this.#onKeyDown(event));
     addEventListener('keyup', (event) => this.#onKeyUp(event));
@@ -79,7 +79,7 @@ export class Pad {
   }
 
   /** A robot can be driven on a side of the page, or none can any more. @param {'driving' | 'link'} side @param {DrivenRobot | null} robot */
-  offer(side, robot) {
+  offerRobot(side, robot) {
     const robotBefore = this.#offeredRobots.get(side);
     if (robot && robotBefore && robotBefore.isDeaf === robot.isDeaf && `${robotBefore.reads}` === `${robot.reads}`) return;
     if (robot) this.#offeredRobots.set(side, robot);
@@ -89,10 +89,10 @@ export class Pad {
 
   /** Nobody holds anything before he presses anew. */
   letGo() {
-    this.#holders.letAllGo();
+    this.#heldByHolder.letAllGo();
     this.#fingerMoves.clear();
     this.#pressedKeys.clear();
-    for (const number of readGamepads().keys()) this.#staleGamepads.add(number);
+    for (const gamepadNumber of readGamepads().keys()) this.#staleGamepads.add(gamepadNumber);
     this.#updateHeld();
   }
 
@@ -122,13 +122,13 @@ export class Pad {
   }
 
   #updateNames() {
-    this.#keyButtons.forEach((keyButton, k) => keyButton.setAttribute('aria-label', labelOf(KEY_DEVICES[k]?.labels ?? {})));
-    if (this.#drivenRobot) say(element('pad_said', HTMLElement), this.#drivenRobot.isDeaf ? text('pad_deaf') : '');
+    this.#keyButtons.forEach((keyButton, index) => keyButton.setAttribute('aria-label', labelOf(KEY_DEVICES[index]?.labels ?? {})));
+    if (this.#drivenRobot) setText(element('pad_said', HTMLElement), this.#drivenRobot.isDeaf ? text('pad_deaf') : '');
   }
 
   // -- who holds ----------------------------------------------------------------------------------
 
-  /** A part is held by fingers; of one that `isOne`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => Held} heldAt @param {boolean} [isSingleFinger] */
+  /** A part is held by fingers; of one that `isOne`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} heldAt @param {boolean} [isSingleFinger] */
   #listenToFingers(part, heldAt, isSingleFinger) {
     let fingerId = -1;
     part.addEventListener('pointerdown', (event) => {
@@ -149,7 +149,7 @@ export class Pad {
   }
 
   /** Where a finger has the stick. @param {PointerEvent} event */
-  #stickAt({ clientX, clientY }) {
+  #controlsAt({ clientX, clientY }) {
     const { left, top, width, height } = this.#stickElement.getBoundingClientRect();
     const reach_px = width / 3;
     return heldOfStick((clientX - left - width / 2) / reach_px, (top + height / 2 - clientY) / reach_px);
@@ -189,36 +189,36 @@ export class Pad {
   #pollGamepads() {
     cancelAnimationFrame(this.#frameRequest);
     const heldByGamepad = readGamepads();
-    for (const number of this.#gamepadNumbers) if (!heldByGamepad.has(number)) this.#letHolderGo(gamepadHolder(number));
+    for (const gamepadNumber of this.#gamepadNumbers) if (!heldByGamepad.has(gamepadNumber)) this.#letHolderGo(gamepadHolder(gamepadNumber));
     this.#gamepadNumbers = [...heldByGamepad.keys()];
     if (!this.#drivenRobot || !heldByGamepad.size) return;
-    for (const [number, held] of heldByGamepad) {
-      if (isSameHeld(held, NOTHING_HELD)) this.#staleGamepads.delete(number);
-      if (!this.#staleGamepads.has(number)) this.#hold(gamepadHolder(number), held);
+    for (const [gamepadNumber, controls] of heldByGamepad) {
+      if (isSameHeld(controls, NOTHING_HELD)) this.#staleGamepads.delete(gamepadNumber);
+      if (!this.#staleGamepads.has(gamepadNumber)) this.#hold(gamepadHolder(gamepadNumber), controls);
     }
     this.#frameRequest = requestAnimationFrame(() => this.#pollGamepads());
   }
 
   // -- what is held -------------------------------------------------------------------------------
 
-  /** @param {unknown} holder @param {Held} held */
-  #hold(holder, held) {
-    this.#holders.hold(holder, held);
+  /** @param {unknown} holder @param {HeldControls} controls */
+  #hold(holder, controls) {
+    this.#heldByHolder.hold(holder, controls);
     this.#updateHeld();
   }
 
   /** @param {unknown} holder */
   #letHolderGo(holder) {
-    this.#holders.letGo(holder);
+    this.#heldByHolder.letGo(holder);
     this.#updateHeld();
   }
 
   #updateHeld() {
-    const held = this.#holders.combined;
-    if (isSameHeld(held, this.#lastHeld)) return;
-    this.#lastHeld = held;
-    this.#thumbElement.style.setProperty('translate', `${held.x * THUMB_SHARE}% ${-held.y * THUMB_SHARE}%`);
-    this.#keyButtons.forEach((part, k) => part.classList.toggle('held', Boolean(held.keys & (1 << k))));
+    const controls = this.#heldByHolder.combinedControls;
+    if (isSameHeld(controls, this.#lastHeld)) return;
+    this.#lastHeld = controls;
+    this.#thumbElement.style.setProperty('translate', `${controls.x * THUMB_SHARE}% ${-controls.y * THUMB_SHARE}%`);
+    this.#keyButtons.forEach((part, keyIndex) => part.classList.toggle('held', Boolean(controls.keys & (1 << keyIndex))));
     this.#sendHeld();
   }
 
@@ -230,7 +230,7 @@ export class Pad {
   }
 }
 
-/** @param {number} number */
-function gamepadHolder(number) {
-  return `gamepad ${number}`;
+/** @param {number} gamepadNumber */
+function gamepadHolder(gamepadNumber) {
+  return `gamepad ${gamepadNumber}`;
 }

@@ -1,6 +1,6 @@
 // Breakpoints and steps of a program on a real robot, and the values where it is halted.
 
-import { element, hide } from '../page/elements.js';
+import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { showRows, variableText } from '../page/rows.js';
 import { textKey, text } from '../page/texts.js';
@@ -8,7 +8,7 @@ import { LINK } from '../page/words.js';
 import { StopOffsets } from '../writing/parts.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
-/** @import { About, Answer, RobotEvent } from './transport.js' */
+/** @import { RobotInfo, Answer, RobotEvent } from './transport.js' */
 
 /**
  * @typedef {object} Page
@@ -25,13 +25,13 @@ const END_EVENTS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
 export class Debugging {
   #page;
-  /** @type {About | null} */
-  #about = null;
+  /** @type {RobotInfo | null} */
+  #robotInfo = null;
   /** The newest program that the robot has from here. @type {CheckResult | null} */
   #program = null;
   /** Its places; none once the text is another one. @type {CheckResult['places']} */
   #places = [];
-  #stops = new StopOffsets();
+  #stopOffsets = new StopOffsets();
   #sentPlaces = ''; // the places that the robot has
   #isRunning = false;
   #isStepping = false;
@@ -58,12 +58,12 @@ export class Debugging {
     pageState.language.subscribe(() => this.#show());
   }
 
-  /** A robot is connected, or none any more. @param {About | null} about */
-  meet(about) {
-    this.#about = about;
+  /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */
+  meet(robotInfo) {
+    this.#robotInfo = robotInfo;
     this.#program = null;
     this.#sentPlaces = '';
-    this.#isRunning = about?.is_running ?? false;
+    this.#isRunning = robotInfo?.is_running ?? false;
     this.#endHalt();
   }
 
@@ -122,19 +122,19 @@ export class Debugging {
   }
 
   get #canHalt() {
-    return this.#about?.has_breakpoints ?? false;
+    return this.#robotInfo?.has_breakpoints ?? false;
   }
 
   // -- places -------------------------------------------------------------------------------------
 
   #findPlaces() {
-    this.#stops.update(pageState.breakpoints.value, this.#places);
+    this.#stopOffsets.update(pageState.breakpoints.value, this.#places);
   }
 
   /** Where a robot halts that is to stop at the breakpoints: before a statement of its code. */
   get #haltOffsets() {
     const { places, halts } = this.#program ?? { places: [], halts: [] };
-    const haltOffsets = this.#stops.offsets.map((offset) => halts[places.findIndex(([placeOffset]) => placeOffset === offset)] ?? offset);
+    const haltOffsets = this.#stopOffsets.offsets.map((offset) => halts[places.findIndex(([placeOffset]) => placeOffset === offset)] ?? offset);
     return [...new Set(haltOffsets)];
   }
 
@@ -212,21 +212,21 @@ export class Debugging {
 
   /** @param {boolean} isDeaf there are breakpoints, and the robot cannot halt at them */
   async #offerHalting(isDeaf) {
-    const about = this.#about;
+    const robotInfo = this.#robotInfo;
     const isAvailable = isDeaf && await this.#page.canGetHalting();
-    if (about === this.#about) hide(element('link_halting', HTMLElement), !isAvailable || !pageState.breakpoints.value.length);
+    if (robotInfo === this.#robotInfo) setHidden(element('link_halting', HTMLElement), !isAvailable || !pageState.breakpoints.value.length);
   }
 
   #show() {
     this.#stepButton.disabled = this.#isRunning && !this.#halt;
     this.#continueButton.disabled = !this.#halt;
-    hide(this.#stepButton, !this.#canHalt && !pageState.breakpoints.value.length); // it says why the robot cannot
-    hide(this.#continueButton, !this.#canHalt);
+    setHidden(this.#stepButton, !this.#canHalt && !pageState.breakpoints.value.length); // it says why the robot cannot
+    setHidden(this.#continueButton, !this.#canHalt);
     const isTooMany = this.#haltOffsets.length > LINK.most_breakpoints;
     const notice = element('link_breakpoints', HTMLElement);
-    const isDeaf = this.#about !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
+    const isDeaf = this.#robotInfo !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
     notice.textContent = isDeaf ? text('say_no_breakpoints') : isTooMany ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
-    hide(notice, !isDeaf && !isTooMany);
+    setHidden(notice, !isDeaf && !isTooMany);
     this.#offerHalting(isDeaf);
     const valueList = element('link_values', HTMLElement);
     const { places = [], variables = [] } = this.#program ?? {};
@@ -238,7 +238,7 @@ export class Debugging {
     ] : [];
     showRows(valueList, rows);
     valueList.classList.toggle('past', !this.#isHaltRead);
-    hide(valueList, !rows.length);
+    setHidden(valueList, !rows.length);
     document.documentElement.dataset['halt'] = this.#isHaltRead ? 'read' : this.#halt ? 'halted' : this.#isRunning ? 'running' : 'none';
   }
 }

@@ -7,7 +7,7 @@
 import { RequestQueue, ConnectionFailure, pause, withTimeout } from './transport.js';
 import { LINK, robotOf } from '../page/words.js';
 
-/** @import { RobotListener, About } from './transport.js' */
+/** @import { RobotListener, RobotInfo } from './transport.js' */
 
 /**
  * What carries bytes. `write` keeps the order; `onGone` is called once, when nothing is carried any more.
@@ -62,7 +62,7 @@ export class DirectRobot extends RequestQueue {
    * @param {string} robotName
    * @param {string} language
    * @param {string} keys
-   * @returns {Promise<About>}
+   * @returns {Promise<RobotInfo>}
    */
   async connect(robotName, language, keys) {
     /** @type {Promise<never>} */
@@ -79,7 +79,7 @@ export class DirectRobot extends RequestQueue {
       await this.#acquireLock();
       await this.#python.ask({ do: 'connect', robot: robotName, language }, new TextEncoder().encode(keys));
       if (this.isOver) throw new ConnectionFailure('left'); // nothing of it is in the way of the next one
-      const opened = this.#port.open(
+      const opening = this.#port.open(
         (data) => {
           this.#byteCount += data.length;
           for (const byte of data) this.#receivedBytes.push(byte);
@@ -87,10 +87,10 @@ export class DirectRobot extends RequestQueue {
         },
         () => this.end(new ConnectionFailure(this.#port.goneBy)),
       );
-      opened.then(async () => {
+      opening.then(async () => {
         if (this.isOver) await this.#port.close(); // it was left meanwhile
       }).catch(() => {});
-      await withTimeout(OPEN_LIMIT_MS, opened, 'link_silent');
+      await withTimeout(OPEN_LIMIT_MS, opening, 'link_silent');
       this.#isOpen = true;
       return await this.#sayHello(robotName);
     } catch (error) {
@@ -117,7 +117,7 @@ export class DirectRobot extends RequestQueue {
     });
   }
 
-  /** @param {string} robotName @returns {Promise<About>} */
+  /** @param {string} robotName @returns {Promise<RobotInfo>} */
   async #sayHello(robotName) {
     let answer;
     if (this.#port.isRadio) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
@@ -140,7 +140,7 @@ export class DirectRobot extends RequestQueue {
   stop() {
     if (this.isOver) return;
     this.#port.write(STOP_BYTES).catch(() => {});
-    for (const { id } of this.requests.splice(0)) this.take({ id, failure: 'stopped_elsewhere' });
+    for (const { id } of this.requests.splice(0)) this.takeNews({ id, failure: 'stopped_elsewhere' });
     this.ask({ do: 'stop' }).catch(() => {});
   }
 
@@ -171,7 +171,7 @@ export class DirectRobot extends RequestQueue {
         if (answer.send) await this.#port.write(bytesOf(answer.send));
         if (answer.keys) this.#keepKeys(answer.keys);
         for (const news of answer.news) {
-          this.take(news);
+          this.takeNews(news);
           await undefined; // who has asked hears its answer before what comes next
         }
         if (answer.wakes_ms !== null) wait_ms = Math.max(0, Math.min(LONGEST_WAIT_MS, answer.wakes_ms - performance.now()));

@@ -1,6 +1,6 @@
 // What a real robot does, in a sentence beside its name. Nobody is told of it aloud: what is new is said beneath.
 
-import { element, hide, say } from '../page/elements.js';
+import { element, setHidden, setText } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { textKey, text } from '../page/texts.js';
 
@@ -18,9 +18,9 @@ export class ActivityLine {
     pageState.language.subscribe(() => this.#show());
   }
 
-  /** A robot is connected, or none any more. @param {import('./transport.js').About | null} about */
-  meet(about) {
-    this.#activity = !about ? '' : about.is_running ? 'other' : 'still';
+  /** A robot is connected, or none any more. @param {import('./transport.js').RobotInfo | null} robotInfo */
+  meet(robotInfo) {
+    this.#activity = !robotInfo ? '' : robotInfo.is_running ? 'other' : 'still';
     this.#isWatched = false;
     this.#show();
   }
@@ -45,9 +45,9 @@ export class ActivityLine {
   }
 
   /** @param {RobotEvent} event @param {boolean} isTyped what begins is one that was typed @param {boolean} isOwn it is of this page */
-  onEvent({ event, at = -1 }, isTyped, isOwn) {
+  onEvent({ event, at: offset = -1 }, isTyped, isOwn) {
     if (event === 'PLACE' && this.#activity === 'halted') return;
-    const isBeginning = event === 'STARTED' || (event === 'PLACE' && at >= 0); // by the robot's button
+    const isBeginning = event === 'STARTED' || (event === 'PLACE' && offset >= 0); // by the robot's button
     const activity = isBeginning ? (isTyped ? 'line' : isOwn ? 'own' : 'other') : END_ACTIVITIES[event];
     if (!activity || !this.#activity || (event === 'DONE' && this.#activity === 'waits')) return; // that program has replaced what ran
     this.#activity = activity;
@@ -56,10 +56,10 @@ export class ActivityLine {
 
   #show() {
     const line = element('link_doing', HTMLElement);
-    hide(line, !this.#activity);
+    setHidden(line, !this.#activity);
     if (!this.#activity || !pageState.language.value) return;
     const activityKey = this.#isWatched ? 'senses' : this.#activity;
-    say(line, text(textKey(`doing_${activityKey}`)));
+    setText(line, text(textKey(`doing_${activityKey}`)));
     line.dataset['does'] = activityKey;
   }
 }

@@ -57,9 +57,9 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
     const checksum = { wanted: '' };
     await loader.writeFlash({
       fileArray: [{ data: firmware, address: 0 }], flashMode: 'keep', flashFreq: 'keep', flashSize: 'keep', eraseAll: false, compress: true,
-      reportProgress: (_, written, total) => {
+      reportProgress: (_, writtenBytes, totalBytes) => {
         if (cancelSignal.aborted) throw new ConnectionFailure('flash_cancelled');
-        onProgress(written / total);
+        onProgress(writtenBytes / totalBytes);
       },
       // What the ROM answers are the letters of a sum; esptool-js shows their numbers.
       calculateMD5Hash: (image) => (checksum.wanted = hexOfLetters(md5(image))),
@@ -77,7 +77,7 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
 /** The part of esptool-js for the chip is fetched meanwhile. @param {ESPLoader} loader @param {AbortSignal} cancelSignal */
 async function detectChip(loader, cancelSignal) {
   try {
-    await watchPromise(loader.detectChip('default_reset', DETECT_TRIES), { cancelSignal: cancelSignal });
+    await watchPromise(loader.detectChip('default_reset', DETECT_TRIES), { cancelSignal });
   } catch (error) {
     if (cancelSignal.aborted) throw new ConnectionFailure('flash_not_begun');
     const { name } = /** @type {Error} */ (error);

@@ -18,12 +18,12 @@ const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
 /**
  * Returns the firmware of a robot, or that of a file; rejects with a ConnectionFailure.
- * @param {WantedFirmware | File} wanted
+ * @param {WantedFirmware | File} wantedFirmware
  * @param {string} board
  * @param {WatchOptions} watchOptions
  */
-export async function firmwareOf(wanted, board, watchOptions) {
-  const data = wanted instanceof File ? await wanted.slice(0, MOST_BYTES).arrayBuffer() : await fetchFirmware(wanted, board, watchOptions);
+export async function loadFirmware(wantedFirmware, board, watchOptions) {
+  const data = wantedFirmware instanceof File ? await wantedFirmware.slice(0, MOST_BYTES).arrayBuffer() : await fetchFirmware(wantedFirmware, board, watchOptions);
   return new Uint8Array(data);
 }
 
@@ -57,7 +57,7 @@ export async function flashBoard(port, board, data, onProgress, cancelSignal) {
 }
 
 /** What there is beside this page. @param {WatchOptions} [watchOptions] @returns {Promise<Firmware[]>} */
-export async function firmwares(watchOptions) {
+export async function fetchFirmwares(watchOptions) {
   return JSON.parse(new TextDecoder().decode(await fetchBytes('firmware.json', watchOptions)));
 }
 
@@ -68,7 +68,7 @@ export function haltingTitle(robot) {
 
 /** @param {WantedFirmware} which @param {string} board @param {WatchOptions} watchOptions */
 async function fetchFirmware({ robot, language, halts }, board, watchOptions) {
-  const firmwareList = await firmwares(watchOptions);
+  const firmwareList = await fetchFirmwares(watchOptions);
   const titles = halts ? [haltingTitle(robot)] : [`${robot}_${language}`, robot];
   const firmware = titles.map((title) => firmwareList.find((candidate) => candidate.title === title && candidate.board === board)).find(Boolean);
   if (!firmware) throw new ConnectionFailure('flash_none');

@@ -1,8 +1,8 @@
 // The part of the page that puts a firmware on a board: which file, how far it is, and its end.
 
-import { element, hide } from '../page/elements.js';
+import { element, setHidden } from '../page/elements.js';
 import { choosePort, hasSerial } from './serial.js';
-import { plainText } from './plain_text.js';
+import { asPlainText } from './plain_text.js';
 import { ConnectionFailure } from './transport.js';
 import { watchPromise } from '../page/progress.js';
 import { pageState } from '../page/page_state.js';
@@ -44,7 +44,7 @@ export class Flashing {
     this.#cancelButton.addEventListener('click', () => this.#canceller.abort());
     this.#fileInput.addEventListener('change', () => {
       this.#file = this.#fileInput.files?.[0] ?? null;
-      panel.speech.say('say_file', { name: plainText(this.#file?.name ?? '') });
+      panel.speech.say('say_file', { name: asPlainText(this.#file?.name ?? '') });
     });
   }
 
@@ -57,13 +57,13 @@ export class Flashing {
       this.#boardSelect.replaceChildren(...Object.entries(BOARD_NAMES).filter(([board]) => availableBoards.has(board)).map(([board, name]) => new Option(name, board)));
     }
     element('flash', HTMLElement).hidden = !this.#boardSelect.options.length;
-    const canHalt = (await this.#haltingBoards()).includes(this.#boardSelect.value);
-    hide(element('flash_halting', HTMLElement), !canHalt);
+    const canHalt = (await this.#findHaltingBoards()).includes(this.#boardSelect.value);
+    setHidden(element('flash_halting', HTMLElement), !canHalt);
     this.#haltsInput.checked &&= canHalt;
   }
 
   /** The boards for which there is a firmware of the robot with breakpoints in the place of its reader of text. */
-  async #haltingBoards() {
+  async #findHaltingBoards() {
     if (!hasSerial) return [];
     const { haltingTitle } = await import('./flash.js');
     const title = haltingTitle(pageState.robotName.value);
@@ -72,13 +72,13 @@ export class Flashing {
 
   /** Whether a board can get a firmware with breakpoints from here. */
   async canHalt() {
-    return (await this.#haltingBoards()).length > 0;
+    return (await this.#findHaltingBoards()).length > 0;
   }
 
   /** Somebody wants that firmware: whether it is written is the next question. */
   async offerHalting() {
     await this.#offerBoards();
-    const boards = await this.#haltingBoards();
+    const boards = await this.#findHaltingBoards();
     if (!boards.includes(this.#boardSelect.value)) this.#boardSelect.value = boards[0] ?? '';
     this.#haltsInput.checked = true;
     element('link_teacher', HTMLDetailsElement).open = true;
@@ -89,7 +89,7 @@ export class Flashing {
   async #flash() {
     const { speech, port: chosenKnownPort, isFree, setBusy, meet } = this.#panel;
     if (!isFree()) return;
-    const wanted = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage(), halts: this.#haltsInput.checked };
+    const wantedFirmware = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage(), halts: this.#haltsInput.checked };
     const choosingPort = chosenKnownPort() ? Promise.resolve(chosenKnownPort()) : choosePort();
     this.#canceller = new AbortController();
     const board = this.#boardSelect.value;
@@ -101,8 +101,8 @@ export class Flashing {
       this.#progressBar.value = 0;
       this.#progressBar.hidden = this.#cancelButton.hidden = false;
       const watchOptions = { onWait: () => speech.say('say_fetching_waits'), cancelSignal: signal };
-      const { firmwareOf, flashBoard, loadWriter } = await watchPromise(import('./flash.js'), watchOptions);
-      const data = await firmwareOf(wanted, board, watchOptions);
+      const { loadFirmware, flashBoard, loadWriter } = await watchPromise(import('./flash.js'), watchOptions);
+      const data = await loadFirmware(wantedFirmware, board, watchOptions);
       await watchPromise(loadWriter(board), watchOptions);
       speech.say('say_flashing');
       await flashBoard(port, board, data, (share) => { this.#progressBar.value = share; }, signal);
@@ -111,7 +111,7 @@ export class Flashing {
       await meet(port);
     } catch (error) {
       const reason = signal.aborted ? 'flash_not_begun' : /** @type {Error} */ (error).name === 'TimeoutError' ? 'flash_held' : 'bug';
-      speech.fail(error instanceof ConnectionFailure ? error : new ConnectionFailure(reason, reason === 'bug' ? String(error) : ''));
+      speech.sayFailure(error instanceof ConnectionFailure ? error : new ConnectionFailure(reason, reason === 'bug' ? String(error) : ''));
     } finally {
       this.#progressBar.hidden = this.#cancelButton.hidden = true;
       this.#file = null;
@@ -124,8 +124,8 @@ export class Flashing {
 /** What firmware there is beside the page; a page by itself has none. */
 async function fetchFirmwareList() {
   try {
-    const { firmwares } = await import('./flash.js');
-    return await firmwares();
+    const { fetchFirmwares } = await import('./flash.js');
+    return await fetchFirmwares();
   } catch {
     return [];
   }

@@ -5,10 +5,10 @@
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
 // nothing, and stops the robot. How often STOP was pressed is in every request, so a lost one is made up for.
 
-/** @import { Answer, About } from './transport.js' */
+/** @import { Answer, RobotInfo } from './transport.js' */
 
 import { RequestQueue, ConnectionFailure, pause } from './transport.js';
-import { storeText, storedText } from '../page/kept.js';
+import { storeText, loadText } from '../page/kept.js';
 import { removeForeignWorkers } from '../page/offline.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
@@ -23,7 +23,7 @@ const CONNECT_TRIES = 3;
 /** What this page calls itself. */
 const TAB_ID = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 
-let token = storedText(TOKEN_KEY, 'sessionStorage');
+let token = loadText(TOKEN_KEY, 'sessionStorage');
 /** Why the code of the address has given no token, or nothing. */
 export const entryFailure = await exchangeCode();
 
@@ -35,7 +35,7 @@ export const isPupil = 'class' in dataset && !hasHost;
 if (isPupil) dataset['class'] = 'pupil';
 
 /** From now on this page asks as a pupil. @param {string} pupilToken */
-export function askAs(pupilToken) {
+export function setToken(pupilToken) {
   token = pupilToken;
 }
 
@@ -44,7 +44,7 @@ async function exchangeCode() {
   const code = /^#code=([0-9a-f]{32})$/.exec(location.hash)?.[1];
   if (!code) return '';
   if (await removeForeignWorkers()) {
-    if (storedText(LOADED_CODE_KEY, 'sessionStorage') === code || !storeText(LOADED_CODE_KEY, code, 'sessionStorage')) return 'host_worker';
+    if (loadText(LOADED_CODE_KEY, 'sessionStorage') === code || !storeText(LOADED_CODE_KEY, code, 'sessionStorage')) return 'host_worker';
     location.reload();
     await new Promise(() => {}); // this page does nothing more
   }
@@ -83,7 +83,7 @@ export async function post(request, options = {}, path = './robots') {
 }
 
 /** @returns {Promise<Port[]>} */
-export async function hostPorts() {
+export async function fetchPorts() {
   try {
     return (await post({ do: 'ports' })).ports;
   } catch (error) {
@@ -94,7 +94,7 @@ export async function hostPorts() {
 let seenStops = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
 
 /** @param {number} stops */
-export function hearStops(stops) {
+export function noteStopCount(stops) {
   seenStops = Math.max(seenStops, stops); // an answer may be late
 }
 
@@ -108,7 +108,7 @@ export class HostRobot extends RequestQueue {
   #isAsking = false;
   #heard_ms = 0;
   #beatBegan_ms = -LEAST_BEAT_MS; // the newest beat
-  /** @type {(about: About) => void} */
+  /** @type {(about: RobotInfo) => void} */
   #resolveConnect = () => {};
   /** @type {(why: Error) => void} */
   #rejectConnect = () => {};
@@ -119,10 +119,10 @@ export class HostRobot extends RequestQueue {
    * @param {string} port
    * @param {string} robotName
    * @param {string} language
-   * @returns {Promise<About>}
+   * @returns {Promise<RobotInfo>}
    */
   connect(port, robotName, language) {
-    /** @type {Promise<About>} */
+    /** @type {Promise<RobotInfo>} */
     const connected = new Promise((resolve, reject) => {
       this.#resolveConnect = resolve;
       this.#rejectConnect = reject;
@@ -189,7 +189,7 @@ export class HostRobot extends RequestQueue {
       const answer = await this.#post('beat', { asked: requests });
       this.#heard_ms = performance.now();
       for (const news of answer.news) {
-        this.take(news);
+        this.takeNews(news);
         await undefined; // who has asked hears its answer before what comes next
       }
     } catch (error) {
@@ -206,12 +206,12 @@ export class HostRobot extends RequestQueue {
   }
 
   /** @param {any} news */
-  take(news) {
+  takeNews(news) {
     if (this.isOver || (news.number && news.number <= this.#lastNewsNumber)) return;
     this.#lastNewsNumber = Math.max(this.#lastNewsNumber, news.number ?? 0);
     if (news.over) this.end(new ConnectionFailure(news.over, news.said));
     else if (news.connected) this.#resolveConnect(news.connected);
-    else super.take(news);
+    else super.takeNews(news);
   }
 
   /** @param {ConnectionFailure} failure */

@@ -9,18 +9,18 @@ import { chooseDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { Debugging } from './debugging.js';
 import { ActivityLine } from './doing.js';
 import { DirectRobot } from './direct.js';
-import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
+import { hasHost, fetchPorts, HostRobot, isPupil, isTeacher } from './host.js';
 import { Flashing } from './flashing.js';
 import { readTrim, showTrim } from './trim.js';
-import { choosePort, hasSerial, knownPorts, SerialPort } from './serial.js';
-import { refusal, plainText } from './plain_text.js';
+import { choosePort, hasSerial, listKnownPorts, SerialPort } from './serial.js';
+import { refusalText, asPlainText } from './plain_text.js';
 import { stopAll } from './stops.js';
 import { StopNotice } from './stopping.js';
 import { Speech } from './speech.js';
 import { ConnectionFailure } from './transport.js';
 import { SensorWatch } from './watching.js';
-import { storeText, storedText } from '../page/kept.js';
-import { symbolPicture, replaceOptions, pictureOption } from '../page/pictures.js';
+import { storeText, loadText } from '../page/kept.js';
+import { makeSymbolPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
@@ -28,7 +28,7 @@ import { messageWithFix } from '../writing/messages.js';
 import { shownName, showAt } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
-/** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
+/** @import { RobotInfo, Answer, RobotEvent, Transport } from './transport.js' */
 /** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} GroupRobotEvent of the group's robot: the number among all news, and that of a value in its run */
 /** @typedef {{label: string, symbolId: string, connect: () => Promise<void>, serial?: any}} ConnectionChoice */
 
@@ -52,8 +52,8 @@ export class RobotPanel {
   #page;
   /** @type {Transport | null} */
   #transport = null;
-  /** @type {About | null} */
-  #about = null;
+  /** @type {RobotInfo | null} */
+  #robotInfo = null;
   #isBusy = false;
   #stopCount = 0; // that were pressed
   /** @type {ConnectionChoice[]} */
@@ -67,10 +67,10 @@ export class RobotPanel {
   /** The text of what runs, as it was when that began: another one may have the same code. @type {CheckResult | undefined} */
   #runningProgram;
   #speech = new Speech();
-  #stopping = new StopNotice(this.#speech);
+  #stopNotice = new StopNotice(this.#speech);
   #debugging;
   #activityLine = new ActivityLine();
-  #watching;
+  #sensorWatch;
   /** @type {Flashing} */
   #flashing;
   #onLeft = () => {};
@@ -95,7 +95,7 @@ export class RobotPanel {
       canGetHalting: () => this.#flashing.canHalt(),
       getHalting: () => this.#getHalting(),
     });
-    this.#watching = new SensorWatch({
+    this.#sensorWatch = new SensorWatch({
       python: page.python,
       ask: (request, isQuiet) => this.#askNow(request, () => {}, isQuiet),
       say: (key) => this.#speech.say(key),
@@ -112,14 +112,14 @@ export class RobotPanel {
       ['link_send', () => this.#upload(false)],
       ['link_start', () => this.#debugging.startAgain()],
       ['link_rename', () => this.#rename()],
-      ['trim_set', () => this.#trim()],
-      ['trim_try', () => this.#live('F(2, 60)')],
+      ['trim_set', () => this.#sendTrim()],
+      ['trim_try', () => this.#runLine('F(2, 60)')],
       ['keys_claim', () => this.#claim()],
       ['keys_import', () => element('keys_file', HTMLInputElement).click()],
     ])) element(id, HTMLButtonElement).addEventListener('click', onClick);
     element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#live(this.#lineInput.value);
+      this.#runLine(this.#lineInput.value);
     });
     onFileChosen('keys_file', (file) => this.#importKeys(file));
     this.#flashing = new Flashing({
@@ -135,7 +135,7 @@ export class RobotPanel {
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     onEscapeKey(() => this.stop());
     document.addEventListener('visibilitychange', () => {
-      if (document.visibilityState === 'hidden') this.#hide();
+      if (document.visibilityState === 'hidden') this.#onPageHidden();
     });
     for (const eventName of ['pagehide', 'freeze']) addEventListener(eventName, () => this.#transport?.leave());
     pageState.language.subscribe(() => this.#show());
@@ -148,9 +148,9 @@ export class RobotPanel {
   }
 
   get #robotName() {
-    const about = this.#about;
-    if (!about) return '';
-    return plainText(about.name) || labelOf(robotOf(about.robot ?? '')?.labels ?? {}) || about.id;
+    const robotInfo = this.#robotInfo;
+    if (!robotInfo) return '';
+    return asPlainText(robotInfo.name) || labelOf(robotOf(robotInfo.robot ?? '')?.labels ?? {}) || robotInfo.id;
   }
 
   /** Sends the program and runs it, or says that no robot is there. */
@@ -172,15 +172,15 @@ export class RobotPanel {
     if (!this.#transport) return;
     this.#stopCount += 1;
     this.#debugging.stop();
-    this.#watching.stop();
+    this.#sensorWatch.stop();
     this.#transport.stop();
-    this.#stopping.begin(confirmed);
+    this.#stopNotice.begin(confirmed);
   }
 
-  #hide() {
+  #onPageHidden() {
     if (!this.#transport) return;
     this.stop();
-    this.#stopping.begin('say_hidden');
+    this.#stopNotice.begin('say_hidden');
   }
 
   // -- connecting ---------------------------------------------------------------------------------
@@ -193,23 +193,23 @@ export class RobotPanel {
     let failure = null;
     if (hasHost) {
       try {
-        for (const { port, name, description, virtual } of await hostPorts()) {
+        for (const { port, name, description, virtual } of await fetchPorts()) {
           const details = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
-          const label = plainText([name, details, port].filter(Boolean).join(' · '));
+          const label = asPlainText([name, details, port].filter(Boolean).join(' · '));
           choices.push({ label, symbolId: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.connectByHost(port) });
         }
       } catch (error) {
         failure = error;
       }
     }
-    for (const [index, port] of (await knownPorts()).entries()) {
-      choices.push({ label: text('serial_known', { number: index + 1 }), symbolId: 'drawn_plug', connect: () => this.#connectBySerial(Promise.resolve(port)), serial: port });
+    for (const [portIndex, port] of (await listKnownPorts()).entries()) {
+      choices.push({ label: text('serial_known', { number: portIndex + 1 }), symbolId: 'drawn_plug', connect: () => this.#connectBySerial(Promise.resolve(port)), serial: port });
     }
     this.#choices = choices;
-    replaceOptions(this.#portSelect, choices.map(({ label, symbolId: drawn }) => pictureOption(label, label, symbolPicture(drawn))));
+    replaceOptions(this.#portSelect, choices.map(({ label, symbolId }) => makePictureOption(label, label, makeSymbolPicture(symbolId))));
     this.#show();
     if (this.#transport) return;
-    if (failure instanceof ConnectionFailure) this.#speech.fail(failure);
+    if (failure instanceof ConnectionFailure) this.#speech.sayFailure(failure);
     else if (choices.length) this.#speech.say('say_choose');
     else if (hasHost) this.#speech.say('say_none');
     else this.#speech.say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
@@ -240,10 +240,10 @@ export class RobotPanel {
   /** @param {import('./direct.js').Port} port @param {import('./transport.js').RobotListener} listener */
   #openDirect(port, listener) {
     const transport = new DirectRobot(this.#page.python, port, listener, (keys) => storeText(KEYS_STORAGE_KEY, keys));
-    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage(), storedText(KEYS_STORAGE_KEY)) };
+    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage(), loadText(KEYS_STORAGE_KEY)) };
   }
 
-  /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connected: Promise<About>}>} openTransport */
+  /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connected: Promise<RobotInfo>}>} openTransport */
   async #connect(openTransport) {
     if (this.#isBusy || this.#transport) return;
     this.#isBusy = true;
@@ -260,13 +260,13 @@ export class RobotPanel {
       },
     };
     try {
-      const opened = await openTransport(listener);
-      transport = this.#transport = opened.transport; // STOP reaches it from now on
+      const connection = await openTransport(listener);
+      transport = this.#transport = connection.transport; // STOP reaches it from now on
       this.#show();
-      const about = await opened.connected;
+      const robotInfo = await connection.connected;
       clearTimeout(noticeTimer);
-      this.#about = about;
-      this.#onConnected(about);
+      this.#robotInfo = robotInfo;
+      this.#onConnected(robotInfo);
     } catch (error) {
       if (this.#transport === transport) this.#onDisconnected(error instanceof ConnectionFailure ? error : new ConnectionFailure('bug', String(error))); // else it was told
     } finally {
@@ -276,35 +276,35 @@ export class RobotPanel {
     }
   }
 
-  /** @param {About} about */
-  #onConnected(about) {
+  /** @param {RobotInfo} robotInfo */
+  #onConnected(robotInfo) {
     this.#speech.clear();
-    this.#debugging.meet(about);
-    this.#activityLine.meet(about);
-    const isOtherRobot = about.robot !== null && about.robot !== pageState.robotName.value;
-    if (about.robot !== null && isOtherRobot) pageState.robotName.set(about.robot);
-    if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#robotName });
-    else if (isOtherRobot) this.#speech.say('say_other_kit', { name: this.#robotName, robot: String(about.robot) });
+    this.#debugging.meet(robotInfo);
+    this.#activityLine.meet(robotInfo);
+    const isOtherRobot = robotInfo.robot !== null && robotInfo.robot !== pageState.robotName.value;
+    if (robotInfo.robot !== null && isOtherRobot) pageState.robotName.set(robotInfo.robot);
+    if (robotInfo.owner === 'other') this.#speech.say('say_owned', { name: this.#robotName });
+    else if (isOtherRobot) this.#speech.say('say_other_kit', { name: this.#robotName, robot: String(robotInfo.robot) });
     else this.#speech.say('say_connected', { name: this.#robotName });
-    element('link_rename_to', HTMLInputElement).value = plainText(about.name);
-    this.#watching.meet(about);
-    this.#page.recorder.meet(about);
+    element('link_rename_to', HTMLInputElement).value = asPlainText(robotInfo.name);
+    this.#sensorWatch.meet(robotInfo);
+    this.#page.recorder.meet(robotInfo);
     this.#transport?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
 
   /** @param {ConnectionFailure} failure */
   #onDisconnected(failure) {
     this.#transport = null;
-    this.#about = null;
+    this.#robotInfo = null;
     this.#sentProgram = null;
     this.#runningProgram = undefined;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
     this.#debugging.meet(null);
     this.#activityLine.meet(null);
-    this.#watching.meet(null);
-    const stopSentence = this.#stopping.end();
-    this.#speech.fail(failure, stopSentence);
+    this.#sensorWatch.meet(null);
+    const stopSentence = this.#stopNotice.end();
+    this.#speech.sayFailure(failure, stopSentence);
     this.#show();
     this.#onLeft();
   }
@@ -318,10 +318,10 @@ export class RobotPanel {
    * @returns {Promise<Answer | null>} null if it failed
    */
   async #ask(request, onDone = () => {}, isQuiet = false) {
-    const pausing = this.#about && this.#watching.pauseFor(request);
+    const pausing = this.#robotInfo && this.#sensorWatch.pauseFor(request);
     if (pausing) await pausing;
     const answer = await this.#askNow(request, onDone, isQuiet);
-    this.#watching.resumeAfter(request);
+    this.#sensorWatch.resumeAfter(request);
     return answer;
   }
 
@@ -332,14 +332,14 @@ export class RobotPanel {
    * @returns {Promise<Answer | null>}
    */
   async #askNow(request, onDone, isQuiet) {
-    if (!this.#transport || !this.#about) return null;
+    if (!this.#transport || !this.#robotInfo) return null;
     const isUnannounced = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
     const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
       const answer = await this.#transport.ask(request);
       clearTimeout(noticeTimer);
       if (answer.ok) onDone(answer);
-      else if (!isQuiet) this.#speech.fail(new ConnectionFailure(answer.failure ?? 'bug', refusal(answer)));
+      else if (!isQuiet) this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
       return answer.ok ? answer : null;
     } catch {
       return null; // it is over, and that was said
@@ -375,25 +375,25 @@ export class RobotPanel {
   #offerRemote() {
     const remoteWords = this.#sentProgram?.remote.length ? this.#sentProgram.remote : pageState.checkResult.value?.remote ?? this.#remoteWords;
     this.#remoteWords = remoteWords;
-    const about = this.#about;
-    this.#page.pad.offer('link', about && remoteWords.length ? {
+    const robotInfo = this.#robotInfo;
+    this.#page.pad.offerRobot('link', robotInfo && remoteWords.length ? {
       reads: remoteWords,
-      isDeaf: !about.has_remote,
-      tell: (held) => this.#sendHeldKeys(held),
+      isDeaf: !robotInfo.has_remote,
+      tell: (controls) => this.#sendHeldKeys(controls),
     } : null);
   }
 
-  /** @param {import('../remote/held.js').Held} held */
-  async #sendHeldKeys(held) {
-    const answer = await this.#transport?.press(held).catch(() => null); // it is over, and that was said
+  /** @param {import('../remote/held.js').HeldControls} controls */
+  async #sendHeldKeys(controls) {
+    const answer = await this.#transport?.press(controls).catch(() => null); // it is over, and that was said
     if (!answer?.said) return; // it has heard it, or the next word
     this.#page.pad.letGo(); // it is not asked again and again
-    this.#speech.fail(new ConnectionFailure(answer.failure ?? 'bug', refusal(answer)));
+    this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
   }
 
   /** Runs a line now. @param {string} line */
-  async #live(line) {
-    if (!line.trim() || !this.#about) return;
+  async #runLine(line) {
+    if (!line.trim() || !this.#robotInfo) return;
     const stopCount = this.#stopCount;
     const robotName = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
@@ -402,7 +402,7 @@ export class RobotPanel {
     if (stopCount !== this.#stopCount) return; // STOP was pressed since
     const mistake = checkResult.findings.find((finding) => finding.severity === 'mistake');
     if (mistake) {
-      this.#speech.tell(messageWithFix(mistake));
+      this.#speech.saySentence(messageWithFix(mistake));
       return;
     }
     this.#rememberProgram(checkResult);
@@ -414,13 +414,13 @@ export class RobotPanel {
     const name = element('link_rename_to', HTMLInputElement).value.trim();
     if (!name || new TextEncoder().encode(name).length > LINK.name_bytes) return;
     this.#ask({ do: 'name', name }, () => {
-      if (this.#about) this.#about = { ...this.#about, name };
-      this.#speech.say('say_named', { name: plainText(name) });
+      if (this.#robotInfo) this.#robotInfo = { ...this.#robotInfo, name };
+      this.#speech.say('say_named', { name: asPlainText(name) });
       this.#show();
     });
   }
 
-  #trim() {
+  #sendTrim() {
     this.#ask({ do: 'trim', trim: readTrim() }, ({ trim }) => {
       if (trim) showTrim(trim);
       this.#speech.say('say_trimmed');
@@ -449,7 +449,7 @@ export class RobotPanel {
       return;
     }
     try {
-      const imported = await this.#page.python.ask({ do: 'import_keys', kept: storedText(KEYS_STORAGE_KEY) }, await bytesOf(file));
+      const imported = await this.#page.python.ask({ do: 'import_keys', kept: loadText(KEYS_STORAGE_KEY) }, await bytesOf(file));
       if (imported.count) storeText(KEYS_STORAGE_KEY, imported.keys);
       this.#speech.say(imported.count ? 'say_keys' : 'say_no_keys', { count: imported.count });
     } catch {
@@ -462,7 +462,7 @@ export class RobotPanel {
   /** @param {RobotEvent} event */
   #onRobotEvent(event) {
     const isTyped = event.program === this.#lineChecksum;
-    if (this.#watching.onEvent(event, isTyped)) return;
+    if (this.#sensorWatch.onEvent(event, isTyped)) return;
     this.#page.recorder.onEvent(event);
     this.#page.place.onEvent(event);
     this.#activityLine.onEvent(event, isTyped, this.#programOf(event.program) !== undefined);
@@ -473,27 +473,27 @@ export class RobotPanel {
   /** @param {RobotEvent} event */
   #showEvent(event) {
     if (event.event === 'SHOW') this.#speech.addLine([this.#shownValueName(event), event.value].filter(Boolean).join(' '));
-    else if (event.event === 'TEXT') this.#speech.addLine(text('say_text', { said: plainText(String(event.text)) }));
+    else if (event.event === 'TEXT') this.#speech.addLine(text('say_text', { said: asPlainText(String(event.text)) }));
     else if (event.event === 'MISSED') this.#speech.addLine(text('say_missed', { count: Number(event.count) }));
     else if (event.event === 'DONE') this.#speech.say('say_done');
     else if (event.event === 'FAULT') this.#showFault(event, this.#sentProgram, true);
     else if (event.event === 'LOST') this.#onLinkLost();
     else if (event.event === 'STARTED') {
-      this.#stopping.forget();
+      this.#stopNotice.forget();
       this.#runningProgram = this.#programOf(event.program);
-    } else if (event.event === 'STOPPING') this.#stopping.begin();
+    } else if (event.event === 'STOPPING') this.#stopNotice.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
       this.#page.pad.letGo();
       // A page that is hidden keeps the words why it stopped the robot.
-      if (this.#stopping.isOpen || document.visibilityState !== 'hidden') this.#stopping.confirm(String(event.cause));
+      if (this.#stopNotice.isOpen || document.visibilityState !== 'hidden') this.#stopNotice.confirm(String(event.cause));
     }
   }
 
   // -- what the robot of the group says -----------------------------------------------------------
 
   /** The robot of the group, which another page drives, has told this. @param {GroupRobotEvent} event */
-  witness(event) {
+  onGroupEvent(event) {
     if (this.#transport || this.#isBusy) return;
     const { event: eventName, program, robot: robotName = '', nth: valueNumber } = event;
     if (eventName === 'ROBOT') {
@@ -521,7 +521,7 @@ export class RobotPanel {
     this.#page.recorder.onEvent(event);
     this.#page.place.onEvent(event);
     if (event.event === 'OVER') this.#speech.say('group_run_over');
-    else if (event.event === 'STOPPED') this.#stopping.confirm(String(event.cause));
+    else if (event.event === 'STOPPED') this.#stopNotice.confirm(String(event.cause));
     else if (event.event === 'FAULT') this.#showFault(event, this.#programOf(event.program), false);
     else this.#showEvent(event);
   }
@@ -555,16 +555,16 @@ export class RobotPanel {
   }
 
   /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
-  #shownValueName({ program, at }) {
+  #shownValueName({ program, at: offset }) {
     if (!program) return '';
     if (this.#runningProgram?.program !== program) this.#runningProgram = this.#programOf(program);
-    const show = this.#runningProgram && showAt(this.#runningProgram, at);
+    const show = this.#runningProgram && showAt(this.#runningProgram, offset);
     return show ? shownName(show, show[1], false) : '';
   }
 
   /** The robot is silent. */
   #onLinkLost() {
-    if (this.#stopping.isOpen) this.#stopping.showUnconfirmed();
+    if (this.#stopNotice.isOpen) this.#stopNotice.showUnconfirmed();
     else this.#speech.say('why_link_lost');
   }
 
@@ -573,17 +573,17 @@ export class RobotPanel {
     const sentence = faultSentence(event.fault);
     const place = source?.program === event.program ? source?.places.findLast(([offset]) => offset <= Number(event.at)) : undefined;
     if (!place) {
-      this.#speech.tell(sentence);
+      this.#speech.saySentence(sentence);
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#speech.tell(text('say_fault', { line, what: sentence }));
+    this.#speech.saySentence(text('say_fault', { line, what: sentence }));
     // else the places are those of another text
     if (movesCaret && pageState.checkResult.value === source) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {
-    const isConnected = this.#about !== null;
+    const isConnected = this.#robotInfo !== null;
     element('link_ways', HTMLElement).hidden = this.#transport !== null;
     element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
     element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);

@@ -7,13 +7,13 @@ import { hasText, text } from '../page/texts.js';
 const MOST_CHARACTERS = 200; // of a name or a text
 
 /** @param {Answer} answer */
-export function refusal({ failure = '', said = '', advice = '' }) {
+export function refusalText({ failure = '', said: sentence = '', advice = '' }) {
   const adviceKey = `try_${failure}`;
-  return [said, hasText(adviceKey) ? text(adviceKey) : advice].join(' ').trim();
+  return [sentence, hasText(adviceKey) ? text(adviceKey) : advice].join(' ').trim();
 }
 
 /** What somebody else has written, without what moves or hides text. @param {string} text */
-export function plainText(text, mostCharacters = MOST_CHARACTERS) {
+export function asPlainText(text, mostCharacters = MOST_CHARACTERS) {
   const plain = text.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
   return plain.length > mostCharacters ? `${plain.slice(0, mostCharacters)}…` : plain;
 }

@@ -1,12 +1,12 @@
 // Records what a robot tells of a run of a program that it has from here: the run is kept beside those of the virtual robot.
 
-import { element, hide } from '../page/elements.js';
+import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { text as textOf } from '../page/texts.js';
 import { devicesOf } from '../page/words.js';
 import { Run } from '../virtual/runs.js';
 
-/** @typedef {import('./transport.js').About} About */
+/** @typedef {import('./transport.js').RobotInfo} About */
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 
@@ -38,9 +38,9 @@ export class Recorder {
     pageState.language.subscribe(() => this.#show());
   }
 
-  /** A robot is connected. @param {About} about */
-  meet(about) {
-    this.#lacksReadings = !about.has_readings;
+  /** A robot is connected. @param {About} robotInfo */
+  meet(robotInfo) {
+    this.#lacksReadings = !robotInfo.has_readings;
   }
 
   /** A robot gets a program, or may get it from others of the group. @param {CheckResult} checkResult */
@@ -99,9 +99,9 @@ export class Recorder {
   #addReadings(rows) {
     if (this.#isOver || !this.#run) return;
     for (const row of rows) {
-      const [ms, text] = row;
-      this.#began_ms ??= performance.now() - ms;
-      if (this.#run.rows.length >= MOST_EVENTS || ms > MOST_MS) return this.end('STOPPED');
+      const [event_ms, text] = row;
+      this.#began_ms ??= performance.now() - event_ms;
+      if (this.#run.rows.length >= MOST_EVENTS || event_ms > MOST_MS) return this.end('STOPPED');
       this.#run.addRow(row);
       if (text.startsWith(UNREAD_PREFIX)) this.#incompleteSensors.add(text.slice(UNREAD_PREFIX.length));
     }
@@ -123,7 +123,7 @@ export class Recorder {
       const { checkResult: checked, text, robot } = sentProgram;
       const run = this.#run = new Run({ of: 'real', text, robot, program, is_by_button: began_ms === null }, checked, null);
       run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
-      this.#page.runs.begin(run);
+      this.#page.runs.addRun(run);
     }
     this.#show();
   }
@@ -139,10 +139,10 @@ export class Recorder {
   }
 
   #show() {
-    hide(this.#playButton, !this.#run?.rows.length);
+    setHidden(this.#playButton, !this.#run?.rows.length);
     const notice = element('record_lacks', HTMLElement);
     const noticeKey = this.#incompleteSensors.size ? 'record_untold' : this.#lacksReadings && this.#readsSensor ? 'record_no_readings' : null;
-    hide(notice, !this.#run || !noticeKey);
+    setHidden(notice, !this.#run || !noticeKey);
     notice.textContent = this.#run && noticeKey ? textOf(noticeKey, { sensors: [...this.#incompleteSensors].join(', ') }) : '';
   }
 }

@@ -12,7 +12,7 @@ const SPP_UUID = '00001101-0000-1000-8000-00805f9b34fb';
 export const hasSerial = SERIAL !== undefined;
 
 /** Returns the ports that a person has allowed before. @returns {Promise<any[]>} */
-export async function knownPorts() {
+export async function listKnownPorts() {
   try {
     return hasSerial ? await SERIAL.getPorts() : [];
   } catch {

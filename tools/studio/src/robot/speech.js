@@ -1,7 +1,7 @@
 // What the panel of a real robot says, and what the robot shows: as text, never as markup.
 
 import { element } from '../page/elements.js';
-import { plainText } from './plain_text.js';
+import { asPlainText } from './plain_text.js';
 import { pageState } from '../page/page_state.js';
 import { hasText, textKey, text } from '../page/texts.js';
 
@@ -29,9 +29,9 @@ export class Speech {
   }
 
   /** @param {ConnectionFailure} failure @param {() => string} [addition] that is said with it */
-  fail(failure, addition = () => '') {
+  sayFailure(failure, addition = () => '') {
     const key = `why_${failure.reason}`;
-    const sentence = plainText(failure.details, MOST_SENTENCE_CHARACTERS);
+    const sentence = asPlainText(failure.details, MOST_SENTENCE_CHARACTERS);
     const isKnown = hasText(key) && (!sentence || failure.reason.startsWith('link_'));
     this.#setSentence(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${addition()}`.trim(), failure.reason);
   }
@@ -46,7 +46,7 @@ export class Speech {
   }
 
   /** @param {string} sentence */
-  tell(sentence) {
+  saySentence(sentence) {
     if (this.isHeldByStop) return;
     this.#sentenceName = '';
     this.#sentence = () => sentence;

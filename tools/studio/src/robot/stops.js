@@ -3,7 +3,7 @@
 import { element } from '../page/elements.js';
 import { makeElement } from '../page/made.js';
 import { isTeacher, post } from './host.js';
-import { plainText } from './plain_text.js';
+import { asPlainText } from './plain_text.js';
 import { pause } from './transport.js';
 import { text } from '../page/texts.js';
 import { LINK } from '../page/words.js';
@@ -29,9 +29,9 @@ export async function stopAll() {
   }
   clearTimeout(noticeTimer);
   while (stopNumber === newestStop && robots) {
-    const passed_ms = performance.now() - began_ms;
-    const isOver = passed_ms > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
-    showStops(robots, isOver || passed_ms > LATE_MS);
+    const elapsed_ms = performance.now() - began_ms;
+    const isOver = elapsed_ms > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
+    showStops(robots, isOver || elapsed_ms > LATE_MS);
     if (isOver) return;
     await pause(POLL_MS);
     robots = (await requestStops('stops')) ?? robots;
@@ -52,7 +52,7 @@ function showStops(robots, isLate) {
   const target = element('stops', HTMLElement);
   const lateRobots = robots?.filter(({ stop }) => stop === 'silent' || (isLate && stop === 'asked')) ?? [];
   const confirmedCount = robots?.filter(({ stop }) => stop === 'confirmed').length ?? 0;
-  const silentSentence = robots ? lateRobots.length && text('stops_silent', { names: lateRobots.map(({ name }) => plainText(name)).join(', ') }) : text('stops_gone');
+  const silentSentence = robots ? lateRobots.length && text('stops_silent', { names: lateRobots.map(({ name }) => asPlainText(name)).join(', ') }) : text('stops_gone');
   const hasNoRobots = robots?.length === 0;
   target.hidden = hasNoRobots && !isTeacher;
   target.dataset['confirmed'] = `${confirmedCount}`;

@@ -1,7 +1,7 @@
 // What all transports to a robot have in common: what they say, and how they fail.
 
 /**
- * @typedef {object} About what a robot says of itself
+ * @typedef {object} RobotInfo what a robot says of itself
  * @property {string} name
  * @property {string} id
  * @property {string | null} robot the name of its shipped profile
@@ -23,7 +23,7 @@
  * @property {string} [program]
  * @property {string} [saved]
  * @property {Trim} [trim]
- * @property {About} [robot]
+ * @property {RobotInfo} [robot]
  * @property {number[]} [variables] from the first one on that was asked for
  * @property {[string, number][]} [tasks] state and place of each, the main one last
  */
@@ -66,7 +66,7 @@
 /**
  * @typedef {object} Transport to a connected robot
  * @property {(request: Record<string, unknown>) => Promise<Answer>} ask
- * @property {(held: import('../remote/held.js').Held) => Promise<Answer>} press
+ * @property {(held: import('../remote/held.js').HeldControls) => Promise<Answer>} press
  * @property {() => void} stop
  * @property {() => void} leave
  */
@@ -117,11 +117,11 @@ export class RequestQueue {
   /**
    * Says what is held of a remote control. It takes the place of what was not sent yet, and is not sent again: that would
    * press a key that was let go.
-   * @param {import('../remote/held.js').Held} held
+   * @param {import('../remote/held.js').HeldControls} controls
    */
-  press(held) {
+  press(controls) {
     this.requests = this.withoutKeys(this.requests);
-    return this.ask({ do: 'keys', ...held });
+    return this.ask({ do: 'keys', ...controls });
   }
 
   /** What is asked but for keys, whose askers hear that they were not sent. @param {Record<string, unknown>[]} requests */
@@ -138,7 +138,7 @@ export class RequestQueue {
   async send() {}
 
   /** @param {any} news an event, or an answer */
-  take(news) {
+  takeNews(news) {
     if (news.event) this.#listener.onEvent(news);
     else {
       this.#pendingRequests.get(news.id)?.resolve(news);

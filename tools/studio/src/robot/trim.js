@@ -37,13 +37,13 @@ export function readTrim() {
     is_exchanged: exchangedInput.checked,
     is_left_reversed: leftInput.checked,
     is_right_reversed: rightInput.checked,
-    balance: clampedNumber(balanceInput),
-    least: clampedNumber(leastInput),
+    balance: clampToField(balanceInput),
+    least: clampToField(leastInput),
   };
 }
 
 /** A whole number between the field's limits. @param {HTMLInputElement} field */
-function clampedNumber(field) {
-  const number = Math.round(Number(field.value)) || 0;
-  return Math.min(Number(field.max), Math.max(Number(field.min), number));
+function clampToField(field) {
+  const rounded = Math.round(Number(field.value)) || 0;
+  return Math.min(Number(field.max), Math.max(Number(field.min), rounded));
 }

@@ -4,9 +4,9 @@
 // motor in it. It begins where nothing runs and nothing waits for the robot's button, which stops a line instead of
 // starting the program; whatever else is asked of the robot comes first. A stop ends it until somebody wants it again.
 
-import { element, hide } from '../page/elements.js';
-import { storeText, storedText } from '../page/kept.js';
-import { readingText, numberOf, percentOfRange } from '../page/readings.js';
+import { element, setHidden } from '../page/elements.js';
+import { storeText, loadText } from '../page/kept.js';
+import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
 import { showRows } from '../page/rows.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
@@ -15,7 +15,7 @@ import { Plot } from '../virtual/plot.js';
 import { showAt } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
-/** @import { About, Answer, RobotEvent } from './transport.js' */
+/** @import { RobotInfo, Answer, RobotEvent } from './transport.js' */
 
 /**
  * @typedef {object} Page
@@ -36,8 +36,8 @@ const INTERRUPTING_REQUESTS = ['identify', 'name', 'trim', 'claim'];
 
 export class SensorWatch {
   #page;
-  /** @type {About | null} */
-  #about = null;
+  /** @type {RobotInfo | null} */
+  #robotInfo = null;
   #isWanted = false; // until this person, a stop or the robot's button ends it
   #isFree = false; // nothing else runs, or was asked for, or has stopped the robot
   #isBusy = false; // something else runs
@@ -65,17 +65,17 @@ export class SensorWatch {
     new ResizeObserver(() => this.#show()).observe(element('senses', HTMLElement));
   }
 
-  /** A robot is connected, or none any more. @param {About | null} about */
-  meet(about) {
-    this.#about = about;
-    this.#isFree = about?.is_idle ?? false;
-    this.#isBusy = about?.is_running ?? false;
-    this.#isWanted = storedText(STORAGE_KEY) !== '' && about?.owner !== 'other';
+  /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */
+  meet(robotInfo) {
+    this.#robotInfo = robotInfo;
+    this.#isFree = robotInfo?.is_idle ?? false;
+    this.#isBusy = robotInfo?.is_running ?? false;
+    this.#isWanted = loadText(STORAGE_KEY) !== '' && robotInfo?.owner !== 'other';
     this.#isProgramWaiting = this.#isOwnLine = false;
     this.#readings.clear();
     this.#plot.begin();
     this.#began_ms = performance.now();
-    this.#end();
+    this.#stopWatching();
     this.#followSide();
   }
 
@@ -85,7 +85,7 @@ export class SensorWatch {
     if (action === 'upload' || action === 'live' || action === 'start') {
       if (action === 'upload') this.#isProgramWaiting = true; // until it begins
       this.#isFree = false;
-      this.#end();
+      this.#stopWatching();
       return null;
     }
     if (!INTERRUPTING_REQUESTS.includes(String(action)) || !this.#isOn) return null;
@@ -101,28 +101,28 @@ export class SensorWatch {
   stop() {
     if (this.#isOn || this.#isBeginning) this.#isWanted = false;
     this.#isFree = false;
-    this.#end();
+    this.#stopWatching();
   }
 
   /** @param {RobotEvent} event @param {boolean} isTyped it tells of a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
-  onEvent({ event, program = '', value = '', at = -1, cause }, isTyped) {
+  onEvent({ event, program = '', value = '', at: offset = -1, cause }, isTyped) {
     const isOwn = this.#lines.has(program);
     if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
-      if (isOwn) this.#takeReading(program, at, value);
+      if (isOwn) this.#takeReading(program, offset, value);
       return isOwn || (!program && this.#isOwnLine);
     }
     if (event === 'STARTED' || event === 'PLACE') {
       if (isOwn) return true;
-      if (event === 'PLACE' && at < 0) return false;
+      if (event === 'PLACE' && offset < 0) return false;
       if (!isTyped) this.#isProgramWaiting = false; // by the robot's button, too, of which nothing tells but where the program is
       this.#isFree = this.#isOwnLine = false;
       this.#isBusy = true;
-      this.#end();
+      this.#stopWatching();
     } else if (event === 'DONE') {
       const wasOwn = this.#isOwnLine;
       this.#isOwnLine = this.#isBusy = false;
-      this.#end();
+      this.#stopWatching();
       if (wasOwn) return true;
       this.#isFree = true;
       this.#beginLater();
@@ -130,7 +130,7 @@ export class SensorWatch {
       if (this.#isOn && cause === 'BUTTON') queueMicrotask(() => this.#page.say('say_watch_button')); // after what is said of the stop
       if (this.#isOn) this.#isWanted = false;
       this.#isFree = this.#isBusy = this.#isOwnLine = false;
-      this.#end();
+      this.#stopWatching();
     }
     return false;
   }
@@ -146,35 +146,35 @@ export class SensorWatch {
     else {
       this.#isFree = true; // also of one that stands since a stop
       this.#isProgramWaiting = false;
-      this.#begin(false);
+      this.#startWatching(false);
     }
     this.#show();
   }
 
   /** It is seen only beside the program, and goes on only while it is. */
   #followSide() {
-    if (pageState.sideId.value === 'side_real') this.#begin();
+    if (pageState.sideId.value === 'side_real') this.#startWatching();
     else if (this.#isOn) this.#giveWay();
   }
 
   #beginLater() {
     clearTimeout(this.#beginTimer);
-    this.#beginTimer = window.setTimeout(() => this.#begin(), PAUSE_MS);
+    this.#beginTimer = window.setTimeout(() => this.#startWatching(), PAUSE_MS);
   }
 
   get #canBegin() {
-    return this.#about !== null && this.#isWanted && this.#isFree && !this.#isProgramWaiting && pageState.sideId.value === 'side_real';
+    return this.#robotInfo !== null && this.#isWanted && this.#isFree && !this.#isProgramWaiting && pageState.sideId.value === 'side_real';
   }
 
-  async #begin(isQuiet = true) {
-    const about = this.#about;
+  async #startWatching(isQuiet = true) {
+    const robotInfo = this.#robotInfo;
     if (!this.#canBegin || this.#isOn || this.#isBeginning) return;
     this.#isBeginning = true;
     try {
       const line = await this.#checkLine(this.#lineText);
-      if (!line.image || !this.#canBegin || about !== this.#about) return;
+      if (!line.image || !this.#canBegin || robotInfo !== this.#robotInfo) return;
       const answer = await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, isQuiet);
-      if (about !== this.#about) return;
+      if (robotInfo !== this.#robotInfo) return;
       if (answer) this.#isOwnLine = true;
       else this.#isWanted = false; // it is not asked again and again
       this.#isOn = answer !== null && this.#canBegin;
@@ -188,12 +188,12 @@ export class SensorWatch {
 
   /** Its line makes room. */
   async #giveWay() {
-    this.#end();
+    this.#stopWatching();
     const line = await this.#checkLine(EMPTY_LINE);
     if (this.#isOwnLine) await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, true);
   }
 
-  #end() {
+  #stopWatching() {
     clearTimeout(this.#beginTimer);
     if (this.#isOn) this.#page.tell(false);
     this.#isOn = false;
@@ -201,7 +201,7 @@ export class SensorWatch {
   }
 
   get #robotName() {
-    return this.#about?.robot ?? '';
+    return this.#robotInfo?.robot ?? '';
   }
 
   get #sensors() {
@@ -229,7 +229,7 @@ export class SensorWatch {
     const show = line && showAt(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);
-    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOf(this.#readings.get(device.text)) })));
+    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOfShown(this.#readings.get(device.text)) })));
     this.#frameRequest ||= requestAnimationFrame(() => this.#show());
   }
 
@@ -238,14 +238,14 @@ export class SensorWatch {
     this.#frameRequest = 0;
     if (!pageState.language.value) return;
     const container = element('senses', HTMLElement);
-    hide(this.#watchButton, !this.#sensors.length);
-    hide(container, !this.#readings.size);
+    setHidden(this.#watchButton, !this.#sensors.length);
+    setHidden(container, !this.#readings.size);
     this.#watchButton.setAttribute('aria-pressed', String(this.#isOn || this.#isBeginning));
     container.classList.toggle('past', !this.#isOn);
     if (container.hidden) return;
     showRows(element('gauges', HTMLElement), this.#sensors.map((device) => {
       const reading = this.#readings.get(device.text) ?? '';
-      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOf(reading))];
+      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOfShown(reading))];
     }));
     this.#plot.draw();
   }

@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { makeButton, makeSvg, makeLabel, makeElement } from '../page/made.js';
-import { chooseOwnRobot, COLOURS, MOST_NAME_CHARACTERS } from '../page/own_robot.js';
+import { storeOwnRobot, COLOURS, MOST_NAME_CHARACTERS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
@@ -56,13 +56,13 @@ export class OwnWindow {
 
   /** @param {Partial<import('../page/own_robot.js').OwnRobot>} changes of it that is new */
   #changeOwnRobot(changes) {
-    if (!chooseOwnRobot({ ...pageState.ownRobot.value, ...changes })) pageState.note.set(text('not_kept'));
+    if (!storeOwnRobot({ ...pageState.ownRobot.value, ...changes })) pageState.note.set(text('not_kept'));
   }
 
   #show() {
     if (!pageState.language.value) return;
     this.#colourGroup.ariaLabel = text('own_colour');
-    this.#colourGroup.querySelectorAll('input').forEach((radio, k) => { radio.ariaLabel = text(COLOURS[k]?.[2] ?? 'own_colour'); });
+    this.#colourGroup.querySelectorAll('input').forEach((radio, index) => { radio.ariaLabel = text(COLOURS[index]?.[2] ?? 'own_colour'); });
     this.#nameElement.textContent = pageState.ownRobot.value.name;
   }
 }

@@ -82,7 +82,7 @@ export class Start {
     if (!isStart()) return;
     this.#showProgress();
     const timeFormat = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
-    const rows = loadVersions().map((version, k, all) => /** @type {const} */ ([version, all.length - k])).slice(0, MOST_PROGRAMS).map(([version, number]) => {
+    const rows = loadVersions().map((version, index, versions) => /** @type {const} */ ([version, versions.length - index])).slice(0, MOST_PROGRAMS).map(([version, number]) => {
       const titleElement = makeElement('strong', '', versionTitle(version, number)), timeElement = makeElement('time', '', timeFormat.format(new Date(version.at_ms)));
       return makeElement('li', '', makeButton('', () => this.#page.putProgram(version), makeThumbnail(version.text, version.robot), titleElement, timeElement));
     });

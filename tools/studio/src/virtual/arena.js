@@ -111,8 +111,8 @@ export class Arena {
    * Goes on to a newer state.
    * @param {RobotState} state
    */
-  follow(state) {
-    this.#moods.follow(state);
+  followState(state) {
+    this.#moods.followState(state);
     const [x, y] = state.pose;
     const track = this.#tracks.at(-1) ?? [];
     const lastPoint = track.at(-1);
@@ -184,7 +184,7 @@ export class Arena {
     pen.setTransform(this.#floorToCanvas);
     pen.lineCap = pen.lineJoin = 'round';
     lightTile(pen, world, x, y);
-    world.rivals.forEach((rival, k) => drawRival(pen, rival, state?.rivals[k] ?? [rival.x_cm, rival.y_cm, rival.heading]));
+    world.rivals.forEach((rival, index) => drawRival(pen, rival, state?.rivals[index] ?? [rival.x_cm, rival.y_cm, rival.heading]));
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
   }
@@ -310,8 +310,8 @@ export class Arena {
 
   /** Where it touches something. @param {number} x @param {number} y */
   #drawStar(x, y) {
-    const points = Array.from({ length: 16 }, (_, k) => {
-      const angle = (k * Math.PI) / 8, radius = k % 2 ? 2.4 : 6;
+    const points = Array.from({ length: 16 }, (_, index) => {
+      const angle = (index * Math.PI) / 8, radius = index % 2 ? 2.4 : 6;
       return [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
     });
     drawPath(this.#pen, points, '#a8200f', 0.6, '#ffd84d');
@@ -333,20 +333,20 @@ export class Arena {
       pen.lineWidth = radius / 4;
       pen.stroke();
     }
-    floorMark.points.forEach(([x, y], k) => {
+    floorMark.points.forEach(([x, y], index) => {
       drawDot(pen, x, y, radius, '#fff');
-      drawDot(pen, x, y, radius * 0.75, floorMark.pointIndex < 0 || k === floorMark.pointIndex ? '#b0186b' : '#7c8894');
+      drawDot(pen, x, y, radius * 0.75, floorMark.pointIndex < 0 || index === floorMark.pointIndex ? '#b0186b' : '#7c8894');
     });
   }
 }
 
 /**
  * Where the edge of a floor is, so that its robot is in the middle of the picture, unless more would be beside the floor.
- * @param {number} wantedEdge @param {number} available @param {number} size of the floor @param {number} margin around it
+ * @param {number} wantedEdge @param {number} availableSize @param {number} size of the floor @param {number} margin around it
  */
-function edgeOf(wantedEdge, available, size, margin) {
-  if (size + 2 * margin <= available + 1e-6) return (available - size) / 2;
-  return Math.min(margin, Math.max(available - size - margin, wantedEdge));
+function edgeOf(wantedEdge, availableSize, size, margin) {
+  if (size + 2 * margin <= availableSize + 1e-6) return (availableSize - size) / 2;
+  return Math.min(margin, Math.max(availableSize - size - margin, wantedEdge));
 }
 
 /** @param {HTMLCanvasElement} canvas @returns {Pen} */

@@ -77,15 +77,15 @@ export class Moments {
    * @param {RobotState} state
    */
   add(state) {
-    const values = new Map(Object.entries(state).filter(([key]) => !RUN_KEYS.has(key)).map(([key, value]) => [key, JSON.stringify(value, roundedNumber)]));
+    const values = new Map(Object.entries(state).filter(([key]) => !RUN_KEYS.has(key)).map(([key, value]) => [key, JSON.stringify(value, roundNumber)]));
     const isPart = values.get('places') !== this.#lastValues.get('places') || values.get('at') !== this.#lastValues.get('at');
-    const isEvent = state.events.some(isDeed) || values.get('bumps') !== this.#lastValues.get('bumps');
+    const isEvent = state.events.some(isAction) || values.get('bumps') !== this.#lastValues.get('bumps');
     if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < LEAST_MS) return;
     const moment = this.length;
     if (isEvent) this.#eventMoments.push(moment);
     if (isPart) this.#partMoments.push(moment);
     this.#append(values, state);
-    if (this.#characters > this.#mostCharacters) this.#halve();
+    if (this.#characters > this.#mostCharacters) this.#thinOut();
   }
 
   /**
@@ -105,7 +105,7 @@ export class Moments {
   }
 
   /** Forgets every other moment in which nothing happens; where none is left, the older half of all. */
-  #halve() {
+  #thinOut() {
     const keptMoments = new Set([...this.#eventMoments, ...this.#partMoments]);
     const kept = Array.from(this.#stateDiffs, (_, k) => k).filter((k) => keptMoments.has(k) || k % 2 === 0);
     const firstKept = kept.length > 0.9 * this.length ? Math.floor(kept.length / 2) : 0;
@@ -129,7 +129,7 @@ export class Moments {
   }
 
   /** Each moment, one after the other. @returns {Generator<RobotState>} */
-  *all() {
+  *states() {
     let state = {};
     for (const row of this.#stateDiffs) {
       state = { ...state, ...JSON.parse(row) };
@@ -160,8 +160,8 @@ export class Moments {
 }
 
 /** Whether it is something that the robot did: a program that waits reads its sensors fifty times in a second. @param {[number, string, number]} event */
-export function isDeed([, what]) {
-  return !what.startsWith('READ ');
+export function isAction([, event]) {
+  return !event.startsWith('READ ');
 }
 
 /** How many of ascending numbers are at most so large. @param {readonly number[]} numbers @param {number} limit */
@@ -176,6 +176,6 @@ function countUntil(numbers, limit) {
 }
 
 /** Numbers as nobody sees more of them. @param {string} _ @param {unknown} value */
-function roundedNumber(_, value) {
+function roundNumber(_, value) {
   return typeof value === 'number' ? Math.round(value * 1000) / 1000 : value;
 }

@@ -48,7 +48,7 @@ export class Moods {
   }
 
   /** Goes on to a newer state. @param {RobotState} state */
-  follow({ now_ms, bumps, score, motors }) {
+  followState({ now_ms, bumps, score, motors }) {
     const takenFlags = score?.taken ?? 0, lastRest = this.#rests.at(-1);
     if (bumps > this.#bumpCount) this.#bumpTimes_ms.push(now_ms);
     if (takenFlags > this.#takenFlags) this.#flagTimes_ms.push(now_ms);

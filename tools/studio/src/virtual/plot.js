@@ -80,7 +80,7 @@ export class Plot {
     pen.fillStyle = this.#colors.said;
     for (let tick_ms = Math.ceil(from_ms / step_ms) * step_ms; tick_ms <= until_ms; tick_ms += step_ms) {
       drawPath(pen, [[xOf(tick_ms), 0], [xOf(tick_ms), names.length * rowHeight]], this.#colors.rule, 1);
-      const label = `${roundedText(tick_ms / 1000)} s`;
+      const label = `${roundText(tick_ms / 1000)} s`;
       pen.fillText(label, Math.min(xOf(tick_ms) + 2, MARGIN_PX + plotWidth - pen.measureText(label).width), names.length * rowHeight + 14);
     }
     if (seen_ms !== null) drawPath(pen, [[xOf(seen_ms), 0], [xOf(seen_ms), names.length * rowHeight]], this.#colors.said, 2);
@@ -126,8 +126,8 @@ export class Plot {
       previous = value;
     }
     pen.stroke();
-    const range = low === high ? roundedText(lastValue) : `${roundedText(low)} – ${roundedText(high)}`;
-    const label = `${name}: ${roundedText(lastValue)}  (${range})`;
+    const range = low === high ? roundText(lastValue) : `${roundText(low)} – ${roundText(high)}`;
+    const label = `${name}: ${roundText(lastValue)}  (${range})`;
     pen.fillStyle = this.#colors.behind;
     pen.fillRect(MARGIN_PX, top + 2, pen.measureText(label).width + 6, 16);
     pen.fillStyle = color;
@@ -145,6 +145,6 @@ function niceStep(least_ms) {
 }
 
 /** @param {number} value */
-function roundedText(value) {
+function roundText(value) {
   return String(Math.round(value * 1000) / 1000);
 }

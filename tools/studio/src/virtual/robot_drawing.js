@@ -36,12 +36,12 @@ export function drawRobot(pen, robot, state, view) {
   });
   const [bodyColour = '', edgeColour = ''] = state?.fault ? ['#c8372a', '#5c130c'] : view.colours ?? GREEN_COLOURS;
   drawPath(pen, robot.outline, edgeColour, 0.8, bodyColour);
-  const halfBase = robot.wheel_base_cm / 2, size = scaleOf(robot);
-  drawWheel(pen, halfBase, view.rolled[0], size);
-  drawWheel(pen, -halfBase, view.rolled[1], size);
+  const halfBase = robot.wheel_base_cm / 2, scale = scaleOf(robot);
+  drawWheel(pen, halfBase, view.rolled[0], scale);
+  drawWheel(pen, -halfBase, view.rolled[1], scale);
   drawFace(pen, robot, view.face ?? CALM_FACE, bodyColour, edgeColour);
   pen.save();
-  pen.scale(size, size);
+  pen.scale(scale, scale);
   drawPath(pen, [[4.2, 0], [0.6, 2], [0.6, -2]], '#fff', 0.4, '#fff');
   drawLamps(pen, robot, state, edgeColour);
   drawBuzzer(pen, view.isBeeping);
@@ -90,9 +90,9 @@ function actuatorsOf(robot) {
   return robot.devices.filter((device) => device.role === 'actuator');
 }
 
-/** @param {Pen} pen @param {number} y @param {number} rolled_cm @param {number} size */
-function drawWheel(pen, y, rolled_cm, size) {
-  const length = WHEEL.length * size, width = WHEEL.width * size, { tread } = WHEEL;
+/** @param {Pen} pen @param {number} y @param {number} rolled_cm @param {number} scale */
+function drawWheel(pen, y, rolled_cm, scale) {
+  const length = WHEEL.length * scale, width = WHEEL.width * scale, { tread } = WHEEL;
   pen.fillStyle = '#20242a';
   pen.beginPath();
   pen.roundRect(-length / 2, y - width / 2, length, width, 1);
@@ -146,9 +146,9 @@ function drawArc(pen, x, y, radius, fromAngle, untilAngle, color, width) {
 /** Its own light, which is on where its button would start it, and those that a program turns on. @param {Pen} pen @param {Robot} robot @param {RobotState | null} state @param {string} edgeColour */
 function drawLamps(pen, robot, state, edgeColour) {
   drawDot(pen, -7.5, 0, 0.9, state?.is_waiting ? '#ffd84d' : edgeColour);
-  actuatorsOf(robot).forEach((device, k) => {
+  actuatorsOf(robot).forEach((device, index) => {
     if (!device.is_yes_no) return;
-    const isLit = Boolean(state?.actuators[k]);
+    const isLit = Boolean(state?.actuators[index]);
     if (isLit) drawDot(pen, -1.2, 0, 5, '#ffe14d77');
     drawDot(pen, -1.2, 0, 1.9, edgeColour);
     drawDot(pen, -1.2, 0, 1.4, isLit ? '#fff3a8' : '#7c8894');
@@ -192,9 +192,9 @@ function drawJaws(pen, robot, openShare) {
 function forEachSensor(robot, state, draw) {
   /** @type {Record<string, SensorPlace | undefined>} */
   const places = robot.places;
-  robot.devices.filter((device) => device.role === 'sensor').forEach((device, k) => {
-    const place = places[device.text], reading = state.readings[k];
-    if (place && reading) draw(place, reading.value, device);
+  robot.devices.filter((device) => device.role === 'sensor').forEach((device, index) => {
+    const sensorPlace = places[device.text], reading = state.readings[index];
+    if (sensorPlace && reading) draw(sensorPlace, reading.value, device);
   });
 }
 

@@ -1,6 +1,6 @@
 // The runs that the page keeps while it is open: how each was, moment by moment, and what its file has.
 
-import { isDeed, Moments } from './moments.js';
+import { isAction, Moments } from './moments.js';
 import { blocksOf } from './why.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
@@ -78,7 +78,7 @@ export class Run {
 
   /** @param {RobotState} state the next one of a virtual robot's run */
   add(state) {
-    for (const [at_ms, event] of state.events.filter(isDeed)) {
+    for (const [at_ms, event] of state.events.filter(isAction)) {
       const [eventWord = ''] = event.split(' ');
       this.mark(at_ms, MARK_WORDS.has(eventWord) ? eventWord : '');
     }
@@ -131,7 +131,7 @@ export class Run {
   readAt(name, at_ms) {
     const prefix = `READ ${name} `;
     const rows = this.rows.length ? this.rows : this.fileRows;
-    return rows.findLast(([ms, what]) => ms <= at_ms && what.startsWith(prefix))?.[1].slice(prefix.length);
+    return rows.findLast(([event_ms, event]) => event_ms <= at_ms && event.startsWith(prefix))?.[1].slice(prefix.length);
   }
 
   /** @param {Row} row */
@@ -147,7 +147,7 @@ export class Runs {
   #runCount = 0;
 
   /** @returns {readonly Run[]} the newest first */
-  get all() {
+  get newestFirst() {
     return this.#runs.toReversed();
   }
 
@@ -157,7 +157,7 @@ export class Runs {
   }
 
   /** @param {Run} run is the newest one from now on */
-  begin(run) {
+  addRun(run) {
     run.number = this.#runCount += 1;
     this.#runs = [...this.#runs.filter(({ rows, moments }) => rows.length || moments.length > 1), run];
     this.trim();

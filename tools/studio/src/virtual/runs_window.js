@@ -86,7 +86,7 @@ export class RunsWindow {
   }
 
   #show() {
-    const rows = this.#page.runs.all.map((run) => {
+    const rows = this.#page.runs.newestFirst.map((run) => {
       const title = text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
       const seeButton = makeButton('', () => {
         this.#window.close();

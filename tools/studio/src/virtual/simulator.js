@@ -6,7 +6,7 @@ import { bugSentence } from '../page/faults.js';
 import { currentLanguage } from '../page/texts.js';
 
 /** @import { Python, CheckResult, RobotState } from '../python.js' */
-/** @import { Held } from '../remote/held.js' */
+/** @import { HeldControls } from '../remote/held.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
 const MOST_REQUEST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
@@ -24,8 +24,8 @@ export class Simulator {
   /** @type {string[]} */
   trace = [];
   speed = 1;
-  /** What somebody holds of a remote control, where the program reads one. @type {Held | null} */
-  held = null;
+  /** What somebody holds of a remote control, where the program reads one. @type {HeldControls | null} */
+  heldControls = null;
   #leastSpeed = 0;
   failure = ''; // a mistake of ours
   #isAsking = false;
@@ -123,7 +123,7 @@ export class Simulator {
   }
 
   /** Nothing of the run is seen any more, nor what it answers later. It was stopped. */
-  leave() {
+  leaveRun() {
     this.#leftRuns += 1;
     this.phase = 'off';
     this.state = null;
@@ -133,7 +133,7 @@ export class Simulator {
   /** There is one row of pictures, whichever run or pause has begun it. */
   #requestFrame() {
     cancelAnimationFrame(this.#frameRequest);
-    this.#frameRequest = requestAnimationFrame((now) => this.#onFrame(now));
+    this.#frameRequest = requestAnimationFrame((now_ms) => this.#onFrame(now_ms));
   }
 
   /** @param {number} now_ms */
@@ -145,7 +145,7 @@ export class Simulator {
       const duration_ms = Math.min(MOST_REQUEST_MS, Math.floor(this.#unasked_ms));
       if (duration_ms > 0) {
         this.#unasked_ms = Math.min(this.#unasked_ms - duration_ms, MOST_REQUEST_MS);
-        await this.#drive({ do: 'go', duration_ms: duration_ms });
+        await this.#drive({ do: 'go', duration_ms });
       }
     }
     this.#requestFrame();
@@ -153,7 +153,7 @@ export class Simulator {
 
   /** Lets the robot's time go on, for less than what is held counts. @param {Record<string, unknown>} request */
   #drive(request) {
-    return this.#ask(this.held ? { ...request, held: [this.held.keys, this.held.x, this.held.y] } : request);
+    return this.#ask(this.heldControls ? { ...request, held: [this.heldControls.keys, this.heldControls.x, this.heldControls.y] } : request);
   }
 
   /**

@@ -1,13 +1,13 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
-import { element, hide, say } from '../page/elements.js';
+import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { rangeAt, StopOffsets } from '../writing/parts.js';
 import { shownName, showAt } from '../writing/shows.js';
-import { dialPicture, replaceOptions, pictureOption } from '../page/pictures.js';
+import { makeDialPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
@@ -16,7 +16,7 @@ import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { readingText, numberOf, percentOfRange } from '../page/readings.js';
+import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
 import { textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
@@ -103,7 +103,7 @@ export class SimulatorPanel {
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
-    this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (opened, again) => this.#playOpened(opened, again) });
+    this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, again) => this.#playOpened(openedRun, again) });
     this.#worldChoice = new WorldChoice(python, work, () => this.#enterWorld());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#takeState(state);
@@ -155,7 +155,7 @@ export class SimulatorPanel {
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     onEscapeKey(() => this.stop());
     const speed = element('speed', HTMLSelectElement);
-    replaceOptions(speed, SPEEDS.map((speed, k) => pictureOption(`× ${speed}`, String(speed), dialPicture(k / (SPEEDS.length - 1)))));
+    replaceOptions(speed, SPEEDS.map((speed, index) => makePictureOption(`× ${speed}`, String(speed), makeDialPicture(index / (SPEEDS.length - 1)))));
     speed.value = '1';
     speed.addEventListener('change', () => {
       this.#simulator.speed = Number(speed.value);
@@ -255,7 +255,7 @@ export class SimulatorPanel {
   }
 
   /** @param {number} hertz of a tone that somebody chooses */
-  hear(hertz) {
+  playTone(hertz) {
     this.#sounds.begin();
     this.#sounds.beep(hertz, TONE_S);
   }
@@ -320,18 +320,18 @@ export class SimulatorPanel {
     if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#timeLine.begin(run);
     this.#drawTrack(run);
-    this.#timeLine.look(run.moments.last_ms);
+    this.#timeLine.lookAt(run.moments.last_ms);
   }
 
   /** @param {Run} run its world, and the way that it has taken */
   #drawTrack(run) {
     this.#arena.begin(run.world ?? this.#worldChoice.shownWorld, run.origin.robot, run === this.#newestRun ? this.#worldChoice.goals : []);
-    for (const state of run.moments.all()) this.#arena.follow(state);
+    for (const state of run.moments.states()) this.#arena.followState(state);
   }
 
   /** The file of the newest run that can be played again, or nothing. @returns {Promise<string>} */
-  async newestRun() {
-    const run = this.runs.all.find((candidate) => !candidate.isJudged && (candidate.file || candidate.rows.length));
+  async newestRunFile() {
+    const run = this.runs.newestFirst.find((candidate) => !candidate.isJudged && (candidate.file || candidate.rows.length));
     return run ? this.#runsWindow.fileOf(run) : '';
   }
 
@@ -340,25 +340,25 @@ export class SimulatorPanel {
     return this.#runsWindow.open(file);
   }
 
-  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').OpenedRun} opened @param {Run | null} knownRun */
-  async #playOpened(opened, knownRun) {
+  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').OpenedRun} openedRun @param {Run | null} knownRun */
+  async #playOpened(openedRun, knownRun) {
     await this.#simulator.stop();
-    this.#page.put(opened);
-    if (typeof opened.world === 'string') this.#worldChoice.choose(opened.world);
-    else if (opened.world && opened.shapes) {
-      this.#worldChoice.bring({ request: opened.world, shapes: opened.shapes, label: () => text('world_of_run'), goals: [] });
+    this.#page.put(openedRun);
+    if (typeof openedRun.world === 'string') this.#worldChoice.choose(openedRun.world);
+    else if (openedRun.world && openedRun.shapes) {
+      this.#worldChoice.bringWorld({ request: openedRun.world, shapes: openedRun.shapes, label: () => text('world_of_run'), goals: [] });
     }
     this.begin();
     this.#chooseView('seen_arena');
-    const duration_ms = Math.max(1, opened.rows.at(-1)?.[0] ?? 0);
-    await this.#start(false, null, duration_ms / LONGEST_REPLAY_MS, { opened, again: knownRun });
+    const duration_ms = Math.max(1, openedRun.rows.at(-1)?.[0] ?? 0);
+    await this.#start(false, null, duration_ms / LONGEST_REPLAY_MS, { opened: openedRun, again: knownRun });
   }
 
   /** What runs stands still while somebody looks back. */
   #lookBack() {
     if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#arena.showBubble('', 0);
-    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shownUntilSeen);
+    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.showsUntilSeen);
     this.#show();
   }
 
@@ -370,7 +370,7 @@ export class SimulatorPanel {
       this.#drawTrack(this.#newestRun);
     }
     this.#timeLine.leave();
-    this.#keepShownValues(this.#shownValues, this.#timeLine.shownUntilSeen);
+    this.#keepShownValues(this.#shownValues, this.#timeLine.showsUntilSeen);
     this.#show();
   }
 
@@ -389,7 +389,7 @@ export class SimulatorPanel {
   }
 
   /** What the worker is asked for to have the world that is shown. */
-  get world() {
+  get worldRequest() {
     return this.#worldChoice.request;
   }
 
@@ -401,13 +401,13 @@ export class SimulatorPanel {
 
   /**
    * Shows a world of a lesson.
-   * @param {number} number
+   * @param {number} lessonNumber
    * @param {number} seed
    * @param {() => string} label
    */
-  async showLesson(number, seed, label) {
-    const { world, goals } = await this.#page.python.ask({ do: 'lesson_world', number, seed });
-    this.#worldChoice.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
+  async showLesson(lessonNumber, seed, label) {
+    const { world, goals } = await this.#page.python.ask({ do: 'lesson_world', number: lessonNumber, seed });
+    this.#worldChoice.bringWorld({ request: { lesson: lessonNumber, seed }, shapes: world, label, goals });
     this.begin();
     this.#chooseView('seen_arena');
   }
@@ -417,7 +417,7 @@ export class SimulatorPanel {
     this.#worldDrawing.letGo();
     this.#previewWorld = null;
     this.#switchOff();
-    this.#stage?.rest();
+    this.#stage?.showWhole();
     this.#worldDrawing.forget();
   }
 
@@ -429,7 +429,7 @@ export class SimulatorPanel {
   /** Stops, and switches off. */
   #switchOff() {
     this.stop();
-    this.#simulator.leave();
+    this.#simulator.leaveRun();
     this.#plot.begin();
     this.#timeLine.begin();
     this.#variables = [];
@@ -464,12 +464,12 @@ export class SimulatorPanel {
 
   /**
    * @param {boolean} isPaused
-   * @param {import('../lesson/lessons.js').JudgedRun | null} judged
+   * @param {import('../lesson/lessons.js').JudgedRun | null} judgedRun
    * @param {number} leastSpeed times as quick as the robot
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay a recorded run
    * @param {{text: string, checked: CheckResult} | null} part a part of the program
    */
-  async #start(isPaused, judged = null, leastSpeed = 0, replay = null, part = null) {
+  async #start(isPaused, judgedRun = null, leastSpeed = 0, replay = null, part = null) {
     this.#onRunOver();
     const startNumber = ++this.#startCount;
     this.#worldDrawing.notice = '';
@@ -490,7 +490,7 @@ export class SimulatorPanel {
     this.#sounds.begin();
     this.#wasStopped = false;
     this.#bumpCount = 0;
-    this.#canEarnStars = !judged && !replay && !part;
+    this.#canEarnStars = !judgedRun && !replay && !part;
     this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals);
     this.#plot.begin();
     this.#shownValues.clear();
@@ -499,15 +499,15 @@ export class SimulatorPanel {
     this.#places = part ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
-    this.#remoteWords = judged || replay ? [] : program.remote;
-    const world = judged ?? this.#worldChoice.request;
-    const run = this.#newestRun = this.#runOf(program, world, replay, part?.text);
-    run.isJudged = judged !== null;
+    this.#remoteWords = judgedRun || replay ? [] : program.remote;
+    const world = judgedRun ?? this.#worldChoice.request;
+    const run = this.#newestRun = this.#makeRun(program, world, replay, part?.text);
+    run.isJudged = judgedRun !== null;
     this.#timeLine.begin(run);
-    const breakpoints = judged || replay || part ? [] : this.#stops.offsets;
-    const begun = this.#simulator.begin(program, pageState.robotName.value, world, breakpoints, isPaused, leastSpeed, replay !== null);
-    if (!part && !judged) this.#stage.begin(); // it sees nothing of the run before
-    await begun;
+    const breakpoints = judgedRun || replay || part ? [] : this.#stops.offsets;
+    const beginning = this.#simulator.begin(program, pageState.robotName.value, world, breakpoints, isPaused, leastSpeed, replay !== null);
+    if (!part && !judgedRun) this.#stage.enlarge(); // it sees nothing of the run before
+    await beginning;
   }
 
   /**
@@ -517,7 +517,7 @@ export class SimulatorPanel {
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay
    * @param {string} [programText] its text
    */
-  #runOf(program, world, replay, programText = pageState.programText.value) {
+  #makeRun(program, world, replay, programText = pageState.programText.value) {
     const run = replay?.again ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world }, program, null);
     if (replay && !replay.again) {
       run.origin = { ...run.origin, of: replay.opened.of };
@@ -530,7 +530,7 @@ export class SimulatorPanel {
       run.markKeys(replay.opened.rows);
       run.fileRows = replay.opened.rows;
     }
-    if (!replay?.again && !this.#isAlone) this.runs.begin(run);
+    if (!replay?.again && !this.#isAlone) this.runs.addRun(run);
     return run;
   }
 
@@ -581,8 +581,8 @@ export class SimulatorPanel {
   /** A run that reads a remote control can be driven. */
   #offerRemote() {
     const canDrive = this.#isDriving && this.#remoteWords.length > 0;
-    this.#page.pad.offer('driving', canDrive ? { reads: this.#remoteWords, tell: (held) => { this.#simulator.held = held; } } : null);
-    if (!canDrive) this.#simulator.held = null;
+    this.#page.pad.offerRobot('driving', canDrive ? { reads: this.#remoteWords, tell: (controls) => { this.#simulator.heldControls = controls; } } : null);
+    if (!canDrive) this.#simulator.heldControls = null;
   }
 
   /** A picture of a run: beside the robot, one thing at a time is new. @param {import('../python.js').RobotState} state */
@@ -598,15 +598,15 @@ export class SimulatorPanel {
     this.#lastShown_ms = performance.now();
     this.#isReadingNext = false;
     this.#pauseButton.disabled = !this.#isDriving;
-    say(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
-    hide(this.#pushButton, !state?.is_waiting || phase !== 'running');
-    say(element('doing', HTMLElement), this.#note || this.#worldDrawing.notice || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
+    setText(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
+    setHidden(this.#pushButton, !state?.is_waiting || phase !== 'running');
+    setText(element('doing', HTMLElement), this.#note || this.#worldDrawing.notice || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
     const traceText = trace.slice(-MOST_TRACE_LINES).join('\n');
     if (traceText !== this.#traceText) element('trace', HTMLElement).textContent = this.#traceText = traceText;
     this.#showScore(state?.score ?? null);
     this.#announcer.announce(state, phase);
     this.#showValues();
-    hide(this.#whyButton, !this.#timeLine.seenState);
+    setHidden(this.#whyButton, !this.#timeLine.seenState);
     this.#whyButton.setAttribute('aria-pressed', String(this.#isWhyAsked));
     this.#plot.draw(state && this.#timeLine.seenState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
@@ -617,7 +617,7 @@ export class SimulatorPanel {
     const state = this.#shownState;
     this.#lastShown_ms = performance.now();
     this.#isReadingNext = true;
-    const range = this.#rangeShown();
+    const range = this.#shownRange();
     const places = this.#shownPlaces;
     const isAlone = !state || state.fault || state.is_held;
     const isOver = !this.#isDriving && !this.#timeLine.seenState && !state?.fault; // also of one that was stopped before its end
@@ -627,14 +627,14 @@ export class SimulatorPanel {
   }
 
   /** What runs in the text that is seen, or what had a fault. */
-  #rangeShown() {
+  #shownRange() {
     const state = this.#shownState;
     return rangeAt(this.#shownPlaces, state?.fault ? state.fault_at : state?.at);
   }
 
   /** Keeps what is to be seen, and lets be heard what is. @param {import('../python.js').RobotState} state */
   #takeState(state) {
-    this.#arena.follow(state);
+    this.#arena.followState(state);
     this.#newestRun?.add(state);
     this.runs.trim();
     if (state.bumps > this.#bumpCount) {
@@ -644,17 +644,17 @@ export class SimulatorPanel {
     this.#bumpCount = state.bumps;
     this.#earnStars(state.score?.stars ?? 0);
     for (const [at_ms, event] of state.events) {
-      const [eventWord, hertz, lasts_ms] = event.split(' ');
+      const [eventWord, hertz, duration_ms] = event.split(' ');
       if (eventWord !== 'BEEP') continue;
-      this.#arena.showBeep(at_ms, at_ms + Number(lasts_ms));
-      this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
+      this.#arena.showBeep(at_ms, at_ms + Number(duration_ms));
+      this.#sounds.beep(Number(hertz), Number(duration_ms) / 1000 / this.#simulator.speed);
     }
     if (state.began_ms === null) return;
     this.#keepShownValues(this.#shownValues, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: numberOf(state.readings[index]?.text) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: numberOfShown(state.readings[index]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, index) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[index])) : state.variables[index] })),
-      ...[...this.#shownValues].map(([name, value]) => ({ name, value: numberOf(value) })),
+      ...[...this.#shownValues].map(([name, value]) => ({ name, value: numberOfShown(value) })),
     ]);
   }
 
@@ -685,13 +685,13 @@ export class SimulatorPanel {
     if (phase === 'off' || !state) return this.#taskText() || text('robot_off');
     if (state.fault) {
       const faultText = faultSentence(state.fault);
-      const line = this.#rangeShown()?.line;
+      const line = this.#shownRange()?.line;
       return line ? text('say_fault', { line, what: faultText }) : text('robot_fault', { what: faultText });
     }
     if (this.#wasStopped) return text('robot_stopped');
     const endText = state.score && boutEnd(state.score);
     if (endText) return endText;
-    const heldLine = state.is_held && this.#rangeShown()?.line;
+    const heldLine = state.is_held && this.#shownRange()?.line;
     if (phase === 'paused' && heldLine) return text('robot_held', { line: heldLine });
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');
@@ -700,7 +700,7 @@ export class SimulatorPanel {
 
   /** What ran at a moment, and the values of what it names. @param {import('../python.js').RobotState} state */
   #pastText(state) {
-    const seconds = secondsOf(state), range = this.#rangeShown();
+    const seconds = secondsOf(state), range = this.#shownRange();
     const reasons = this.#isWhyAsked ? [this.#whyText(state)] : [];
     if (!range) return [text('looked_back', { seconds }), ...reasons].join('   ');
     const { line, column, end_column } = range;
@@ -715,11 +715,11 @@ export class SimulatorPanel {
     const { run } = this.#timeLine, { places, variables } = run.program;
     const offset = state.fault ? state.fault_at : state.at;
     if (offset === null) return text('why_nothing');
-    const values = new Map(variables.map(({ name, is_yes_no }, k) => [name, variableText(state.variables[k], is_yes_no)]));
+    const values = new Map(variables.map(({ name, is_yes_no }, index) => [name, variableText(state.variables[index], is_yes_no)]));
     const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
-    const sentences = conditions.map(({ line, condition, values: with_values, is }) => text(is === null ? 'why_asks' : is ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
+    const sentences = conditions.map(({ line, condition, values: with_values, is: isTrue }) => text(isTrue === null ? 'why_asks' : isTrue ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
-    const task = driver === null ? undefined : tasks.find(({ has }) => has(driver));
+    const task = driver === null ? undefined : tasks.find(({ has: hasOffset }) => hasOffset(driver));
     if (driver !== null && tasks.length) sentences.push(task ? text('why_task', { line: task.line }) : text('why_main'));
     return sentences.join(' ') || text('why_nothing');
   }
@@ -727,8 +727,8 @@ export class SimulatorPanel {
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */
   #valuesOf(state) {
     return [
-      ...devicesOf(this.#shownRobot, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
-      ...this.#shownVariables.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, variableText(state.variables[k], is_yes_no)])),
+      ...devicesOf(this.#shownRobot, 'sensor').map(({ text: name }, index) => /** @type {[string, string]} */ ([name, state.readings[index]?.text ?? ''])),
+      ...this.#shownVariables.map(({ name, is_yes_no }, index) => /** @type {[string, string]} */ ([name, variableText(state.variables[index], is_yes_no)])),
     ];
   }
 
@@ -743,11 +743,11 @@ export class SimulatorPanel {
   /** @param {import('../python.js').RobotState['score']} score */
   #showScore(score) {
     const scoreElement = element('score', HTMLElement);
-    hide(scoreElement, !score);
+    setHidden(scoreElement, !score);
     if (!score) return;
     const { taken: takenFlags, of: flagCount, pushed: pushedRivals, rivals: rivalCount, points, stars } = score;
     const parts = [flagCount && `⚑ ${takenFlags}/${flagCount}`, rivalCount && `⇥ ${pushedRivals}/${rivalCount}`].filter(Boolean).join('  ');
-    say(scoreElement, `${parts}   ${points}   ${starsText(stars)}`);
+    setText(scoreElement, `${parts}   ${points}   ${starsText(stars)}`);
     scoreElement.classList.toggle('whole', stars > 0);
   }
 
@@ -757,8 +757,8 @@ export class SimulatorPanel {
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(this.#shownRobot, 'sensor').map((device, k) => [deviceName(device), state ? readingText(device, state.readings[k]?.text ?? '') : '–', percentOfRange(device, state?.readings[k]?.value)]),
-      ...this.#shownVariables.map(({ name, is_yes_no }, k) => [name, variableText(state?.variables[k], is_yes_no)]),
+      ...devicesOf(this.#shownRobot, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]),
+      ...this.#shownVariables.map(({ name, is_yes_no }, index) => [name, variableText(state?.variables[index], is_yes_no)]),
       ...(this.#timeLine.seenState ? this.#pastShownValues : this.#shownValues),
     ];
     showRows(element('values', HTMLElement), rows);

@@ -76,13 +76,13 @@ export class Stage {
   }
 
   /** A run of the whole program begins: it has a third of a large page, and is followed. */
-  begin() {
+  enlarge() {
     root.dataset['big'] = '';
     this.#show();
   }
 
   /** What stood there before a run of another robot or world is seen whole, as somebody first sees it. */
-  rest() {
+  showWhole() {
     this.#shrink();
   }
 

@@ -23,13 +23,13 @@ export class TimeLine {
   /** @param {() => void} onLook another moment is looked at */
   constructor(onLook) {
     this.#onLook = onLook;
-    this.#slider.addEventListener('input', () => this.look(Number(this.#slider.value)));
+    this.#slider.addEventListener('input', () => this.lookAt(Number(this.#slider.value)));
     this.#slider.addEventListener('keydown', (event) => {
       const direction = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
       if (!direction || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       const { moments } = this.#run;
-      this.look(moments.at(moments.neighbourOf(this.#seenMoment, direction, event.shiftKey ? moments.parts : moments.events)).now_ms);
+      this.lookAt(moments.at(moments.neighbourOf(this.#seenMoment, direction, event.shiftKey ? moments.parts : moments.events)).now_ms);
     });
     new ResizeObserver(() => {
       this.#size = [this.#marksCanvas.clientWidth, this.#marksCanvas.clientHeight];
@@ -48,7 +48,7 @@ export class TimeLine {
   }
 
   /** What had been shown then. */
-  get shownUntilSeen() {
+  get showsUntilSeen() {
     return this.#run.moments.shownUntil(this.#seenMoment);
   }
 
@@ -82,7 +82,7 @@ export class TimeLine {
   }
 
   /** @param {number} at_ms of the robot's time, which is looked at from now on */
-  look(at_ms) {
+  lookAt(at_ms) {
     if (!this.#run.moments.length) return;
     this.#seen_ms = at_ms;
     this.#onLook();

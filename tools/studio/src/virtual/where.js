@@ -59,8 +59,8 @@ function placeSentence([x = 0, y = 0, heading = 0]) {
 
 /** @param {NonNullable<RobotState['score']>} score what a run is worth, for eyes and ears */
 function scoreSentence(score) {
-  const { stars, points, taken, of } = score;
-  const sentences = [of ? text('score_flags', { taken, of }) : '', boutEnd(score), text('score_points', { points })].filter(Boolean);
+  const { stars, points, taken: takenFlags, of: flagCount } = score;
+  const sentences = [flagCount ? text('score_flags', { taken: takenFlags, of: flagCount }) : '', boutEnd(score), text('score_points', { points })].filter(Boolean);
   if (stars) sentences.push(text('score_stars', { stars, most: MOST_STARS }));
   return sentences.join(' ');
 }

@@ -25,10 +25,10 @@ export function conditionsAt(text, places, offset, valueOf) {
   const start = lines.slice(0, line - 1).reduce((sum, textLine) => sum + textLine.length + 1, 0) + column - 1;
   /** @type {Condition[]} */
   const conditions = [];
-  const addCondition = (/** @type {number} */ headOffset, /** @type {boolean | null} */ is) => {
+  const addCondition = (/** @type {number} */ headOffset, /** @type {boolean | null} */ isTrue) => {
     const condition = bracketContent(plainText, headOffset);
     const values = condition.replace(NAME, (name) => valueOf(name.toUpperCase()) ?? name);
-    if (condition) conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, is });
+    if (condition) conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, is: isTrue });
   };
   for (const heads of openBlocksAt(plainText, start)) heads.forEach((headOffset, index) => addCondition(headOffset, index === heads.length - 1));
   const statement = (lines[line - 1] ?? '').slice(column - 1, endLine > line ? undefined : endColumn - 1);

@@ -2,7 +2,7 @@
 // another part of the page brings.
 
 import { element } from '../page/elements.js';
-import { pictureOption, worldPicture } from '../page/pictures.js';
+import { makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
@@ -65,7 +65,7 @@ export class WorldChoice {
 
   /** Whether the world that is seen was drawn or opened here. */
   get isOwn() {
-    return !this.#broughtWorld && this.#ownWorlds.newest !== null && this.#work.world === OWN_WORLD;
+    return !this.#broughtWorld && this.#ownWorlds.newestWorld !== null && this.#work.world === OWN_WORLD;
   }
 
   /** Whether a lesson has brought the world that is seen. */
@@ -85,13 +85,13 @@ export class WorldChoice {
   /** @returns {World} */
   get shownWorld() {
     const { world } = this.#work;
-    if (this.isOwn && this.#ownWorlds.newest) return this.#ownWorlds.newest;
+    if (this.isOwn && this.#ownWorlds.newestWorld) return this.#ownWorlds.newestWorld;
     return this.#broughtWorld?.shapes ?? WORLDS.find((candidate) => candidate.name === world) ?? /** @type {World} */ (WORLDS[0]);
   }
 
   /** What the worker is asked for. */
   get request() {
-    if (this.isOwn) return { form: this.#ownWorlds.newest };
+    if (this.isOwn) return { form: this.#ownWorlds.newestWorld };
     return this.#broughtWorld?.request ?? this.shownWorld.name;
   }
 
@@ -103,7 +103,7 @@ export class WorldChoice {
   }
 
   /** @param {BroughtWorld} broughtWorld is chosen, until another one is */
-  bring(broughtWorld) {
+  bringWorld(broughtWorld) {
     this.#broughtWorld = broughtWorld;
     this.#show();
   }
@@ -138,13 +138,13 @@ export class WorldChoice {
 
   #show() {
     const broughtWorld = this.#broughtWorld;
-    const { newest, earlier } = this.#ownWorlds, stars = loadStars();
+    const { newestWorld, earlierWorlds } = this.#ownWorlds, stars = loadStars();
     /** @param {World} world */
     const labelOfWorld = (world) => labelOf(world.labels).trim() || text('world_own');
     this.#worldSelect.replaceChildren(
-      ...WORLDS.map((world) => pictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(starsKeyOfWorld(world.name)) ?? 0)}`.trim(), world.name, worldPicture(world))),
-      ...(newest ? [pictureOption(labelOfWorld(newest), OWN_WORLD, worldPicture(newest))] : []),
-      ...earlier.map((world, index) => pictureOption(text(index ? 'world_before_more' : 'world_before', { world: labelOfWorld(world), number: index + 1 }), `${EARLIER_PREFIX}${index}`, worldPicture(world))),
+      ...WORLDS.map((world) => makePictureOption(`${labelOf(world.labels)} ${'★'.repeat(stars.get(starsKeyOfWorld(world.name)) ?? 0)}`.trim(), world.name, makeWorldPicture(world))),
+      ...(newestWorld ? [makePictureOption(labelOfWorld(newestWorld), OWN_WORLD, makeWorldPicture(newestWorld))] : []),
+      ...earlierWorlds.map((world, index) => makePictureOption(text(index ? 'world_before_more' : 'world_before', { world: labelOfWorld(world), number: index + 1 }), `${EARLIER_PREFIX}${index}`, makeWorldPicture(world))),
       ...(broughtWorld ? [new Option(broughtWorld.label(), BROUGHT_VALUE)] : []),
     );
     this.#worldSelect.value = broughtWorld ? BROUGHT_VALUE : this.isOwn ? OWN_WORLD : this.shownWorld.name;

@@ -7,7 +7,7 @@ import { copyAsOwn } from './own.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import {
-  FLOOR, turnHandleOf, isSamePart, KINDS, movedPart, NUMBERS, clampedToFloor, partAt, partsOf, pointAt, pointsOf, START, turnedToHandle, turnedPart,
+  FLOOR, turnHandleOf, isSamePart, KINDS, withMovedPart, NUMBERS, clampToFloor, partAt, partsOf, pointAt, pointsOf, START, withTurnedHandle, withTurnedPart,
   valueOf, withDrawn, withoutPart, withPoint,
 } from './parts.js';
 import { partName, showNumbers } from './numbers.js';
@@ -213,7 +213,7 @@ export class WorldDrawing {
 
   /** @param {number} degrees */
   #turnChosen(degrees) {
-    this.#applyChange(turnedPart(this.#page.world(), this.#chosenPart, degrees));
+    this.#applyChange(withTurnedPart(this.#page.world(), this.#chosenPart, degrees));
   }
 
   #deleteChosen() {
@@ -261,7 +261,7 @@ export class WorldDrawing {
     } else if (ARROWS[event.key]) {
       const [right = 0, up = 0] = ARROWS[event.key] ?? [];
       const step = event.shiftKey ? FINE_CM : STEP_CM;
-      this.#applyChange(movedPart(this.#page.world(), this.#chosenPart, right * step, up * step, this.#pointIndex));
+      this.#applyChange(withMovedPart(this.#page.world(), this.#chosenPart, right * step, up * step, this.#pointIndex));
     } else if (event.key === 'r' || event.key === 'R') this.#turnChosen(event.shiftKey ? -TURN_DEGREES : TURN_DEGREES);
     else if (event.key === 'p') this.#nextPoint();
     else if (event.key === '+') this.#addPoint();
@@ -285,7 +285,7 @@ export class WorldDrawing {
     }
     this.#canvas.focus();
     if (this.#drawnKind) {
-      this.#beginDrag(event, { gesture: 'draw', part: FLOOR, point: -1, start: point, worldBefore, baseWorld: worldBefore, track: [clampedToFloor(point, worldBefore)] });
+      this.#beginDrag(event, { gesture: 'draw', part: FLOOR, point: -1, start: point, worldBefore, baseWorld: worldBefore, track: [clampToFloor(point, worldBefore)] });
       return;
     }
     const chosenPoints = valueOf(worldBefore, this.#chosenPart).points ?? [];
@@ -314,19 +314,19 @@ export class WorldDrawing {
     const { place: point } = this.#arena.floorAt(event);
     const { worldBefore: before, baseWorld: base, start: from } = drag;
     if (drag.gesture === 'draw') {
-      drag.track.push(clampedToFloor(point, before));
+      drag.track.push(clampToFloor(point, before));
       this.#arena.setMark({ points: drag.track, pointIndex: -1, handle: null });
       this.#page.tell();
       return;
     }
     if (drag.gesture === 'turn') {
-      this.#page.preview(turnedToHandle(base, drag.part, from, point));
+      this.#page.preview(withTurnedHandle(base, drag.part, from, point));
       this.#markChosen();
       return;
     }
     const offset = [Math.round(point[0] - from[0]), Math.round(point[1] - from[1])];
     if (this.#page.world() === before && !offset[0] && !offset[1]) return; // not moved yet
-    this.#page.preview(movedPart(base, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.point));
+    this.#page.preview(withMovedPart(base, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.point));
     this.#markChosen();
   }
 

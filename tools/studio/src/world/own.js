@@ -13,9 +13,9 @@ const NAME_COMMENT = /^# (.*)\n/; // by the name of a file
 export class OwnWorlds {
   #python;
   /** @type {World | null} */
-  newest = null;
+  newestWorld = null;
   /** The last one first. @type {World[]} */
-  earlier = [];
+  earlierWorlds = [];
   /** @type {WeakMap<World, string>} */
   #texts = new WeakMap();
   #storeCount = 0;
@@ -30,13 +30,13 @@ export class OwnWorlds {
    * @param {boolean} isOther than the newest one, which is not lost
    */
   setNewest(world, isOther) {
-    if (isOther && this.newest) this.earlier = [this.newest, ...this.earlier].slice(0, MOST_EARLIER);
-    this.newest = world;
+    if (isOther && this.newestWorld) this.earlierWorlds = [this.newestWorld, ...this.earlierWorlds].slice(0, MOST_EARLIER);
+    this.newestWorld = world;
   }
 
   /** A world before is the newest from now on. @param {number} index of it */
   restoreEarlier(index) {
-    const [world] = this.earlier.splice(index, 1);
+    const [world] = this.earlierWorlds.splice(index, 1);
     if (world) this.setNewest(world, true);
   }
 
@@ -55,8 +55,8 @@ export class OwnWorlds {
   /** Keeps them on this device; returns whether that was possible. @param {string} robotName that is in them @returns {Promise<boolean>} */
   async storeTexts(robotName) {
     const storeNumber = ++this.#storeCount;
-    const { newest, earlier: before } = this;
-    const texts = await Promise.all([newest, ...before].map((world) => this.#textOf(world, robotName)));
+    const { newestWorld, earlierWorlds } = this;
+    const texts = await Promise.all([newestWorld, ...earlierWorlds].map((world) => this.#textOf(world, robotName)));
     if (storeNumber !== this.#storeCount) return true; // a newer one says it
     const [text, ...earlierTexts] = texts;
     return storeWorldTexts(text ?? '', earlierTexts.filter(Boolean));
@@ -71,13 +71,13 @@ export class OwnWorlds {
 
   /** Brings back what was kept; returns whether the newest can still be read. @returns {Promise<boolean>} */
   async restore() {
-    const { newest, before } = loadWorldTexts();
-    if (!newest && !before.length) return true;
+    const { newest: newestText, before: earlierTexts } = loadWorldTexts();
+    if (!newestText && !earlierTexts.length) return true;
     await this.#python.ready;
-    const worlds = await Promise.all([newest, ...before].map((text) => this.#readText(text)));
-    this.newest = worlds[0] ?? null;
-    this.earlier = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_EARLIER);
-    return !newest || this.newest !== null;
+    const worlds = await Promise.all([newestText, ...earlierTexts].map((text) => this.#readText(text)));
+    this.newestWorld = worlds[0] ?? null;
+    this.earlierWorlds = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_EARLIER);
+    return !newestText || this.newestWorld !== null;
   }
 
   /** @param {string} storedText @returns {Promise<World | null>} */

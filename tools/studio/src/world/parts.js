@@ -94,7 +94,7 @@ function withValue(world, part, value) {
 /** @param {Box} box @returns {Point[]} its corners */
 export function cornersOf({ x_cm, y_cm, length_cm, width_cm, heading }) {
   return [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([alongSign = 0, acrossSign = 0]) =>
-    rotated([x_cm + (alongSign * length_cm) / 2, y_cm + (acrossSign * width_cm) / 2], [x_cm, y_cm], heading));
+    rotatePoint([x_cm + (alongSign * length_cm) / 2, y_cm + (acrossSign * width_cm) / 2], [x_cm, y_cm], heading));
 }
 
 /** @param {World} world @param {Part} part @returns {Point[]} what can be taken of a part */
@@ -113,20 +113,20 @@ export function pointsOf(world, part) {
  * @param {number} [pointIndex] -1 for the whole part
  * @returns {World}
  */
-export function movedPart(world, part, right_cm, up_cm, pointIndex = -1) {
+export function withMovedPart(world, part, right_cm, up_cm, pointIndex = -1) {
   const points = pointsOf(world, part);
   const movedPoints = pointIndex < 0 ? points : points.slice(pointIndex, pointIndex + 1);
   if (!movedPoints.length) return world;
   const x_cm = offsetWithin(right_cm, movedPoints.map(([x]) => x), world.width_cm);
   const y_cm = offsetWithin(up_cm, movedPoints.map(([, y]) => y), world.height_cm);
   /** @param {Point} place @returns {Point} */
-  const shifted = ([x, y]) => [roundedOnFloor(x + x_cm, world.width_cm), roundedOnFloor(y + y_cm, world.height_cm)];
+  const shift = ([x, y]) => [roundOnFloor(x + x_cm, world.width_cm), roundOnFloor(y + y_cm, world.height_cm)];
   const value = valueOf(world, part);
   if (!value.points) {
-    const [x_cm, y_cm] = shifted([value.x_cm, value.y_cm]);
+    const [x_cm, y_cm] = shift([value.x_cm, value.y_cm]);
     return withValue(world, part, { ...value, x_cm, y_cm });
   }
-  const newPoints = points.map((point, index) => (pointIndex < 0 || index === pointIndex ? shifted(point) : point));
+  const newPoints = points.map((point, index) => (pointIndex < 0 || index === pointIndex ? shift(point) : point));
   return withValue(world, part, { ...value, points: newPoints });
 }
 
@@ -137,15 +137,15 @@ function offsetWithin(offset, coordinates, end) {
 }
 
 /** @param {World} world @param {Part} part @param {number} degrees @returns {World} */
-export function turnedPart(world, part, degrees) {
+export function withTurnedPart(world, part, degrees) {
   const value = valueOf(world, part);
-  if ('heading' in value) return withValue(world, part, { ...value, heading: normalizedAngle(value.heading + degrees) });
+  if ('heading' in value) return withValue(world, part, { ...value, heading: normalizeAngle(value.heading + degrees) });
   if (!value.points) return world;
   const center = centerOf(value.points);
   /** @type {Point[]} */
   const points = value.points.map((/** @type {Point} */ point) => {
-    const [x, y] = rotated(point, center, degrees);
-    return [roundedCm(x), roundedCm(y)];
+    const [x, y] = rotatePoint(point, center, degrees);
+    return [roundCm(x), roundCm(y)];
   });
   return points.every((point) => isOnFloor(point, world)) ? withValue(world, part, { ...value, points }) : world;
 }
@@ -155,16 +155,16 @@ export function turnHandleOf(world, part) {
   const { x_cm = 0, y_cm = 0, heading, length_cm = ROBOT_CM * 2 } = valueOf(world, part);
   if (heading === undefined) return null;
   const distance = length_cm / 2 + HANDLE_CM;
-  const [ahead, behind] = [distance, -distance].map((offset) => rotated([x_cm + offset, y_cm], [x_cm, y_cm], heading));
+  const [ahead, behind] = [distance, -distance].map((offset) => rotatePoint([x_cm + offset, y_cm], [x_cm, y_cm], heading));
   return ahead && behind && !isOnFloor(ahead, world) && isOnFloor(behind, world) ? behind : ahead ?? null;
 }
 
 /** A part whose handle was taken to a place. @param {World} world @param {Part} part @param {Point} fromPoint where its handle was @param {Point} toPoint @returns {World} */
-export function turnedToHandle(world, part, fromPoint, toPoint) {
+export function withTurnedHandle(world, part, fromPoint, toPoint) {
   const { x_cm, y_cm, heading } = valueOf(world, part);
   const [angleBefore, angleNow] = [fromPoint, toPoint].map(([x, y]) => (Math.atan2(y - y_cm, x - x_cm) * 180) / Math.PI);
   const newHeading = Math.round((heading + (angleNow ?? 0) - (angleBefore ?? 0)) / TURN_STEP_DEGREES) * TURN_STEP_DEGREES;
-  return withValue(world, part, { ...valueOf(world, part), heading: normalizedAngle(newHeading) });
+  return withValue(world, part, { ...valueOf(world, part), heading: normalizeAngle(newHeading) });
 }
 
 /** @param {World} world @param {Part} part @returns {World} */
@@ -181,7 +181,7 @@ export function withNumber(world, part, key, number) {
   const upperLimit = key === 'x_cm' ? world.width_cm : key === 'y_cm' ? world.height_cm : high;
   const newNumber = Math.max(low, Math.min(upperLimit, Math.round(number * 10) / 10));
   const changedWorld = withValue(world, part, { ...valueOf(world, part), [key]: newNumber });
-  return movedPart(changedWorld, START, ...shiftToFloor(changedWorld));
+  return withMovedPart(changedWorld, START, ...shiftToFloor(changedWorld));
 }
 
 /** @param {World} world @param {Part} part @param {string} key @param {boolean} isChosen @returns {World} */
@@ -203,24 +203,24 @@ function shiftToFloor({ start, width_cm, height_cm }) {
  */
 export function withDrawn(world, kind, track) {
   if (world[kind].length >= (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts)) return null;
-  const halfLength = Math.min(20, roundedCm(world.width_cm / 4));
-  const points = track.map(([x, y]) => /** @type {Point} */ ([roundedCm(x), roundedCm(y)]));
-  const first = points[0] ?? [roundedCm(world.width_cm / 2), roundedCm(world.height_cm / 2)];
-  const last = points.at(-1) ?? first;
-  const isTap = points.every(([x, y]) => Math.hypot(x - first[0], y - first[1]) < TAP_CM);
-  const center_x = Math.max(halfLength, Math.min(world.width_cm - halfLength, first[0]));
+  const halfLength = Math.min(20, roundCm(world.width_cm / 4));
+  const points = track.map(([x, y]) => /** @type {Point} */ ([roundCm(x), roundCm(y)]));
+  const firstPoint = points[0] ?? [roundCm(world.width_cm / 2), roundCm(world.height_cm / 2)];
+  const lastPoint = points.at(-1) ?? firstPoint;
+  const isTap = points.every(([x, y]) => Math.hypot(x - firstPoint[0], y - firstPoint[1]) < TAP_CM);
+  const center_x = Math.max(halfLength, Math.min(world.width_cm - halfLength, firstPoint[0]));
   /** @type {Point[]} */
-  const ends = isTap ? [[center_x - halfLength, first[1]], [center_x + halfLength, first[1]]] : [first, last];
+  const endPoints = isTap ? [[center_x - halfLength, firstPoint[1]], [center_x + halfLength, firstPoint[1]]] : [firstPoint, lastPoint];
   const [width_cm, height_cm] = isTap ? [20, 20]
-    : [Math.max(SMALLEST_CM, roundedCm(Math.abs(last[0] - first[0]))), Math.max(SMALLEST_CM, roundedCm(Math.abs(last[1] - first[1])))];
+    : [Math.max(SMALLEST_CM, roundCm(Math.abs(lastPoint[0] - firstPoint[0]))), Math.max(SMALLEST_CM, roundCm(Math.abs(lastPoint[1] - firstPoint[1])))];
   const part = {
-    walls: () => ({ points: ends }),
-    lines: () => ({ points: isTap ? ends : simplified(points), width_cm: 2 }),
-    lamps: () => ({ x_cm: first[0], y_cm: first[1], reach_cm: 100 }),
-    flags: () => ({ x_cm: first[0], y_cm: first[1], reach_cm: 12, rests: false }),
-    rings: () => ({ x_cm: first[0], y_cm: first[1], radius_cm: isTap ? 60 : Math.max(5, roundedCm(Math.hypot(last[0] - first[0], last[1] - first[1]))), edge_cm: 4 }),
-    rivals: () => ({ x_cm: first[0], y_cm: first[1], heading: 0, length_cm: 11, width_cm: 11, speed_cm_s: 40, power_percent: 50 }),
-    boxes: () => ({ x_cm: roundedCm((first[0] + last[0]) / 2), y_cm: roundedCm((first[1] + last[1]) / 2), length_cm: width_cm, width_cm: height_cm, heading: 0 }),
+    walls: () => ({ points: endPoints }),
+    lines: () => ({ points: isTap ? endPoints : simplifyTrack(points), width_cm: 2 }),
+    lamps: () => ({ x_cm: firstPoint[0], y_cm: firstPoint[1], reach_cm: 100 }),
+    flags: () => ({ x_cm: firstPoint[0], y_cm: firstPoint[1], reach_cm: 12, rests: false }),
+    rings: () => ({ x_cm: firstPoint[0], y_cm: firstPoint[1], radius_cm: isTap ? 60 : Math.max(5, roundCm(Math.hypot(lastPoint[0] - firstPoint[0], lastPoint[1] - firstPoint[1]))), edge_cm: 4 }),
+    rivals: () => ({ x_cm: firstPoint[0], y_cm: firstPoint[1], heading: 0, length_cm: 11, width_cm: 11, speed_cm_s: 40, power_percent: 50 }),
+    boxes: () => ({ x_cm: roundCm((firstPoint[0] + lastPoint[0]) / 2), y_cm: roundCm((firstPoint[1] + lastPoint[1]) / 2), length_cm: width_cm, width_cm: height_cm, heading: 0 }),
   }[kind]();
   return { ...world, [kind]: [...world[kind], part] };
 }
@@ -237,7 +237,7 @@ export function withPoint(world, part, pointIndex) {
   const newPoint = nextPoint ? [(point[0] + nextPoint[0]) / 2, (point[1] + nextPoint[1]) / 2]
     : [point[0] + (point[0] - previousPoint[0]) / 2, point[1] + (point[1] - previousPoint[1]) / 2];
   /** @type {Point} */
-  const pointOnFloor = [Math.max(0, Math.min(world.width_cm, roundedCm(newPoint[0]))), Math.max(0, Math.min(world.height_cm, roundedCm(newPoint[1])))];
+  const pointOnFloor = [Math.max(0, Math.min(world.width_cm, roundCm(newPoint[0]))), Math.max(0, Math.min(world.height_cm, roundCm(newPoint[1])))];
   return { world: withValue(world, part, { ...value, points: points.toSpliced(index + 1, 0, pointOnFloor) }), point: index + 1 };
 }
 
@@ -275,7 +275,7 @@ export function pointAt(points, point, reach_cm) {
 
 /** How far a place is outside of a box. @param {Box} box @param {Point} point */
 function distanceFromBox(box, point) {
-  const [x, y] = rotated(point, [box.x_cm, box.y_cm], -box.heading);
+  const [x, y] = rotatePoint(point, [box.x_cm, box.y_cm], -box.heading);
   const excess_x = Math.abs(x - box.x_cm) - box.length_cm / 2, excess_y = Math.abs(y - box.y_cm) - box.width_cm / 2;
   return Math.hypot(Math.max(0, excess_x), Math.max(0, excess_y));
 }
@@ -293,20 +293,20 @@ function distanceFromSegment([x, y], [toX, toY], point) {
 }
 
 /** Leaves out the points of a finger's way that a line hardly needs. @param {Point[]} track @returns {Point[]} */
-export function simplified(track) {
+export function simplifyTrack(track) {
   for (let tolerance = LINE_TOLERANCE_CM; ; tolerance *= 2) {
     const keptIndexes = new Set([0, track.length - 1]);
     const spans = [[0, track.length - 1]];
     for (let span = spans.pop(); span; span = spans.pop()) {
-      const [first = 0, last = 0] = span;
+      const [firstIndex = 0, lastIndex = 0] = span;
       let farthestDistance = tolerance, farthestIndex = -1;
-      for (let index = first + 1; index < last; index += 1) {
-        const distance = distanceFromSegment(/** @type {Point} */ (track[first]), /** @type {Point} */ (track[last]), /** @type {Point} */ (track[index]));
+      for (let index = firstIndex + 1; index < lastIndex; index += 1) {
+        const distance = distanceFromSegment(/** @type {Point} */ (track[firstIndex]), /** @type {Point} */ (track[lastIndex]), /** @type {Point} */ (track[index]));
         if (distance > farthestDistance) [farthestDistance, farthestIndex] = [distance, index];
       }
       if (farthestIndex >= 0) {
         keptIndexes.add(farthestIndex);
-        spans.push([first, farthestIndex], [farthestIndex, last]);
+        spans.push([firstIndex, farthestIndex], [farthestIndex, lastIndex]);
       }
     }
     if (keptIndexes.size <= WORLD_LIMITS.points) return track.filter((_, index) => keptIndexes.has(index));
@@ -320,7 +320,7 @@ function centerOf(points) {
 }
 
 /** @param {Point} place @param {Point} middle @param {number} degrees @returns {Point} */
-function rotated([x, y], [center_x, center_y], degrees) {
+function rotatePoint([x, y], [center_x, center_y], degrees) {
   const cos = Math.cos((degrees * Math.PI) / 180), sin = Math.sin((degrees * Math.PI) / 180);
   return [center_x + (x - center_x) * cos - (y - center_y) * sin, center_y + (x - center_x) * sin + (y - center_y) * cos];
 }
@@ -331,22 +331,22 @@ function isOnFloor([x, y], { width_cm, height_cm }) {
 }
 
 /** @param {Point} place @param {World} world @returns {Point} the nearest on the floor */
-export function clampedToFloor([x, y], { width_cm, height_cm }) {
+export function clampToFloor([x, y], { width_cm, height_cm }) {
   return [Math.max(0, Math.min(width_cm, x)), Math.max(0, Math.min(height_cm, y))];
 }
 
 /** @param {number} degrees */
-function normalizedAngle(degrees) {
+function normalizeAngle(degrees) {
   return Math.round((((((degrees + 180) % 360) + 360) % 360) - 180) * 10) / 10;
 }
 
 /** @param {number} cm */
-function roundedCm(cm) {
+function roundCm(cm) {
   return Math.round(cm * 10) / 10;
 }
 
 /** The same, but what is on the floor is not rounded off it. @param {number} cm @param {number} end */
-function roundedOnFloor(cm, end) {
-  const rounded = roundedCm(cm);
+function roundOnFloor(cm, end) {
+  const rounded = roundCm(cm);
   return rounded - end < SMALLEST_CM / 10 ? Math.min(end, rounded) : rounded;
 }

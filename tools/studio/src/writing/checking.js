@@ -41,7 +41,7 @@ export class Checker {
   }
 
   /** Python answers from now on. */
-  ready() {
+  markReady() {
     this.#isReady = true;
     this.#check();
   }

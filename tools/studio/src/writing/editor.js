@@ -18,7 +18,7 @@ import { text, textsOf } from '../page/texts.js';
 
 /** @import { Finding, Change } from '../python.js' */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
-/** @typedef {string} StandText where blocks stand, as only they read it */
+/** @typedef {string} LayoutText where blocks stand, as only they read it */
 
 /** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */
 const setRunningEffect = StateEffect.define();
@@ -36,10 +36,10 @@ const runningField = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
-/** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: StandText, after: StandText}>} */
-const setStandEffect = StateEffect.define();
-const standInversion = invertedEffects.of(({ effects }) => effects.flatMap((effect) => (
-  effect.is(setStandEffect) ? [setStandEffect.of({ before: effect.value.after, after: effect.value.before })] : [])));
+/** Blocks were put elsewhere: a step of the same undo as the text's. @type {import('@codemirror/state').StateEffectType<{before: LayoutText, after: LayoutText}>} */
+const setLayoutEffect = StateEffect.define();
+const layoutInversion = invertedEffects.of(({ effects }) => effects.flatMap((effect) => (
+  effect.is(setLayoutEffect) ? [setLayoutEffect.of({ before: effect.value.after, after: effect.value.before })] : [])));
 
 const theme = EditorView.theme({
   '&': { height: '100%', fontSize: '1rem', backgroundColor: 'var(--card)', color: 'var(--ink)' },
@@ -75,13 +75,13 @@ export class Editor {
   #places = null;
   #markedKey = ''; // what runs
   #heldOffset = -1; // where the program is held, and the editor has been scrolled to
-  /** Hears where blocks stand again. @type {(stand: StandText) => void} */
-  #onStand = () => {};
+  /** Hears where blocks stand again. @type {(stand: LayoutText) => void} */
+  #onLayout = () => {};
 
   /** @param {HTMLElement} parent */
   constructor(parent) {
     /** @type {(offset: number, isLine: boolean) => void} */
-    const toggle = (at, isLine) => this.#toggleAt(at, isLine);
+    const toggle = (offset, isLine) => this.#toggleAt(offset, isLine);
     const root = parent.attachShadow({ mode: 'open' });
     const container = document.createElement('div');
     container.style.cssText = 'position: absolute; inset: 0; overflow: hidden'; // laid out without the rest of the page
@@ -98,10 +98,10 @@ export class Editor {
               pageState.programText.set(this.text);
             }
             for (const transaction of update.transactions.filter((transaction) => transaction.isUserEvent('undo') || transaction.isUserEvent('redo'))) {
-              for (const effect of transaction.effects) if (effect.is(setStandEffect)) this.#onStand(effect.value.after);
+              for (const effect of transaction.effects) if (effect.is(setLayoutEffect)) this.#onLayout(effect.value.after);
             }
           }),
-          standInversion,
+          layoutInversion,
           breakpointExtension(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => onMarginPress(line, event, toggle) } }),
           this.#historyCompartment.of(history()),
@@ -172,19 +172,19 @@ export class Editor {
     this.#view.dispatch({ effects: this.#historyCompartment.reconfigure(history()) });
   }
 
-  /** @param {(stand: StandText) => void} onStand is done where an undo or a redo has blocks stand elsewhere */
-  onStandChange(onStand) {
-    this.#onStand = onStand;
+  /** @param {(stand: LayoutText) => void} onLayout is done where an undo or a redo has blocks stand elsewhere */
+  onLayoutChange(onLayout) {
+    this.#onLayout = onLayout;
   }
 
   /**
    * Puts in the text of changed blocks and where they stand, as one step of undo.
    * @param {string} newText
-   * @param {{before: StandText, after: StandText}} stands
+   * @param {{before: LayoutText, after: LayoutText}} layouts
    */
-  replaceByBlocks(newText, stands) {
+  replaceByBlocks(newText, layouts) {
     const oldText = this.text;
-    const effects = stands.before === stands.after ? [] : [setStandEffect.of(stands)];
+    const effects = layouts.before === layouts.after ? [] : [setLayoutEffect.of(layouts)];
     if (newText === oldText) {
       if (effects.length) this.#view.dispatch({ effects, annotations: isolateHistory.of('full'), userEvent: 'move.blocks' });
       return;

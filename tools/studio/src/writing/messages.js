@@ -1,7 +1,7 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { element, say } from '../page/elements.js';
+import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
 
@@ -33,7 +33,7 @@ export function showMessages(list, findings, goTo) {
   });
   if (findings.length > MOST_MESSAGES) rows.push(makeElement('li', '', text('more', { count: findings.length - MOST_MESSAGES })));
   list.replaceChildren(...rows);
-  say(element('first_message', HTMLElement), firstMessage);
+  setText(element('first_message', HTMLElement), firstMessage);
 }
 
 /**

@@ -3,7 +3,7 @@
 
 import { element } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
-import { blocksPicture, replaceOptions, pictureOption } from '../page/pictures.js';
+import { makeBlocksPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { isShippedProgram } from '../start/beginnings.js';
@@ -42,8 +42,8 @@ export class Views {
   #isForced = false; // blocks of a text that does not parse, too
   #changeCount = 0; // of blocks that their text does not have yet
   #shownForm = ''; // what the blocks were when they and the text were the same
-  /** Where they stood then. @type {import('./editor.js').StandText} */
-  #shownStand = '';
+  /** Where they stood then. @type {import('./editor.js').LayoutText} */
+  #shownLayout = '';
   #typingTimer = 0;
   #sendTimer = 0;
   /** @type {Finding[]} */
@@ -81,9 +81,9 @@ export class Views {
         this.#refreshBlocks(true);
       }, { capture: true });
     }
-    editor.onStandChange((stand) => {
+    editor.onLayoutChange((layout) => {
       if (!this.#blocks) return;
-      this.#blocks.stand = stand;
+      this.#blocks.layoutText = layout;
       this.#shownText = null; // also where the text is the same
       if (this.#isOn) this.#refreshBlocks(true);
     });
@@ -101,8 +101,8 @@ export class Views {
     pageState.virtualRun.subscribe(() => this.#markRunning());
     pageState.robotRun.subscribe(() => this.#markRunning());
     pageState.sideId.subscribe(() => this.#markRunning());
-    pageState.fault.subscribe(({ range, sentence: said }) => {
-      if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
+    pageState.fault.subscribe(({ range, sentence }) => {
+      if (!range || !this.#isStale()) this.#blocks?.showFault(range, sentence);
     });
     this.#updateLanguage();
     this.#showView();
@@ -113,7 +113,7 @@ export class Views {
   }
 
   /** Python answers from now on. */
-  ready() {
+  markReady() {
     this.#isReady = true;
     if (this.#isOn) this.#refreshBlocks(true);
   }
@@ -150,7 +150,7 @@ export class Views {
 
   #updateLanguage() {
     const { value } = this.#levelSelect;
-    replaceOptions(this.#levelSelect, LEVELS.map(([level, levelKey], index) => pictureOption(text(levelKey), level, blocksPicture(index + 1))));
+    replaceOptions(this.#levelSelect, LEVELS.map(([level, levelKey], index) => makePictureOption(text(levelKey), level, makeBlocksPicture(index + 1))));
     this.#levelSelect.value = value || this.#page.work.level;
     this.#blocks?.updateLanguage();
     if (!this.#isStale()) this.#decorateBlocks();
@@ -164,8 +164,8 @@ export class Views {
   }
 
   /** Another program comes. */
-  begin() {
-    this.#blocks?.begin();
+  beginProgram() {
+    this.#blocks?.beginProgram();
   }
 
   /** The text has changed, by whoever did it. */
@@ -207,7 +207,7 @@ export class Views {
    * Returns a picture of the program's blocks, which are made if only the text is seen.
    * @returns {Promise<Blob | null>} null where there are none
    */
-  async picture() {
+  async makePicture() {
     const { view } = this.#page.work;
     if (view !== 'blocks') this.#chooseView('blocks');
     try {
@@ -215,7 +215,7 @@ export class Views {
       await this.#sendBlocks();
       this.#refreshBlocks(true);
       while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
-      return this.#blocks && !this.#isStale() ? await this.#blocks.picture() : null;
+      return this.#blocks && !this.#isStale() ? await this.#blocks.makePicture() : null;
     } finally {
       if (view !== 'blocks') this.#chooseView(view);
     }
@@ -268,7 +268,7 @@ export class Views {
     if (group === this.#group) return;
     this.#group = group;
     clearInterval(this.#groupTimer);
-    if (group) this.#groupTimer = window.setInterval(() => group.chooseLine(this.#blocks?.chosenLine ?? 0, this.isBusy), GROUP_INTERVAL_MS);
+    if (group) this.#groupTimer = window.setInterval(() => group.chooseLine(this.#blocks?.focusedLine ?? 0, this.isBusy), GROUP_INTERVAL_MS);
     this.#shownText = null;
     if (this.#isOn) this.#refreshBlocks(true);
   }
@@ -318,21 +318,21 @@ export class Views {
       if (this.#group) await this.#writeToGroup(this.#group);
       else while (this.#changeCount && this.#shownText === textBefore) {
         this.#changeCount = 0;
-        const { form, ids } = this.#blocks.read();
+        const { form, ids } = this.#blocks.readForm();
         const formText = JSON.stringify(form);
-        const stands = { before: this.#shownStand, after: this.#blocks.stand };
+        const layouts = { before: this.#shownLayout, after: this.#blocks.layoutText };
         if (formText === this.#shownForm) { // a block was only moved about
-          this.#shownStand = stands.after;
-          this.#page.editor.replaceByBlocks(textBefore, stands);
+          this.#shownLayout = layouts.after;
+          this.#page.editor.replaceByBlocks(textBefore, layouts);
           break;
         }
         const answer = await this.#page.python.ask({ do: 'text', form });
         if (this.#changeCount || this.#page.editor.text !== textBefore) continue;
         this.#shownText = answer.text;
         this.#shownForm = formText;
-        this.#shownStand = stands.after;
+        this.#shownLayout = layouts.after;
         this.#blocks.setRanges(ids, answer.places);
-        this.#page.editor.replaceByBlocks(answer.text, stands);
+        this.#page.editor.replaceByBlocks(answer.text, layouts);
         this.#showBreakpoints();
       }
     } catch (error) {
@@ -349,12 +349,12 @@ export class Views {
   async #writeToGroup(group) {
     while (this.#blocks) {
       this.#changeCount = 0;
-      const { form, ids } = this.#blocks.read();
+      const { form, ids } = this.#blocks.readForm();
       const formText = JSON.stringify(form);
-      const stands = { before: this.#shownStand, after: this.#blocks.stand };
-      this.#shownStand = stands.after;
+      const layouts = { before: this.#shownLayout, after: this.#blocks.layoutText };
+      this.#shownLayout = layouts.after;
       if (formText === this.#shownForm) { // which is no change of the group's
-        this.#page.editor.replaceByBlocks(this.#page.editor.text, stands);
+        this.#page.editor.replaceByBlocks(this.#page.editor.text, layouts);
         return;
       }
       this.#shownForm = formText;
@@ -394,10 +394,10 @@ export class Views {
         }
         this.#shownText = newText;
         this.#changeCount = 0;
-        this.#blocks.setGiven(isShippedProgram(newText) ? form : null);
+        this.#blocks.setGivenBlocks(isShippedProgram(newText) ? form : null);
         this.#blocks.show(form);
-        this.#shownForm = JSON.stringify(this.#blocks.read().form);
-        this.#shownStand = this.#blocks.stand;
+        this.#shownForm = JSON.stringify(this.#blocks.readForm().form);
+        this.#shownLayout = this.#blocks.layoutText;
         if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
         this.#decorateBlocks();
       }
@@ -412,7 +412,7 @@ export class Views {
 
   /** Whether blocks are others than they were shown. */
   get #isTouched() {
-    return this.#shownText !== null && JSON.stringify(this.#blocks?.read().form) !== this.#shownForm;
+    return this.#shownText !== null && JSON.stringify(this.#blocks?.readForm().form) !== this.#shownForm;
   }
 
   /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
