@@ -98,10 +98,10 @@ const views = new Views({
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
   python, work, remember, pad,
-  whenCompiled: () => checking.whenChecked(),
-  put: ({ text: program, robot }) => {
+  whenCompiled: () => checker.whenChecked(),
+  put: ({ text: program, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
-    if (program !== work.text || robot !== work.robot) programs.replaceProgram({ text: program, robot, name: '' });
+    if (program !== work.text || robotName !== work.robot) programs.replaceProgram({ text: program, robot: robotName, name: '' });
     phone.show('robot');
   },
 });
@@ -133,7 +133,7 @@ pageState.language.subscribe(() => {
   if (!isReady) statusElement.textContent = text('starting');
   remember();
 });
-const checking = new Checker(python, (error) => {
+const checker = new Checker(python, (error) => {
   showStatus(bugSentence(error), 'wrong');
 });
 const phone = new Phone(() => robotPanel.run());
@@ -194,16 +194,16 @@ python.listen({
   },
   onBegin: () => {
     statusElement.textContent = text('starting');
-    checking.markBeginning();
+    checker.markBeginning();
   },
   onFail: () => {
     statusElement.textContent = text('no_compiler');
-    checking.markFailed();
+    checker.markFailed();
   },
 });
 python.ready.then(() => {
   isReady = true;
-  checking.markReady();
+  checker.markReady();
   views.markReady();
   if (isStart()) views.fetchAhead();
 });
@@ -264,7 +264,7 @@ languageSelect.addEventListener('change', async () => {
   const learning = python.ask({ do: 'learn', language: languageSelect.value }).catch(() => null);
   languageSelect.value = work.language = await setLanguage(languageSelect.value);
   await learning;
-  checking.checkAgain(); // what was said meanwhile is in English
+  checker.checkAgain(); // what was said meanwhile is in English
 });
 
 wordsButton.addEventListener('click', () => pageState.areWordsShown.set(!work.words));

@@ -20,7 +20,7 @@ import { text, textsOf } from '../page/texts.js';
 /** @import { Form, Range } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
-/** @typedef {import('../page/page_state.js').TaughtBlocks} Taught */
+/** @typedef {import('../page/page_state.js').TaughtBlocks} TaughtBlocks */
 /**
  * @typedef {object} BlocksListener who is told of what is done to blocks
  * @property {() => void} onChange
@@ -317,10 +317,10 @@ export class Blocks {
     this.#updateToolbox();
   }
 
-  /** No lesson takes away what another one has offered. @param {Taught} taught what the open lesson speaks of */
-  setTaught({ offered: offeredKinds, fresh }) {
+  /** No lesson takes away what another one has offered. @param {TaughtBlocks} taught what the open lesson speaks of */
+  setTaught({ offered: offeredKinds, fresh: newPieces }) {
     this.#taughtBlocks = [...new Set([...this.#taughtBlocks, ...offeredKinds])];
-    this.#newBlocks = fresh;
+    this.#newBlocks = newPieces;
     this.#updateToolbox();
   }
 
@@ -427,10 +427,10 @@ export class Blocks {
   /** @returns {{form: Form, ids: string[]}} */
   readForm() {
     makeRoom(this.#workspace);
-    const result = formOf(this.#workspace);
-    this.#noteUse(result.form);
+    const formWithIds = formOf(this.#workspace);
+    this.#noteUse(formWithIds.form);
     this.#markLoose();
-    return result;
+    return formWithIds;
   }
 
   /** Where each hat that somebody has put somewhere stands, and each loose stack. @returns {import('../writing/editor.js').LayoutText} */
@@ -470,9 +470,9 @@ export class Blocks {
     const valueCounts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
     const namesInUse = { names: wordsOfKind('assign'), words: [...valueCounts].sort() };
     const pieces = piecesIn(blocks);
-    const newlyTried = [...new Set(pieces)].filter((piece) => !this.#triedBlocks.has(piece) && countOf(pieces, piece) > countOf(this.#givenBlocks, piece));
-    for (const piece of newlyTried) this.#triedBlocks.add(piece);
-    const isNewTried = newlyTried.some((piece) => this.#newBlocks.includes(piece));
+    const newlyTriedPieces = [...new Set(pieces)].filter((piece) => !this.#triedBlocks.has(piece) && countOf(pieces, piece) > countOf(this.#givenBlocks, piece));
+    for (const piece of newlyTriedPieces) this.#triedBlocks.add(piece);
+    const isNewTried = newlyTriedPieces.some((piece) => this.#newBlocks.includes(piece));
     if (!isNewTried && JSON.stringify(namesInUse) === JSON.stringify(this.#usedNames)) return;
     this.#usedNames = namesInUse;
     if (!this.#workspace.isDragging()) this.#updateToolbox();

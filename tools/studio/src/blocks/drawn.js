@@ -73,10 +73,10 @@ export class Pictures {
   }
 
   /** @param {Program} program */
-  async #drawPicture({ text, robot }) {
+  async #drawPicture({ text, robot: robotName }) {
     if (!text.trim()) return NO_PICTURE;
     await this.#python.ready;
-    const form = await this.#python.ask({ do: 'blocks', robot, first: MOST_BLOCKS }, new TextEncoder().encode(text));
+    const form = await this.#python.ask({ do: 'blocks', robot: robotName, first: MOST_BLOCKS }, new TextEncoder().encode(text));
     this.#blocks ??= import('./blocks.js').then(({ Blocks }) => new Blocks(this.#container, ROBOTS[0]?.name ?? '', 'few'));
     const blocks = await this.#blocks.catch((error) => {
       this.#blocks = null; // the next picture tries again
@@ -84,7 +84,7 @@ export class Pictures {
     });
     if (this.#isLanguageOld) blocks.updateLanguage();
     this.#isLanguageOld = false;
-    const file = await blocks.pictureOfForm(form, robot, MOST_PIXELS);
+    const file = await blocks.pictureOfForm(form, robotName, MOST_PIXELS);
     return file ? URL.createObjectURL(file) : NO_PICTURE;
   }
 

@@ -38,10 +38,10 @@ export class NumberField extends Blockly.FieldNumber {
 
   /** @param {any} value */
   doClassValidation_(value) {
-    const valid = super.doClassValidation_(value);
-    if (valid === null || !this.isBeingEdited_) return valid;
+    const validNumber = super.doClassValidation_(value);
+    if (validNumber === null || !this.isBeingEdited_) return validNumber;
     const { low, high } = rangeAt(this.getSourceBlock());
-    return Math.min(high, Math.max(low, valid));
+    return Math.min(high, Math.max(low, validNumber));
   }
 
   /** Whether it is how high a tone is. */
@@ -97,7 +97,7 @@ export class NumberField extends Blockly.FieldNumber {
 }
 
 /** Where each move leads, from above. @type {Record<string, string>} */
-const ARROWS = {
+const ARROW_PATHS = {
   F: 'M9 1 16 9H11.500V17H6.500V9H2z', B: 'M9 17 2 9H6.500V1H11.500V9H16z',
   L: 'M7 1v4h3.500a5.500 5.500 0 0 1 5.500 5.500V17h-4.500v-6.500a1 1 0 0 0-1-1H7v4L.5 7.250z',
   R: 'M11 1v4H7.500A5.500 5.500 0 0 0 2 10.500V17h4.500v-6.500a1 1 0 0 1 1-1H11v4l6.500-6.250z',
@@ -117,7 +117,7 @@ export class ArrowField extends Blockly.FieldLabel {
   }
 
   render_() {
-    this.arrowPath?.setAttribute('d', ARROWS[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '');
+    this.arrowPath?.setAttribute('d', ARROW_PATHS[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '');
     this.size_ = new Blockly.utils.Size(ARROW_PX, ARROW_PX);
   }
 }

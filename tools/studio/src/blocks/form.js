@@ -391,20 +391,20 @@ function* makingSteps(form, makeBlock, ids) {
   const hats = [];
   /** @type {string[]} */
   const programIds = [];
-  let above = program.nextConnection;
+  let aboveConnection = program.nextConnection;
   for (const formBlock of form.body) {
     const isInProgram = !KINDS[formBlock.kind]?.is_hat;
-    const block = yield* hangSteps([formBlock], isInProgram ? above : null, makeBlock, ids);
+    const block = yield* hangSteps([formBlock], isInProgram ? aboveConnection : null, makeBlock, ids);
     if (!block) continue;
     if (isInProgram) {
       programIds.push(block.id);
-      above = block.nextConnection;
+      aboveConnection = block.nextConnection;
     } else hats.push([block, programIds.length]);
   }
-  const loose = [];
-  for (const { body, value } of form.loose) loose.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : makeValueBlock(value, makeBlock));
+  const looseBlocks = [];
+  for (const { body, value } of form.loose) looseBlocks.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : makeValueBlock(value, makeBlock));
   SHOWN_BLOCKS.set(program.workspace, { program: programIds, hats: new Map(), earlyDefs: findEarlyDefs(form.body) });
-  return { program, hats, loose };
+  return { program, hats, loose: looseBlocks };
 }
 
 /**
@@ -442,8 +442,8 @@ function placeTopBlocks(workspace, { program, hats, loose }, stackPlaces) {
  * @param {Blockly.BlockSvg[]} hats
  */
 function hasRoomBeside(workspace, program, hats) {
-  const widest = Math.max(...hats.map((hat) => hat.getHeightWidth().width));
-  return program.getBoundingRectangle().right + STACK_GAP + widest <= workspace.getMetricsManager().getViewMetrics(true).width;
+  const mostWidth = Math.max(...hats.map((hat) => hat.getHeightWidth().width));
+  return program.getBoundingRectangle().right + STACK_GAP + mostWidth <= workspace.getMetricsManager().getViewMetrics(true).width;
 }
 
 /**

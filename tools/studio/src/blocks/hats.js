@@ -39,10 +39,10 @@ function withDefsBeforeCalls(items, earlyDefs) {
   for (let roundsLeft = order.length; roundsLeft; roundsLeft -= 1) { // more would be DEFs that call each other
     const earlyCall = findEarlyCall(order, earlyDefs);
     if (!earlyCall) break;
-    const { def, call } = earlyCall;
-    const [item] = order.splice(def, 1);
-    const isHat = ['def', 'task', 'when'].includes(order[call]?.block.kind ?? '');
-    if (item) order.splice(isHat ? call : Math.min(call, countComments(order)), 0, item);
+    const { def: defIndex, call: callIndex } = earlyCall;
+    const [item] = order.splice(defIndex, 1);
+    const isHat = ['def', 'task', 'when'].includes(order[callIndex]?.block.kind ?? '');
+    if (item) order.splice(isHat ? callIndex : Math.min(callIndex, countComments(order)), 0, item);
   }
   return order;
 }

@@ -15,7 +15,7 @@ function changeState(block, change) {
   Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(block, 'mutation', null, stateBefore, stateAfter));
 }
 
-export const DEF = {
+export const DEF_METHODS = {
   /** @this {any} @returns {string[]} the names of its values */
   names() {
     const names = [];
@@ -68,7 +68,7 @@ export const DEF = {
   },
 };
 
-export const CALL = {
+export const CALL_METHODS = {
   count: 0,
 
   /** @this {any} */

@@ -27,15 +27,15 @@ export async function pictureOf(canvas, { left, right, top, bottom }, mostPixels
   const width = right - left + 2 * MARGIN, height = bottom - top + 2 * MARGIN;
   if (!(right > left && bottom > top)) return null;
   const scale = Math.min(PIXEL_RATIO, MOST_SIDE_PX / width, MOST_SIDE_PX / height, Math.sqrt(mostPixels / (width * height)));
-  const output = document.createElement('canvas');
-  Object.assign(output, { width: Math.ceil(width * scale), height: Math.ceil(height * scale) });
-  const pen = output.getContext('2d');
+  const outputCanvas = document.createElement('canvas');
+  Object.assign(outputCanvas, { width: Math.ceil(width * scale), height: Math.ceil(height * scale) });
+  const pen = outputCanvas.getContext('2d');
   if (!pen) return null;
   pen.fillStyle = '#fff';
-  pen.fillRect(0, 0, output.width, output.height);
+  pen.fillRect(0, 0, outputCanvas.width, outputCanvas.height);
   pen.setTransform(scale, 0, 0, scale, (MARGIN - left) * scale, (MARGIN - top) * scale);
   await runInSlices(paintingSteps(canvas, pen));
-  return new Promise((resolve) => output.toBlob(resolve, 'image/png'));
+  return new Promise((resolve) => outputCanvas.toBlob(resolve, 'image/png'));
 }
 
 /**
@@ -44,8 +44,8 @@ export async function pictureOf(canvas, { left, right, top, bottom }, mostPixels
  */
 function* paintingSteps(root, pen) {
   const rootState = { matrix: pen.getTransform(), opacity: 1 };
-  const pending = [...root.children].reverse().map((element) => ({ element, ...rootState }));
-  for (let step = pending.pop(); step; step = pending.pop()) {
+  const pendingSteps = [...root.children].reverse().map((element) => ({ element, ...rootState }));
+  for (let step = pendingSteps.pop(); step; step = pendingSteps.pop()) {
     const { element } = step;
     const style = getComputedStyle(element);
     if (!(element instanceof SVGGraphicsElement) || style.display === 'none' || style.visibility === 'hidden' || element.matches(OMITTED_SELECTOR)) continue;
@@ -53,7 +53,7 @@ function* paintingSteps(root, pen) {
     const opacity = step.opacity * Number(style.opacity);
     pen.setTransform(matrix);
     if (element instanceof SVGTextElement) paintText(element, style, opacity, pen);
-    else if (element instanceof SVGGElement) for (const child of [...element.children].reverse()) pending.push({ element: child, matrix, opacity });
+    else if (element instanceof SVGGElement) for (const child of [...element.children].reverse()) pendingSteps.push({ element: child, matrix, opacity });
     else paintPath(pathOf(element), element instanceof SVGImageElement ? { ...PLAIN_STYLE, fill: '#fff' } : style, opacity, pen);
     yield;
   }

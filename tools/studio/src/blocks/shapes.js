@@ -3,7 +3,7 @@
 
 import * as Blockly from 'blockly/core';
 import { ArrowField, LineField, NameField, NumberField, UnitField } from './fields.js';
-import { CALL, DEF } from './own_words.js';
+import { CALL_METHODS, DEF_METHODS } from './own_words.js';
 import { rangeOf } from './places.js';
 import { labelOf } from '../page/texts.js';
 import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE, tipOf } from '../page/words.js';
@@ -313,7 +313,7 @@ export function defineBlocks() {
     },
   };
   for (const [kind, blockKind] of Object.entries(KINDS)) {
-    const extraMethods = { def: DEF, call: CALL }[kind] ?? {};
+    const extraMethods = { def: DEF_METHODS, call: CALL_METHODS }[kind] ?? {};
     Blockly.Blocks[kind] = kind === 'if' ? IF : {
       ...extraMethods,
       /** @this {Blockly.Block} */

@@ -152,8 +152,8 @@ export function findItems(words, usedNames) {
   const wantedWords = withoutAccents(words).split(/\s+/).filter(Boolean);
   const rankedItems = makeGroups(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
     const word = wordOfItem(item);
-    const choices = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
-    const label = withoutAccents([labelOf(item.type, word, null).text, word, item.type, ...choices].join(' '));
+    const choiceLabels = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
+    const label = withoutAccents([labelOf(item.type, word, null).text, word, item.type, ...choiceLabels].join(' '));
     const peopleWords = ` ${wordsOfPeople(item.type, word)}`, tipText = withoutAccents(tipOf(item.type)), groupText = ` ${withoutAccents(text(textKey(`group/${group}`)))}`;
     const ranks = wantedWords.map((wantedWord) => [label.startsWith(wantedWord), label.includes(wantedWord), peopleWords.includes(` ${wantedWord}`), tipText.includes(wantedWord), groupText.includes(` ${wantedWord}`), true].indexOf(true));
     return { item, rank: Math.max(...ranks) };

@@ -29,13 +29,13 @@ class BigWindow {
   }
 
   addButtons() {
-    const stop = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
-    stop.className = 'stop';
-    this.head.append(makeButton('close', () => this.window.close()), stop);
+    const stopButton = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    stopButton.className = 'stop';
+    this.head.append(makeButton('close', () => this.window.close()), stopButton);
   }
 }
 
-/** @typedef {{key: string, title: string, stateText: string, picture: string, text: string, history: string[], drives: boolean, hand: boolean}} PupilView */
+/** @typedef {{key: string, title: string, stateText: string, picture: string, text: string, history: string[], isDriving: boolean, isHandUp: boolean}} PupilView */
 /** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} PupilActions */
 
 export class BigPupil extends BigWindow {
@@ -83,7 +83,7 @@ export class BigPupil extends BigWindow {
   }
 
   /** @param {PupilView} shown */
-  show({ key, title, stateText, picture, text: program, history, drives, hand }) {
+  show({ key, title, stateText, picture, text: program, history, isDriving, isHandUp }) {
     this.key = key;
     setText(this.title, title);
     setText(this.#stateElement, stateText);
@@ -95,9 +95,9 @@ export class BigPupil extends BigWindow {
     const paper = /** @type {HTMLElement} */ (this.#pictureElement.parentElement);
     paper.hidden = !picture;
     if (picture && this.#pictureElement.src !== picture) this.#pictureElement.src = picture;
-    this.#lowerButton.hidden = !hand;
+    this.#lowerButton.hidden = !isHandUp;
     this.#removeButton.hidden = key.startsWith('group '); // a group is left by its pupils
-    this.#stopButton.hidden = this.#nextButton.hidden = !drives;
+    this.#stopButton.hidden = this.#nextButton.hidden = !isDriving;
     if (!this.window.open) this.window.showModal();
   }
 }

@@ -22,11 +22,11 @@ import { isTeacher } from '../robot/host.js';
 export async function openClass(page) {
   const stylesheet = document.createElement('link');
   Object.assign(stylesheet, { rel: 'stylesheet', href: 'class.css' });
-  const loaded = new Promise((resolve) => {
+  const loading = new Promise((resolve) => {
     stylesheet.onload = stylesheet.onerror = resolve;
   });
   document.head.append(stylesheet);
-  await loaded;
+  await loading;
   if (isTeacher) new Teacher(page);
   else new Pupil(page);
 }

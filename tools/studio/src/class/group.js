@@ -105,9 +105,9 @@ export class Group {
 
   /** @param {import('../page/texts.js').Key | ''} key */
   #showState(key) {
-    const { isInGroup: isIn } = this.#membership;
-    this.#joinForm.hidden = this.#groupList.hidden = isIn;
-    this.#leaveButton.hidden = !isIn;
+    const { isInGroup } = this.#membership;
+    this.#joinForm.hidden = this.#groupList.hidden = isInGroup;
+    this.#leaveButton.hidden = !isInGroup;
     setText(this.#statusElement, key ? text(key, { group: asPlainText(pageState.groupName.value) }) : text('group_told'));
   }
 }

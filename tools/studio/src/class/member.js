@@ -35,9 +35,9 @@ export class Membership {
   /** A page that was loaded again goes on, if it was in a group; returns whether it was. */
   resume() {
     const stored = loadJson(STORAGE_KEY, 'sessionStorage');
-    const wasIn = Boolean(stored?.request?.do && stored.page?.name);
-    if (wasIn) this.join(stored.request, stored.page);
-    return wasIn;
+    const wasInGroup = Boolean(stored?.request?.do && stored.page?.name);
+    if (wasInGroup) this.join(stored.request, stored.page);
+    return wasInGroup;
   }
 
   /** @param {Record<string, unknown>} request @param {{name: string}} [storedPage] */
@@ -53,7 +53,7 @@ export class Membership {
         this.#listener.say(textKey(answer.failure));
         return;
       }
-      const together = this.#sharedEditor = new SharedEditor(python, editor, {
+      const sharedEditor = this.#sharedEditor = new SharedEditor(python, editor, {
         left: () => {
           this.endMembership();
           this.#listener.say('group_left');
@@ -72,8 +72,8 @@ export class Membership {
       });
       pageState.groupName.set(String(answer.group));
       this.#listener.say('group_in');
-      await together.showProgram(answer, storedPage ?? null).then(() => {
-        views.join(together);
+      await sharedEditor.showProgram(answer, storedPage ?? null).then(() => {
+        views.join(sharedEditor);
         document.documentElement.dataset['group'] = 'in';
       }, (error) => {
         this.leave();

@@ -64,7 +64,7 @@ export class Pupil {
   }, makeSign('hand', 26));
   #isHandUp = false;
   #group;
-  #isEntering = false;
+  #isJoining = false;
   #stayState = newStayState(); // in one class: an answer of the one before is none of the next one
   #pollTimer = 0;
 
@@ -103,8 +103,8 @@ export class Pupil {
   }
 
   async #joinClass() {
-    if (this.#isEntering) return; // who presses twice is one pupil
-    this.#isEntering = true;
+    if (this.#isJoining) return; // who presses twice is one pupil
+    this.#isJoining = true;
     try {
       const answer = await post({ do: 'join', code: this.#codeInput.value, name: this.#nameInput.value, before: loadText(LAST_TOKEN_KEY) });
       if (answer.failure) this.#showStatus(answer.failure);
@@ -112,7 +112,7 @@ export class Pupil {
     } catch {
       this.#showStatus('class_silent');
     }
-    this.#isEntering = false;
+    this.#isJoining = false;
   }
 
   /** @param {string} token */

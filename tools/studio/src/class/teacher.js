@@ -102,9 +102,9 @@ export class Teacher {
     this.#addHead();
     this.#addSettings();
     this.#giveBackButton.hidden = this.#anewButton.hidden = true;
-    const gear = makeButton('class_settings', () => this.#openSettings());
-    gear.id = 'class_settings';
-    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#anewButton, gear);
+    const settingsButton = makeButton('class_settings', () => this.#openSettings());
+    settingsButton.id = 'class_settings';
+    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#anewButton, settingsButton);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#emptyNotice);
     pageState.language.subscribe(() => this.#updateLanguage());
@@ -223,8 +223,8 @@ export class Teacher {
   /** The pupils of a tile, which are several where it is a group's. @param {string} key */
   #pupilsOfTile(key) {
     const { pupils: pupilRowsOf = [], groups = [] } = this.#classState ?? {};
-    const numbers = groups.find((group) => groupTileKey(group.key) === key)?.pupils;
-    return pupilRowsOf.filter(({ number }) => (numbers ? numbers.includes(number) : pupilTileKey(number) === key));
+    const memberNumbers = groups.find((group) => groupTileKey(group.key) === key)?.pupils;
+    return pupilRowsOf.filter(({ number }) => (memberNumbers ? memberNumbers.includes(number) : pupilTileKey(number) === key));
   }
 
   /** @param {Record<string, unknown>} fields */
@@ -249,8 +249,8 @@ export class Teacher {
   /** @param {string} action @param {string} key */
   #requestForTile(action, key) {
     const pupilRows = this.#pupilsOfTile(key);
-    for (const { number, hand, robot } of pupilRows) {
-      if (pupilRows.length === 1 || (action === 'class_hand' ? hand : robot)) this.#request({ do: action, pupil: number });
+    for (const { number, hand, robot: robotName } of pupilRows) {
+      if (pupilRows.length === 1 || (action === 'class_hand' ? hand : robotName)) this.#request({ do: action, pupil: number });
     }
   }
 
@@ -403,7 +403,7 @@ export class Teacher {
     const lessonsText = text('class_lessons', { done: tile.lessons.length, all: this.#classState?.lessons ?? 0 });
     this.#bigPupil.show({
       key, title: asPlainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],
-      drives: Boolean(drivesText), hand: Boolean(pupil?.hand),
+      isDriving: Boolean(drivesText), isHandUp: Boolean(pupil?.hand),
     });
   }
 
@@ -448,7 +448,7 @@ function groupTileKey(key) {
 
 /** A tile of a group: what any of its pupils has, it has. @param {string} key @param {string} name @param {PupilRow[]} members @param {number} version */
 function makeGroupTile(key, name, members, version) {
-  const mainMember = /** @type {PupilRow} */ (members.find(({ robot }) => robot) ?? members[0]);
+  const mainMember = /** @type {PupilRow} */ (members.find(({ robot: robotName }) => robotName) ?? members[0]);
   const lessons = [...new Set(members.flatMap((member) => member.lessons))];
   const pupil = {
     ...mainMember, version, lessons,

@@ -68,8 +68,8 @@ class NameWidget extends WidgetType {
   }
 
   toDOM() {
-    const { name, mark: colorIndex, writes } = this.other;
-    const nameElement = makeElement('span', '', writes ? `${name} …` : name);
+    const { name, mark: colorIndex, writes: isWriting } = this.other;
+    const nameElement = makeElement('span', '', isWriting ? `${name} …` : name);
     nameElement.className = `cm-mate cm-mate-${colorIndex}`;
     return nameElement;
   }
@@ -78,7 +78,7 @@ class NameWidget extends WidgetType {
 const othersField = StateField.define({
   create: () => Decoration.none,
   update(marks, transaction) {
-    let updated = marks.map(transaction.changes);
+    let newMarks = marks.map(transaction.changes);
     for (const effect of transaction.effects) {
       if (!effect.is(setOthersEffect)) continue;
       const { doc } = transaction.state;
@@ -89,9 +89,9 @@ const othersField = StateField.define({
           Decoration.widget({ widget: new NameWidget(other), side: 1 }).range(to),
         ];
       });
-      updated = Decoration.set(ranges, true);
+      newMarks = Decoration.set(ranges, true);
     }
-    return updated;
+    return newMarks;
   },
   provide: (field) => EditorView.decorations.from(field),
 });
@@ -276,12 +276,12 @@ export class SharedEditor {
     const { told: refusedBefore, count: countBefore } = this.#pythonState;
     this.#pythonState = answer;
     const changes = ChangeSet.of(answer.changes.map(([from, to, insert]) => ({ from, to, insert })), length);
-    const mapped = typedSince && !typedSince.empty ? changes.map(typedSince) : changes;
+    const mappedChanges = typedSince && !typedSince.empty ? changes.map(typedSince) : changes;
     const { selection, doc } = this.#view.state;
     const isAtLineStart = doc.lineAt(selection.main.head).from === selection.main.head; // what is put in there is before its line
     this.#view.dispatch({
-      changes: mapped,
-      ...(isAtLineStart && { selection: selection.map(mapped, 1) }), // else it is mapped so anyway; saying it would end a composition
+      changes: mappedChanges,
+      ...(isAtLineStart && { selection: selection.map(mappedChanges, 1) }), // else it is mapped so anyway; saying it would end a composition
       annotations: [broughtAnnotation.of(true), Transaction.addToHistory.of(false)],
     });
     if (answer.count > countBefore) this.#editor.setUndoHandler((direction) => this.#undoOrRedo(direction));

@@ -101,9 +101,9 @@ export class Wall {
     const drivenRobot = pupil?.robot ? asPlainText(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
     const { name: ownRobotName = '', colour = 0 } = pupil?.own_robot ?? {};
-    const [body, edge] = COLOURS[colour] ?? COLOURS[0];
-    tile.own.style.setProperty('--robot', body);
-    tile.own.style.setProperty('--robot-edge', edge);
+    const [bodyColour, edgeColour] = COLOURS[colour] ?? COLOURS[0];
+    tile.own.style.setProperty('--robot', bodyColour);
+    tile.own.style.setProperty('--robot-edge', edgeColour);
     setText(tile.name, [plainName, asPlainText(ownRobotName)].filter(Boolean).join(' · '));
     setText(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
@@ -140,17 +140,17 @@ export class Wall {
     const { clientWidth: width, clientHeight: height } = this.element;
     const count = this.#tiles.size;
     if (!count || !width || !height) return;
-    let best = { columns: 1, size: 0 };
+    let bestLayout = { columns: 1, size: 0 };
     for (let columns = 1; columns <= count && (width + GAP_PX) / columns - GAP_PX >= LEAST_WIDTH_PX; columns += 1) {
       const width_px = (width + GAP_PX) / columns - GAP_PX;
       const height_px = Math.min(MOST_HEIGHT_PX, (height + GAP_PX) / Math.ceil(count / columns) - GAP_PX);
       const pictureSize = Math.min(width_px / PICTURE_RATIO, height_px);
-      if (pictureSize > best.size) best = { columns, size: pictureSize };
+      if (pictureSize > bestLayout.size) bestLayout = { columns, size: pictureSize };
     }
-    if (best.size < LEAST_HEIGHT_PX) best.columns = Math.max(1, Math.floor((width + GAP_PX) / (LEAST_WIDTH_PX + 30 + GAP_PX)));
-    const rows = Math.ceil(count / best.columns);
+    if (bestLayout.size < LEAST_HEIGHT_PX) bestLayout.columns = Math.max(1, Math.floor((width + GAP_PX) / (LEAST_WIDTH_PX + 30 + GAP_PX)));
+    const rows = Math.ceil(count / bestLayout.columns);
     const tileHeight = Math.max(LEAST_HEIGHT_PX, Math.min(MOST_HEIGHT_PX, Math.floor((height + GAP_PX) / rows - GAP_PX)));
-    this.element.style.setProperty('--columns', String(best.columns));
+    this.element.style.setProperty('--columns', String(bestLayout.columns));
     this.element.style.setProperty('--high', `${tileHeight}px`);
   }
 }

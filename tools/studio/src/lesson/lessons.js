@@ -119,8 +119,8 @@ export class Lessons {
       this.#fillStep();
     });
     pageState.robotName.subscribe(() => this.#fillStep());
-    pageState.sideId.subscribe((side) => {
-      if (side !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
+    pageState.sideId.subscribe((sideId) => {
+      if (sideId !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
     });
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
       if (this.#isShown) this.#forgetCheck();
@@ -290,9 +290,9 @@ export class Lessons {
   /** Has the lesson's robot and world seen. */
   async #enterLesson() {
     const requestNumber = this.#requestCount, lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
-    const isForOther = await this.#isForOtherRobot(lesson);
+    const isForOtherRobot = await this.#isForOtherRobot(lesson);
     if (requestNumber !== this.#requestCount) return;
-    if (isForOther) {
+    if (isForOtherRobot) {
       const notice = text(this.#isOfLesson ? 'lesson_before' : 'lesson_own');
       this.#page.exchange(this.#lendProgram(lesson, ''));
       pageState.note.set(notice);
@@ -317,8 +317,8 @@ export class Lessons {
 
   /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} program @returns {Program} */
   #lendProgram(lesson, program) {
-    const { text: programText, robot, name } = this.#page.work;
-    if (!this.#isOfLesson) this.#ownProgram = { text: programText, robot, name };
+    const { text: programText, robot: robotName, name } = this.#page.work;
+    if (!this.#isOfLesson) this.#ownProgram = { text: programText, robot: robotName, name };
     this.#lessonProgramName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
     return { text: program, robot: lesson.robot, name: this.#lessonProgramName };
   }
@@ -334,9 +334,9 @@ export class Lessons {
 
   /** @param {number} seed */
   async #showWorld(seed) {
-    const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
+    const { worlds, robot: robotName } = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
     const values = { number: this.#lessonNumber, seed };
-    if (robot !== pageState.robotName.value && !pageState.isRobotNamed.value) pageState.robotName.set(robot);
+    if (robotName !== pageState.robotName.value && !pageState.isRobotNamed.value) pageState.robotName.set(robotName);
     await this.#page.simulatorPanel.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }

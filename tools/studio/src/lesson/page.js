@@ -27,11 +27,11 @@ export function makeBlockElement({ kind, rows }, reader) {
  * @param {string} program
  * @param {Reader} reader
  */
-function makeProgramElement(program, { useProgram: use, drawProgram: draw }) {
+function makeProgramElement(program, { useProgram, drawProgram }) {
   const programElement = makeElement('pre', '', program);
-  const container = makeElement('div', '', programElement, makeButton('lesson_use', () => use(`${program}\n`)));
+  const container = makeElement('div', '', programElement, makeButton('lesson_use', () => useProgram(`${program}\n`)));
   container.className = 'program';
-  draw?.(program, (address) => {
+  drawProgram?.(program, (address) => {
     if (!address) return;
     const picture = makeElement('img');
     picture.alt = ''; // its text is read
@@ -51,11 +51,11 @@ function makeProgramElement(program, { useProgram: use, drawProgram: draw }) {
  * @param {string} line
  * @param {Reader} reader
  */
-export function makeTextElement(tag, line, { labelOfCode: say }) {
+export function makeTextElement(tag, line, { labelOfCode }) {
   return makeElement(tag, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((segment) => {
     const markLength = segment.startsWith('**') ? 2 : segment.startsWith('`') ? 1 : 0;
     if (!markLength || segment.length <= 2 * markLength) return segment;
-    const content = segment.slice(markLength, -markLength), label = markLength === 1 ? say(content) : null;
+    const content = segment.slice(markLength, -markLength), label = markLength === 1 ? labelOfCode(content) : null;
     const partElement = makeElement(markLength === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? content);
     if (label) {
       partElement.className = 'on_block';

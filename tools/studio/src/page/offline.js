@@ -25,9 +25,9 @@ export function storeLanguage(language) {
  */
 export async function removeForeignWorkers() {
   const registrations = (await navigator.serviceWorker?.getRegistrations()) ?? [];
-  const areOwn = await Promise.all(registrations.map(isOwnWorker));
-  if (areOwn.every(Boolean)) return false;
-  await Promise.all(registrations.map((registration, index) => areOwn[index] || registration.unregister()));
+  const ownFlags = await Promise.all(registrations.map(isOwnWorker));
+  if (ownFlags.every(Boolean)) return false;
+  await Promise.all(registrations.map((registration, index) => ownFlags[index] || registration.unregister()));
   for (const name of await caches.keys()) await caches.delete(name);
   return true;
 }

@@ -27,9 +27,9 @@ export function ownRobotOf(value) {
 /** Shows it in every drawing of a robot, from now on. */
 export function showOwnRobot() {
   pageState.ownRobot.subscribe(({ colour }) => {
-    const [body, edge] = COLOURS[colour] ?? COLOURS[0];
-    document.documentElement.style.setProperty('--robot', body);
-    document.documentElement.style.setProperty('--robot-edge', edge);
+    const [bodyColour, edgeColour] = COLOURS[colour] ?? COLOURS[0];
+    document.documentElement.style.setProperty('--robot', bodyColour);
+    document.documentElement.style.setProperty('--robot-edge', edgeColour);
   });
   pageState.ownRobot.set(ownRobotOf(loadJson(STORAGE_KEY)));
 }

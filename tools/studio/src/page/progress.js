@@ -53,12 +53,12 @@ export class Progress {
    */
   watch(promise) {
     /** @type {Promise<never>} */
-    const aborted = new Promise((_, reject) => {
+    const abortPromise = new Promise((_, reject) => {
       const rejectAborted = () => reject(this.signal.reason);
       if (this.signal.aborted) rejectAborted();
       this.signal.addEventListener('abort', rejectAborted);
     });
-    return Promise.race([promise, aborted]).finally(() => this.end());
+    return Promise.race([promise, abortPromise]).finally(() => this.end());
   }
 }
 

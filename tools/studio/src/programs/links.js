@@ -18,13 +18,13 @@ const MOST_BYTES = 200_000; // of what is inflated
  * @param {string} pageAddress the page's address
  * @returns {Promise<string | null>}
  */
-export async function makeLink({ text, robot }, pageAddress) {
-  const stream = new Blob([JSON.stringify({ text, robot })]).stream().pipeThrough(new CompressionStream('deflate-raw'));
+export async function makeLink({ text, robot: robotName }, pageAddress) {
+  const stream = new Blob([JSON.stringify({ text, robot: robotName })]).stream().pipeThrough(new CompressionStream('deflate-raw'));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   let letters = '';
   for (const byte of bytes) letters += String.fromCharCode(byte);
-  const packed = btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
-  const link = pageAddress.replace(/#.*$/, '') + ADDRESS_MARK + packed;
+  const packedText = btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  const link = pageAddress.replace(/#.*$/, '') + ADDRESS_MARK + packedText;
   return link.length <= MOST_LINK_CHARACTERS ? link : null;
 }
 
@@ -40,13 +40,13 @@ export function holdsProgram(hash) {
  */
 export async function readLink(hash) {
   if (!holdsProgram(hash)) return null;
-  const packed = hash.slice(ADDRESS_MARK.length);
-  if (packed.length > MOST_READ_CHARACTERS || !/^[\w-]+$/.test(packed)) throw new Error('not a program');
-  const letters = atob(packed.replaceAll('-', '+').replaceAll('_', '/'));
+  const packedText = hash.slice(ADDRESS_MARK.length);
+  if (packedText.length > MOST_READ_CHARACTERS || !/^[\w-]+$/.test(packedText)) throw new Error('not a program');
+  const letters = atob(packedText.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-  const shared = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(await inflate(bytes)));
-  if (typeof shared?.text !== 'string' || !isRobot(shared.robot)) throw new Error('not a program');
-  return { text: shared.text, robot: shared.robot };
+  const program = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(await inflate(bytes)));
+  if (typeof program?.text !== 'string' || !isRobot(program.robot)) throw new Error('not a program');
+  return { text: program.text, robot: program.robot };
 }
 
 /**

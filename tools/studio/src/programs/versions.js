@@ -27,11 +27,11 @@ export function loadVersions() {
  * @param {number} [at_ms]
  * @returns {boolean}
  */
-export function storeVersion({ text, robot, name }, at_ms = Date.now()) {
+export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
-  const otherVersions = loadVersions().filter((version) => version.text !== text || version.robot !== robot);
-  const newVersions = [{ text, robot, name, at_ms }, ...otherVersions].slice(0, MOST_VERSIONS);
+  const otherVersions = loadVersions().filter((version) => version.text !== text || version.robot !== robotName);
+  const newVersions = [{ text, robot: robotName, name, at_ms }, ...otherVersions].slice(0, MOST_VERSIONS);
   while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
   while (newVersions.length && !storeText(STORAGE_KEY, JSON.stringify(newVersions))) newVersions.pop();
   return newVersions.length > 0;

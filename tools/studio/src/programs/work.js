@@ -60,8 +60,8 @@ export function storeWorldTexts(newestText, earlierTexts) {
   const otherWorlds = [...new Set(loadLastingWorlds())].filter((worldText) => !ownWorlds.has(worldText)).slice(0, MOST_OTHER_WORLDS);
   let charactersLeft = MOST_CHARACTERS;
   const fittingWorlds = [...earlierTexts, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
-  const ownEarlier = fittingWorlds.filter((worldText) => earlierTexts.includes(worldText));
-  const areEarlierStored = storeInBoth(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlier), JSON.stringify(fittingWorlds));
+  const ownEarlierTexts = fittingWorlds.filter((worldText) => earlierTexts.includes(worldText));
+  const areEarlierStored = storeInBoth(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingWorlds));
   const isStored = newestText ? storeInBoth(WORLD_KEY, newestText) && areEarlierStored : areEarlierStored;
   if (isStored) ownWorlds = new Set([newestText, ...earlierTexts]);
   return isStored;

@@ -21,8 +21,8 @@ import { HeldByHolder, isSameHeld, heldOfStick, NOTHING_HELD } from './held.js';
  */
 
 const KEY_DEVICES = REMOTE.filter((device) => device.is_yes_no);
-const ARROWS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
-const KEYBOARD_KEYS = [...Object.keys(ARROWS), 'a', 'b']; // in the order of the keys
+const ARROW_DIRECTIONS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
+const KEYBOARD_KEYS = [...Object.keys(ARROW_DIRECTIONS), 'a', 'b']; // in the order of the keys
 const THUMB_SHARE = 0.75; // of its own size, to where the stick ends
 const PRESSING_KEYS = [' ', 'Enter']; // what presses a button that has the focus
 /** Where arrows and letters are somebody else's. */
@@ -105,14 +105,14 @@ export class Pad {
     this.#drivenRobot = robot;
     this.#padElement.hidden = !robot;
     if (!robot) return;
-    const { reads, isDeaf } = robot;
+    const { reads: remoteWords, isDeaf } = robot;
     if (side === 'link') element('link_said', HTMLElement).after(this.#padElement);
     else element(side, HTMLElement).append(this.#padElement);
     KEY_DEVICES.forEach((device, index) => {
       const keyButton = this.#keyButtons[index];
-      if (keyButton) keyButton.hidden = isDeaf || !reads.includes(device.text);
+      if (keyButton) keyButton.hidden = isDeaf || !remoteWords.includes(device.text);
     });
-    this.#stickElement.hidden = isDeaf || !reads.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
+    this.#stickElement.hidden = isDeaf || !remoteWords.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
     for (const groupId of ['pad_arrows', 'pad_letters']) {
       const group = element(groupId, HTMLElement);
       group.hidden = [...group.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);
@@ -178,7 +178,7 @@ export class Pad {
     const isStick = !this.#stickElement.hidden && this.#keyButtons.slice(0, 4).every((part) => part.hidden);
     let keys = 0, right = 0, up = 0;
     for (const keyIndex of this.#pressedKeys.values()) {
-      const direction = Object.values(ARROWS)[keyIndex];
+      const direction = Object.values(ARROW_DIRECTIONS)[keyIndex];
       if (isStick && direction) [right, up] = [right + (direction[0] ?? 0), up + (direction[1] ?? 0)];
       else keys |= 1 << keyIndex;
     }

@@ -174,8 +174,8 @@ export class Debugging {
     this.#page.ask({ do: 'resume', is_step: isStep });
   }
 
-  /** @param {number} offset @param {number} task */
-  #onHalt(offset, task) {
+  /** @param {number} offset @param {number} taskNumber */
+  #onHalt(offset, taskNumber) {
     if (!this.#program) return;
     const { places, halts, program } = this.#program;
     const place = places[halts.lastIndexOf(offset)];
@@ -190,11 +190,11 @@ export class Debugging {
     this.#page.place.hold(place?.[0] ?? offset, program);
     if (place) this.#page.say('robot_held', { line: place[1] });
     this.#show();
-    this.#readValues(halt, task);
+    this.#readValues(halt, taskNumber);
   }
 
-  /** @param {object} halt @param {number} task */
-  async #readValues(halt, task) {
+  /** @param {object} halt @param {number} taskNumber */
+  async #readValues(halt, taskNumber) {
     /** @type {number[]} */
     const variables = [];
     while (variables.length < (this.#program?.variables.length ?? 0)) {
@@ -205,15 +205,15 @@ export class Debugging {
     const answer = await this.#page.ask({ do: 'tasks' }, undefined, true);
     if (halt !== this.#halt || !answer?.tasks) return;
     this.#variables = variables;
-    this.#otherTasks = answer.tasks.filter(([state], index) => index !== task && state !== 'ENDED');
+    this.#otherTasks = answer.tasks.filter(([state], index) => index !== taskNumber && state !== 'ENDED');
     this.#isHaltRead = true;
     this.#show();
   }
 
-  /** @param {boolean} isDeaf there are breakpoints, and the robot cannot halt at them */
-  async #offerHalting(isDeaf) {
+  /** @param {boolean} lacksBreakpoints there are breakpoints, and the robot cannot halt at them */
+  async #offerHalting(lacksBreakpoints) {
     const robotInfo = this.#robotInfo;
-    const isAvailable = isDeaf && await this.#page.canGetHalting();
+    const isAvailable = lacksBreakpoints && await this.#page.canGetHalting();
     if (robotInfo === this.#robotInfo) setHidden(element('link_halting', HTMLElement), !isAvailable || !pageState.breakpoints.value.length);
   }
 
@@ -224,10 +224,10 @@ export class Debugging {
     setHidden(this.#continueButton, !this.#canHalt);
     const isTooMany = this.#haltOffsets.length > LINK.most_breakpoints;
     const notice = element('link_breakpoints', HTMLElement);
-    const isDeaf = this.#robotInfo !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
-    notice.textContent = isDeaf ? text('say_no_breakpoints') : isTooMany ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
-    setHidden(notice, !isDeaf && !isTooMany);
-    this.#offerHalting(isDeaf);
+    const lacksBreakpoints = this.#robotInfo !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
+    notice.textContent = lacksBreakpoints ? text('say_no_breakpoints') : isTooMany ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
+    setHidden(notice, !lacksBreakpoints && !isTooMany);
+    this.#offerHalting(lacksBreakpoints);
     const valueList = element('link_values', HTMLElement);
     const { places = [], variables = [] } = this.#program ?? {};
     const rows = this.#variables.length || this.#otherTasks.length ? [

@@ -66,10 +66,10 @@ export class DirectRobot extends RequestQueue {
    */
   async connect(robotName, language, keys) {
     /** @type {Promise<never>} */
-    const disconnected = new Promise((_, reject) => {
+    const disconnection = new Promise((_, reject) => {
       this.#rejectConnect = reject;
     });
-    return Promise.race([this.#open(robotName, language, keys), disconnected]);
+    return Promise.race([this.#open(robotName, language, keys), disconnection]);
   }
 
   /** @param {string} robotName @param {string} language @param {string} keys */

@@ -61,15 +61,15 @@ export async function fetchFirmwares(watchOptions) {
   return JSON.parse(new TextDecoder().decode(await fetchBytes('firmware.json', watchOptions)));
 }
 
-/** @param {string} robot @returns {string} the title of its firmware with breakpoints */
-export function haltingTitle(robot) {
-  return `${robot}_breakpoints`;
+/** @param {string} robotName @returns {string} the title of its firmware with breakpoints */
+export function haltingTitle(robotName) {
+  return `${robotName}_breakpoints`;
 }
 
 /** @param {WantedFirmware} which @param {string} board @param {WatchOptions} watchOptions */
-async function fetchFirmware({ robot, language, halts }, board, watchOptions) {
+async function fetchFirmware({ robot: robotName, language, halts }, board, watchOptions) {
   const firmwareList = await fetchFirmwares(watchOptions);
-  const titles = halts ? [haltingTitle(robot)] : [`${robot}_${language}`, robot];
+  const titles = halts ? [haltingTitle(robotName)] : [`${robotName}_${language}`, robotName];
   const firmware = titles.map((title) => firmwareList.find((candidate) => candidate.title === title && candidate.board === board)).find(Boolean);
   if (!firmware) throw new ConnectionFailure('flash_none');
   return fetchBytes(firmware.file, watchOptions);

@@ -91,11 +91,11 @@ export async function fetchPorts() {
   }
 }
 
-let seenStops = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
+let seenStopCount = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
 
-/** @param {number} stops */
-export function noteStopCount(stops) {
-  seenStops = Math.max(seenStops, stops); // an answer may be late
+/** @param {number} stopCount */
+export function noteStopCount(stopCount) {
+  seenStopCount = Math.max(seenStopCount, stopCount); // an answer may be late
 }
 
 let connectionCount = 0; // of this page
@@ -123,12 +123,12 @@ export class HostRobot extends RequestQueue {
    */
   connect(port, robotName, language) {
     /** @type {Promise<RobotInfo>} */
-    const connected = new Promise((resolve, reject) => {
+    const connection = new Promise((resolve, reject) => {
       this.#resolveConnect = resolve;
       this.#rejectConnect = reject;
     });
-    this.#open({ port, robot: robotName, language, saw_stops: seenStops });
-    return connected;
+    this.#open({ port, robot: robotName, language, saw_stops: seenStopCount });
+    return connection;
   }
 
   /** The same connect is done once, however often it comes. @param {Record<string, string | number>} request */

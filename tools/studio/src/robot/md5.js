@@ -9,20 +9,20 @@ const MIXERS = [(b, c, d) => (b & c) | (~b & d), (b, c, d) => (b & d) | (c & ~d)
 
 /** @param {Uint8Array} data @returns {string} in hexadecimal */
 export function md5(data) {
-  const padded = new DataView(new ArrayBuffer((((data.length + 8) >> 6) + 1) * 64));
-  new Uint8Array(padded.buffer).set(data);
-  padded.setUint8(data.length, 0x80);
-  padded.setUint32(padded.byteLength - 8, data.length * 8, true);
-  padded.setUint32(padded.byteLength - 4, Math.floor(data.length / 2 ** 29), true);
+  const paddedData = new DataView(new ArrayBuffer((((data.length + 8) >> 6) + 1) * 64));
+  new Uint8Array(paddedData.buffer).set(data);
+  paddedData.setUint8(data.length, 0x80);
+  paddedData.setUint32(paddedData.byteLength - 8, data.length * 8, true);
+  paddedData.setUint32(paddedData.byteLength - 4, Math.floor(data.length / 2 ** 29), true);
   let state = [0x67452301, 0xefcdab89 | 0, 0x98badcfe | 0, 0x10325476];
-  for (let blockOffset = 0; blockOffset < padded.byteLength; blockOffset += 64) {
+  for (let blockOffset = 0; blockOffset < paddedData.byteLength; blockOffset += 64) {
     let [a = 0, b = 0, c = 0, d = 0] = state;
     for (let step = 0; step < 64; step += 1) {
       const round = step >> 4;
-      const word = padded.getUint32(blockOffset + 4 * ((WORD_INDEXES[round]?.(step) ?? 0) % 16), true);
-      const mixed = (a + (MIXERS[round]?.(b, c, d) ?? 0) + (ROUND_CONSTANTS[step] ?? 0) + word) | 0;
+      const word = paddedData.getUint32(blockOffset + 4 * ((WORD_INDEXES[round]?.(step) ?? 0) % 16), true);
+      const mixedWord = (a + (MIXERS[round]?.(b, c, d) ?? 0) + (ROUND_CONSTANTS[step] ?? 0) + word) | 0;
       const rotation = ROTATIONS[round]?.[step % 4] ?? 0;
-      [a, b, c, d] = [d, (b + ((mixed << rotation) | (mixed >>> (32 - rotation)))) | 0, b, c];
+      [a, b, c, d] = [d, (b + ((mixedWord << rotation) | (mixedWord >>> (32 - rotation)))) | 0, b, c];
     }
     state = [a, b, c, d].map((word, k) => (word + (state[k] ?? 0)) | 0);
   }

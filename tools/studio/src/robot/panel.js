@@ -167,14 +167,14 @@ export class RobotPanel {
     this.#stop();
   }
 
-  /** @param {string} [confirmed] a text, once it is */
-  #stop(confirmed = '') {
+  /** @param {string} [confirmedKey] a text, once it is */
+  #stop(confirmedKey = '') {
     if (!this.#transport) return;
     this.#stopCount += 1;
     this.#debugging.stop();
     this.#sensorWatch.stop();
     this.#transport.stop();
-    this.#stopNotice.begin(confirmed);
+    this.#stopNotice.begin(confirmedKey);
   }
 
   #onPageHidden() {
@@ -361,12 +361,12 @@ export class RobotPanel {
     this.#expectProgram(program);
     const startHalting = this.#debugging.onUpload(program, isPaused);
     this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs: isStarted && !startHalting }, (answer) => {
-      const { program: checksum = '', saved = 'MEMORY' } = answer;
+      const { program: checksum = '', saved: storageKind = 'MEMORY' } = answer;
       this.#sentProgram = program;
       this.#offerRemote();
       if (isStarted && program.start === 'SB') this.#page.recorder.awaitButton(checksum);
       if (program.start === 'SB') this.#activityLine.showWaiting();
-      this.#speech.say('say_receipt', {}, `saved_${saved}`);
+      this.#speech.say('say_receipt', {}, `saved_${storageKind}`);
       startHalting?.(isStarted && program.start === 'SI');
     });
   }
@@ -429,9 +429,9 @@ export class RobotPanel {
 
   /** Its firmware is to be one with breakpoints: the port has to be free. */
   async #getHalting() {
-    const disconnected = new Promise((resolve) => { this.#onLeft = () => resolve(null); });
+    const disconnection = new Promise((resolve) => { this.#onLeft = () => resolve(null); });
     this.#transport?.leave();
-    if (this.#transport) await disconnected;
+    if (this.#transport) await disconnection;
     await this.#flashing.offerHalting();
     this.#speech.say('say_halting_firmware');
   }
@@ -449,9 +449,9 @@ export class RobotPanel {
       return;
     }
     try {
-      const imported = await this.#page.python.ask({ do: 'import_keys', kept: loadText(KEYS_STORAGE_KEY) }, await bytesOf(file));
-      if (imported.count) storeText(KEYS_STORAGE_KEY, imported.keys);
-      this.#speech.say(imported.count ? 'say_keys' : 'say_no_keys', { count: imported.count });
+      const importResult = await this.#page.python.ask({ do: 'import_keys', kept: loadText(KEYS_STORAGE_KEY) }, await bytesOf(file));
+      if (importResult.count) storeText(KEYS_STORAGE_KEY, importResult.keys);
+      this.#speech.say(importResult.count ? 'say_keys' : 'say_no_keys', { count: importResult.count });
     } catch {
       this.#speech.say('say_no_keys');
     }
@@ -545,7 +545,7 @@ export class RobotPanel {
   #rememberProgram(program) {
     this.#knownPrograms.delete(program.program);
     this.#knownPrograms.set(program.program, program);
-    for (const [oldest] of this.#knownPrograms) if (this.#knownPrograms.size > MOST_KNOWN_PROGRAMS) this.#knownPrograms.delete(oldest);
+    for (const [oldestChecksum] of this.#knownPrograms) if (this.#knownPrograms.size > MOST_KNOWN_PROGRAMS) this.#knownPrograms.delete(oldestChecksum);
   }
 
   /** The text of a program, if it is one of this page. @param {string} [checksum] */
@@ -568,10 +568,10 @@ export class RobotPanel {
     else this.#speech.say('why_link_lost');
   }
 
-  /** @param {RobotEvent} event @param {CheckResult | null | undefined} source a program @param {boolean} movesCaret whether the caret goes there */
-  #showFault(event, source, movesCaret) {
+  /** @param {RobotEvent} event @param {CheckResult | null | undefined} program a program @param {boolean} movesCaret whether the caret goes there */
+  #showFault(event, program, movesCaret) {
     const sentence = faultSentence(event.fault);
-    const place = source?.program === event.program ? source?.places.findLast(([offset]) => offset <= Number(event.at)) : undefined;
+    const place = program?.program === event.program ? program?.places.findLast(([offset]) => offset <= Number(event.at)) : undefined;
     if (!place) {
       this.#speech.saySentence(sentence);
       return;
@@ -579,7 +579,7 @@ export class RobotPanel {
     const [, line, column, end_line, end_column] = place;
     this.#speech.saySentence(text('say_fault', { line, what: sentence }));
     // else the places are those of another text
-    if (movesCaret && pageState.checkResult.value === source) this.#page.goTo({ line, column, end_line, end_column });
+    if (movesCaret && pageState.checkResult.value === program) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {

@@ -6,7 +6,7 @@ import { text as textOf } from '../page/texts.js';
 import { devicesOf } from '../page/words.js';
 import { Run } from '../virtual/runs.js';
 
-/** @typedef {import('./transport.js').RobotInfo} About */
+/** @typedef {import('./transport.js').RobotInfo} RobotInfo */
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 
@@ -38,7 +38,7 @@ export class Recorder {
     pageState.language.subscribe(() => this.#show());
   }
 
-  /** A robot is connected. @param {About} robotInfo */
+  /** A robot is connected. @param {RobotInfo} robotInfo */
   meet(robotInfo) {
     this.#lacksReadings = !robotInfo.has_readings;
   }
@@ -46,7 +46,7 @@ export class Recorder {
   /** A robot gets a program, or may get it from others of the group. @param {CheckResult} checkResult */
   addProgram(checkResult) {
     this.#sentPrograms.delete(checkResult.program);
-    for (const [oldest] of this.#sentPrograms) if (this.#sentPrograms.size >= MOST_PROGRAMS) this.#sentPrograms.delete(oldest);
+    for (const [oldestChecksum] of this.#sentPrograms) if (this.#sentPrograms.size >= MOST_PROGRAMS) this.#sentPrograms.delete(oldestChecksum);
     this.#sentPrograms.set(checkResult.program, { checkResult, text: pageState.programText.value, robot: pageState.robotName.value });
   }
 
@@ -120,8 +120,8 @@ export class Recorder {
     this.#incompleteSensors.clear();
     this.#began_ms = began_ms;
     if (sentProgram) {
-      const { checkResult: checked, text, robot } = sentProgram;
-      const run = this.#run = new Run({ of: 'real', text, robot, program, is_by_button: began_ms === null }, checked, null);
+      const { checkResult, text, robot: robotName } = sentProgram;
+      const run = this.#run = new Run({ of: 'real', text, robot: robotName, program, is_by_button: began_ms === null }, checkResult, null);
       run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
       this.#page.runs.addRun(run);
     }
@@ -130,8 +130,8 @@ export class Recorder {
 
   /** Whether the program names a sensor. */
   get #readsSensor() {
-    const { text = '', robot = '' } = this.#run?.origin ?? {};
-    return devicesOf(robot, 'sensor').some((device) => text.toUpperCase().includes(device.text));
+    const { text = '', robot: robotName = '' } = this.#run?.origin ?? {};
+    return devicesOf(robotName, 'sensor').some((device) => text.toUpperCase().includes(device.text));
   }
 
   get #elapsed_ms() {

@@ -20,17 +20,17 @@ export const BOARDS = {
   nano: [{ baud: 115_200, roomBytes: 0x7e00 }, { baud: 57_600, roomBytes: 0x7800 }],
 };
 
-const SYNC = 0x30;
-const ENTER = 0x50;
-const LEAVE = 0x51;
-const ADDRESS = 0x55;
-const WRITE = 0x64;
-const READ = 0x74;
-const SIGNATURE = 0x75;
-const FLASH = 0x46;
-const END = 0x20;
-const IN_SYNC = 0x14;
-const OK = 0x10;
+const SYNC_COMMAND = 0x30;
+const ENTER_COMMAND = 0x50;
+const LEAVE_COMMAND = 0x51;
+const ADDRESS_COMMAND = 0x55;
+const WRITE_COMMAND = 0x64;
+const READ_COMMAND = 0x74;
+const SIGNATURE_COMMAND = 0x75;
+const FLASH_MEMORY = 0x46;
+const END_BYTE = 0x20;
+const IN_SYNC_BYTE = 0x14;
+const OK_BYTE = 0x10;
 
 const CHIP_SIGNATURE = '1e950f'; // an ATmega328P
 const PAGE_BYTES = 128; // bytes
@@ -103,9 +103,9 @@ class Board {
   async findBootloader() {
     for (let tryNumber = 0; tryNumber < SYNC_TRIES; tryNumber += 1) {
       this.#receivedBytes = []; // the start of a sketch, or an answer that came late
-      if (!(await this.#ask([SYNC], 0, SYNC_LIMIT_MS))) continue;
+      if (!(await this.#ask([SYNC_COMMAND], 0, SYNC_LIMIT_MS))) continue;
       while (await this.#waitForBytes(1, SYNC_LIMIT_MS / 5)) this.#receivedBytes = []; // those to earlier tries
-      const signature = await this.#ask([SIGNATURE], 3, ANSWER_LIMIT_MS);
+      const signature = await this.#ask([SIGNATURE_COMMAND], 3, ANSWER_LIMIT_MS);
       if (!signature) continue;
       if (hexOf(signature) !== CHIP_SIGNATURE) throw new ConnectionFailure('flash_other_chip');
       return true;
@@ -116,27 +116,27 @@ class Board {
   /** @param {Uint8Array} firmware @param {(part: number) => void} onProgress */
   async write(firmware, onProgress) {
     this.#isWriting = true;
-    const padded = new Uint8Array(Math.ceil(firmware.length / PAGE_BYTES) * PAGE_BYTES).fill(0xff);
-    padded.set(firmware);
-    await this.#request([ENTER], 0);
-    for (let address = 0; address < padded.length; address += PAGE_BYTES) {
+    const paddedFirmware = new Uint8Array(Math.ceil(firmware.length / PAGE_BYTES) * PAGE_BYTES).fill(0xff);
+    paddedFirmware.set(firmware);
+    await this.#request([ENTER_COMMAND], 0);
+    for (let address = 0; address < paddedFirmware.length; address += PAGE_BYTES) {
       await this.#setAddress(address);
-      await this.#request([WRITE, 0, PAGE_BYTES, FLASH, ...padded.subarray(address, address + PAGE_BYTES)], 0);
-      onProgress((address + PAGE_BYTES) / padded.length / 2);
+      await this.#request([WRITE_COMMAND, 0, PAGE_BYTES, FLASH_MEMORY, ...paddedFirmware.subarray(address, address + PAGE_BYTES)], 0);
+      onProgress((address + PAGE_BYTES) / paddedFirmware.length / 2);
     }
-    for (let address = 0; address < padded.length; address += PAGE_BYTES) {
+    for (let address = 0; address < paddedFirmware.length; address += PAGE_BYTES) {
       await this.#setAddress(address);
-      const page = await this.#request([READ, 0, PAGE_BYTES, FLASH], PAGE_BYTES);
-      if (hexOf(page) !== hexOf(padded.subarray(address, address + PAGE_BYTES))) throw new ConnectionFailure('flash_differs');
-      onProgress(0.5 + (address + PAGE_BYTES) / padded.length / 2);
+      const page = await this.#request([READ_COMMAND, 0, PAGE_BYTES, FLASH_MEMORY], PAGE_BYTES);
+      if (hexOf(page) !== hexOf(paddedFirmware.subarray(address, address + PAGE_BYTES))) throw new ConnectionFailure('flash_differs');
+      onProgress(0.5 + (address + PAGE_BYTES) / paddedFirmware.length / 2);
     }
     this.#cancelSignal = undefined; // it is written, whatever comes now
-    await this.#ask([LEAVE], 0, ANSWER_LIMIT_MS);
+    await this.#ask([LEAVE_COMMAND], 0, ANSWER_LIMIT_MS);
   }
 
   /** @param {number} address in bytes; the bootloader counts words */
   #setAddress(address) {
-    return this.#request([ADDRESS, (address >> 1) & 0xff, address >> 9], 0);
+    return this.#request([ADDRESS_COMMAND, (address >> 1) & 0xff, address >> 9], 0);
   }
 
   /** @param {number[]} command @param {number} byteCount of the answer */
@@ -156,7 +156,7 @@ class Board {
   async #ask(command, byteCount, limit_ms) {
     this.#throwIfCancelled();
     try {
-      await this.#cable.write(Uint8Array.of(...command, END));
+      await this.#cable.write(Uint8Array.of(...command, END_BYTE));
     } catch (error) {
       this.#throwIfCancelled();
       if (error instanceof ConnectionFailure && !this.#isWriting) throw error;
@@ -167,7 +167,7 @@ class Board {
       return null;
     }
     const reply = this.#receivedBytes.splice(0, byteCount + 2);
-    return reply[0] === IN_SYNC && reply.at(-1) === OK ? Uint8Array.from(reply.slice(1, -1)) : null;
+    return reply[0] === IN_SYNC_BYTE && reply.at(-1) === OK_BYTE ? Uint8Array.from(reply.slice(1, -1)) : null;
   }
 
   #throwIfCancelled() {

@@ -54,9 +54,9 @@ export class Start {
 
   /** @param {string} name */
   async #beginWith(name) {
-    const { text: program, robot, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
+    const { text: program, robot: robotName, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
     this.#isBeginning = true;
-    this.#page.putProgram({ text: program, robot, name: `${text(textKey(`begin_${name}`)).toLowerCase()}.ts` });
+    this.#page.putProgram({ text: program, robot: robotName, name: `${text(textKey(`begin_${name}`)).toLowerCase()}.ts` });
     this.#page.showSide('side_virtual');
     element('stop', HTMLButtonElement).focus();
     try {

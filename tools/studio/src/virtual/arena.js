@@ -269,15 +269,15 @@ export class Arena {
 
   /** Below a robot that stands. @param {number} x @param {number} y @param {string} name */
   #drawName(x, y, name) {
-    const pen = this.#pen, size = 13 * (window.devicePixelRatio || 1);
+    const pen = this.#pen, fontSize_px = 13 * (window.devicePixelRatio || 1);
     const { x: robot_x, y: robot_y } = this.#floorToCanvas.transformPoint({ x, y });
     pen.save();
     pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.font = `600 ${size}px system-ui, sans-serif`;
+    pen.font = `600 ${fontSize_px}px system-ui, sans-serif`;
     const width = pen.measureText(name).width;
     const textX = Math.max(2, Math.min(robot_x - width / 2, this.#canvas.width - width - 2));
-    const textY = Math.min(robot_y + 12 * this.#scale + size, this.#canvas.height - 4);
-    Object.assign(pen, { strokeStyle: '#fff', fillStyle: '#123b63', lineWidth: size / 4, lineJoin: 'round' });
+    const textY = Math.min(robot_y + 12 * this.#scale + fontSize_px, this.#canvas.height - 4);
+    Object.assign(pen, { strokeStyle: '#fff', fillStyle: '#123b63', lineWidth: fontSize_px / 4, lineJoin: 'round' });
     pen.strokeText(name, textX, textY);
     pen.fillText(name, textX, textY);
     pen.restore();
@@ -287,24 +287,24 @@ export class Arena {
   #drawBubble(x, y, text) {
     const pen = this.#pen;
     const scale = this.#scale;
-    const size = 15 * (window.devicePixelRatio || 1);
+    const fontSize_px = 15 * (window.devicePixelRatio || 1);
     pen.save();
     pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.font = `600 ${size}px system-ui, sans-serif`;
-    const width = pen.measureText(text).width + size, height = 1.6 * size;
+    pen.font = `600 ${fontSize_px}px system-ui, sans-serif`;
+    const width = pen.measureText(text).width + fontSize_px, height = 1.6 * fontSize_px;
     const { x: robot_x, y: robot_y } = this.#floorToCanvas.transformPoint({ x, y });
-    const bubbleX = Math.max(2, Math.min(robot_x + 0.5 * size, this.#canvas.width - width - 2));
+    const bubbleX = Math.max(2, Math.min(robot_x + 0.5 * fontSize_px, this.#canvas.width - width - 2));
     const isBelow = robot_y - 12 * scale - height < 2;
     const bubbleY = isBelow ? robot_y + 12 * scale : robot_y - 12 * scale - height;
     pen.beginPath();
-    pen.roundRect(bubbleX, bubbleY, width, height, 0.5 * size);
+    pen.roundRect(bubbleX, bubbleY, width, height, 0.5 * fontSize_px);
     pen.fillStyle = '#fff';
     pen.strokeStyle = '#123b63';
-    pen.lineWidth = size / 8;
+    pen.lineWidth = fontSize_px / 8;
     pen.fill();
     pen.stroke();
     pen.fillStyle = '#123b63';
-    pen.fillText(text, bubbleX + 0.5 * size, bubbleY + 1.15 * size);
+    pen.fillText(text, bubbleX + 0.5 * fontSize_px, bubbleY + 1.15 * fontSize_px);
     pen.restore();
   }
 
@@ -323,9 +323,9 @@ export class Arena {
     const pen = this.#pen;
     drawPath(pen, floorMark.points, '#b0186b', 0.6);
     const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
-    const [middle] = floorMark.points, { handle } = floorMark;
-    if (handle && middle) {
-      drawPath(pen, [middle, handle], '#b0186b', 0.6);
+    const [center] = floorMark.points, { handle } = floorMark;
+    if (handle && center) {
+      drawPath(pen, [center, handle], '#b0186b', 0.6);
       drawDot(pen, ...handle, radius * 1.3, '#b0186b');
       pen.beginPath();
       pen.arc(...handle, radius * 0.7, 0.6, 5.4);

@@ -107,9 +107,9 @@ export class Moments {
   /** Forgets every other moment in which nothing happens; where none is left, the older half of all. */
   #thinOut() {
     const keptMoments = new Set([...this.#eventMoments, ...this.#partMoments]);
-    const kept = Array.from(this.#stateDiffs, (_, k) => k).filter((k) => keptMoments.has(k) || k % 2 === 0);
-    const firstKept = kept.length > 0.9 * this.length ? Math.floor(kept.length / 2) : 0;
-    const moments = kept.slice(firstKept).map((k) => ({ k, state: this.at(k) }));
+    const keptIndexes = Array.from(this.#stateDiffs, (_, k) => k).filter((k) => keptMoments.has(k) || k % 2 === 0);
+    const firstKept = keptIndexes.length > 0.9 * this.length ? Math.floor(keptIndexes.length / 2) : 0;
+    const moments = keptIndexes.slice(firstKept).map((k) => ({ k, state: this.at(k) }));
     const events = new Set(this.#eventMoments), parts = new Set(this.#partMoments);
     this.begin();
     for (const { k, state } of moments) {

@@ -107,10 +107,10 @@ function drawWheel(pen, y, rolled_cm, scale) {
 /** Its eyes, which are the ends of an ultrasonic sensor where it has one. @param {Pen} pen @param {Robot} robot @param {import('./moods.js').Face} face @param {string} bodyColour colour @param {string} edgeColour */
 function drawFace(pen, robot, { mood, ahead, aside, isBlinking }, bodyColour, edgeColour) {
   const size = Math.max(...robot.outline.map(([, y = 0]) => y)) / EYE_SIZES.wide;
-  const [back = 0, apart = 0, radius = 0, pupil = 0, room = 0, stroke = 0] = [EYE_SIZES.back, EYE_SIZES.apart, EYE_SIZES.radius, EYE_SIZES.pupil, EYE_SIZES.room, EYE_SIZES.stroke].map((size_cm) => size_cm * size);
+  const [back = 0, spacing = 0, radius = 0, pupil = 0, pupilTravel = 0, stroke = 0] = [EYE_SIZES.back, EYE_SIZES.apart, EYE_SIZES.radius, EYE_SIZES.pupil, EYE_SIZES.room, EYE_SIZES.stroke].map((size_cm) => size_cm * size);
   const x = Math.max(...robot.outline.map(([x = 0]) => x)) - back;
   for (const side of [-1, 1]) {
-    const y = side * apart;
+    const y = side * spacing;
     const isClosed = isBlinking && mood === 'calm';
     drawDot(pen, x, y, radius + 0.35, edgeColour);
     drawDot(pen, x, y, radius, isClosed || mood === 'glad' ? bodyColour : '#fff');
@@ -119,7 +119,7 @@ function drawFace(pen, robot, { mood, ahead, aside, isBlinking }, bodyColour, ed
     else if (mood === 'dizzy') {
       for (const direction of [-1, 1]) drawPath(pen, [[x - pupil, y - pupil * direction], [x + pupil, y + pupil * direction]], '#20242a', stroke);
     } else {
-      drawDot(pen, x + room * (mood === 'tired' ? -0.5 : ahead), y + room * aside, pupil, '#20242a');
+      drawDot(pen, x + pupilTravel * (mood === 'tired' ? -0.5 : ahead), y + pupilTravel * aside, pupil, '#20242a');
       if (mood === 'tired') drawLid(pen, x, y, radius, bodyColour, edgeColour);
     }
   }

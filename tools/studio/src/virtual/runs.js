@@ -101,7 +101,7 @@ export class Run {
   #markWhens({ now_ms, places }) {
     const { origin: { text }, program } = this;
     this.#whenBlocks ??= blocksOf(text, program.places, /^WHEN\b/i);
-    const begunBlocks = this.#whenBlocks.filter(({ has }) => places.some((offset) => has(offset, true)));
+    const begunBlocks = this.#whenBlocks.filter(({ has: hasOffset }) => places.some((offset) => hasOffset(offset, true)));
     if (begunBlocks.some((block) => !this.#begunBlocks.includes(block))) this.mark(now_ms, 'WHEN');
     this.#begunBlocks = begunBlocks;
   }

@@ -32,7 +32,7 @@ export class Simulator {
   isStopping = false; // it has not confirmed it yet
   #unasked_ms = 0; // of a millisecond that is not asked for yet
   #lastFrame_ms = 0;
-  #leftRuns = 0; // runs that were left
+  #leftRunCount = 0; // runs that were left
   #frameRequest = 0; // picture of the browser, for which it waits
   /** @type {Promise<void> | null} */
   #stopRequest = null; // when the last stop is confirmed
@@ -93,7 +93,7 @@ export class Simulator {
     if (this.phase !== 'paused' || this.#isAsking) return;
     const until_ms = (this.state?.now_ms ?? 0) + STEP_LIMIT_MS;
     do {
-      await this.#drive({ do: 'step', limit_ms: MOST_REQUEST_MS });
+      await this.#advance({ do: 'step', limit_ms: MOST_REQUEST_MS });
     } while (
       this.phase === 'paused' &&
       this.state?.is_running &&
@@ -124,7 +124,7 @@ export class Simulator {
 
   /** Nothing of the run is seen any more, nor what it answers later. It was stopped. */
   leaveRun() {
-    this.#leftRuns += 1;
+    this.#leftRunCount += 1;
     this.phase = 'off';
     this.state = null;
     this.trace = [];
@@ -145,14 +145,14 @@ export class Simulator {
       const duration_ms = Math.min(MOST_REQUEST_MS, Math.floor(this.#unasked_ms));
       if (duration_ms > 0) {
         this.#unasked_ms = Math.min(this.#unasked_ms - duration_ms, MOST_REQUEST_MS);
-        await this.#drive({ do: 'go', duration_ms });
+        await this.#advance({ do: 'go', duration_ms });
       }
     }
     this.#requestFrame();
   }
 
   /** Lets the robot's time go on, for less than what is held counts. @param {Record<string, unknown>} request */
-  #drive(request) {
+  #advance(request) {
     return this.#ask(this.heldControls ? { ...request, held: [this.heldControls.keys, this.heldControls.x, this.heldControls.y] } : request);
   }
 
@@ -161,12 +161,12 @@ export class Simulator {
    * @param {Uint8Array} [data]
    */
   async #ask(request, data) {
-    const leftRuns = this.#leftRuns;
+    const leftRunCount = this.#leftRunCount;
     this.#isAsking = true;
     try {
       const answer = await this.#python.ask(request, data);
       if (request['do'] === 'stop') this.isStopping = false;
-      if (leftRuns !== this.#leftRuns) this.#onChange();
+      if (leftRunCount !== this.#leftRunCount) this.#onChange();
       else if (answer.refused) this.#showRefusal(answer.refused);
       else this.#takeState(answer);
     } catch (error) {

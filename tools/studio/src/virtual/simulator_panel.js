@@ -103,7 +103,7 @@ export class SimulatorPanel {
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
-    this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, again) => this.#playOpened(openedRun, again) });
+    this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, knownRun) => this.#playOpened(openedRun, knownRun) });
     this.#worldChoice = new WorldChoice(python, work, () => this.#enterWorld());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#takeState(state);
@@ -168,12 +168,12 @@ export class SimulatorPanel {
       this.#show();
     });
     for (const viewButton of Object.keys(RUN_VIEWS)) element(viewButton, HTMLButtonElement).addEventListener('click', () => this.#chooseView(viewButton));
-    const sound = element('sound', HTMLButtonElement);
+    const soundButton = element('sound', HTMLButtonElement);
     const applySound = () => {
       this.#sounds.mute(!work.sound);
-      sound.setAttribute('aria-pressed', String(work.sound));
+      soundButton.setAttribute('aria-pressed', String(work.sound));
     };
-    sound.addEventListener('click', () => {
+    soundButton.addEventListener('click', () => {
       work.sound = !work.sound;
       applySound();
       remember();
@@ -292,7 +292,7 @@ export class SimulatorPanel {
   }
 
   /** What is seen of which robot. */
-  get #shownRobot() {
+  get #shownRobotName() {
     return this.#timeLine.seenState ? this.#timeLine.run.origin.robot : pageState.robotName.value;
   }
 
@@ -302,8 +302,8 @@ export class SimulatorPanel {
 
   get #shownPlaces() {
     if (!this.#timeLine.seenState || this.#timeLine.run === this.#newestRun) return this.#places;
-    const { origin: of, program } = this.#timeLine.run;
-    return of.text === pageState.programText.value ? program.places : [];
+    const { origin, program } = this.#timeLine.run;
+    return origin.text === pageState.programText.value ? program.places : [];
   }
 
   /** Plays a run that is kept, with its own program. @param {Run} run */
@@ -467,13 +467,13 @@ export class SimulatorPanel {
    * @param {import('../lesson/lessons.js').JudgedRun | null} judgedRun
    * @param {number} leastSpeed times as quick as the robot
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay a recorded run
-   * @param {{text: string, checked: CheckResult} | null} part a part of the program
+   * @param {{text: string, checked: CheckResult} | null} partProgram a part of the program
    */
-  async #start(isPaused, judgedRun = null, leastSpeed = 0, replay = null, part = null) {
+  async #start(isPaused, judgedRun = null, leastSpeed = 0, replay = null, partProgram = null) {
     this.#onRunOver();
     const startNumber = ++this.#startCount;
     this.#worldDrawing.notice = '';
-    let program = part?.checked ?? pageState.checkResult.value;
+    let program = partProgram?.checked ?? pageState.checkResult.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
@@ -490,23 +490,23 @@ export class SimulatorPanel {
     this.#sounds.begin();
     this.#wasStopped = false;
     this.#bumpCount = 0;
-    this.#canEarnStars = !judgedRun && !replay && !part;
+    this.#canEarnStars = !judgedRun && !replay && !partProgram;
     this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals);
     this.#plot.begin();
     this.#shownValues.clear();
     this.#program = program;
-    this.#isAlone = part !== null;
-    this.#places = part ? [] : program.places; // which are those of another text
+    this.#isAlone = partProgram !== null;
+    this.#places = partProgram ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
     this.#remoteWords = judgedRun || replay ? [] : program.remote;
     const world = judgedRun ?? this.#worldChoice.request;
-    const run = this.#newestRun = this.#makeRun(program, world, replay, part?.text);
+    const run = this.#newestRun = this.#makeRun(program, world, replay, partProgram?.text);
     run.isJudged = judgedRun !== null;
     this.#timeLine.begin(run);
-    const breakpoints = judgedRun || replay || part ? [] : this.#stops.offsets;
+    const breakpoints = judgedRun || replay || partProgram ? [] : this.#stops.offsets;
     const beginning = this.#simulator.begin(program, pageState.robotName.value, world, breakpoints, isPaused, leastSpeed, replay !== null);
-    if (!part && !judgedRun) this.#stage.enlarge(); // it sees nothing of the run before
+    if (!partProgram && !judgedRun) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
 
@@ -727,7 +727,7 @@ export class SimulatorPanel {
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */
   #valuesOf(state) {
     return [
-      ...devicesOf(this.#shownRobot, 'sensor').map(({ text: name }, index) => /** @type {[string, string]} */ ([name, state.readings[index]?.text ?? ''])),
+      ...devicesOf(this.#shownRobotName, 'sensor').map(({ text: name }, index) => /** @type {[string, string]} */ ([name, state.readings[index]?.text ?? ''])),
       ...this.#shownVariables.map(({ name, is_yes_no }, index) => /** @type {[string, string]} */ ([name, variableText(state.variables[index], is_yes_no)])),
     ];
   }
@@ -757,7 +757,7 @@ export class SimulatorPanel {
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(this.#shownRobot, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]),
+      ...devicesOf(this.#shownRobotName, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]),
       ...this.#shownVariables.map(({ name, is_yes_no }, index) => [name, variableText(state?.variables[index], is_yes_no)]),
       ...(this.#timeLine.seenState ? this.#pastShownValues : this.#shownValues),
     ];

@@ -62,10 +62,10 @@ export class Stage {
       this.#setFull(false);
       this.#shrink();
     });
-    let seenSide = pageState.sideId.value;
-    pageState.sideId.subscribe((side) => {
-      if (side !== seenSide) this.#setFull(false); // a phone's Run shows the side that is seen
-      seenSide = side;
+    let shownSideId = pageState.sideId.value;
+    pageState.sideId.subscribe((sideId) => {
+      if (sideId !== shownSideId) this.#setFull(false); // a phone's Run shows the side that is seen
+      shownSideId = sideId;
     });
     pageState.language.subscribe(() => this.#show());
     this.#show();

@@ -84,9 +84,9 @@ export class WorldChoice {
 
   /** @returns {World} */
   get shownWorld() {
-    const { world } = this.#work;
+    const { world: worldName } = this.#work;
     if (this.isOwn && this.#ownWorlds.newestWorld) return this.#ownWorlds.newestWorld;
-    return this.#broughtWorld?.shapes ?? WORLDS.find((candidate) => candidate.name === world) ?? /** @type {World} */ (WORLDS[0]);
+    return this.#broughtWorld?.shapes ?? WORLDS.find((candidate) => candidate.name === worldName) ?? /** @type {World} */ (WORLDS[0]);
   }
 
   /** What the worker is asked for. */

@@ -22,7 +22,7 @@ const TURN_DEGREES = 15; // degrees
 const MOST_SPOKEN_NUMBERS = 2; // numbers of a part; all are beside it
 const MOST_UNDO_STEPS = 200; // changes that can be undone
 /** @type {Record<string, Point>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const ARROW_DIRECTIONS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export class WorldDrawing {
   #python;
@@ -191,8 +191,8 @@ export class WorldDrawing {
   /** Keeps the world and asks whether the robot fits; returns its text, or says why it has none. @returns {Promise<string>} */
   async #writeWorld() {
     const writeNumber = ++this.#writeCount;
-    const { text: worldText = '', is_blocked = false, refused } = await this.#page.worldChoice.write(this.#page.world());
-    if (refused) this.#setNotice(refused.join(' '));
+    const { text: worldText = '', is_blocked = false, refused: refusalReasons } = await this.#page.worldChoice.write(this.#page.world());
+    if (refusalReasons) this.#setNotice(refusalReasons.join(' '));
     else if (writeNumber === this.#writeCount) {
       if (is_blocked !== this.#isBlocked) {
         this.#isBlocked = is_blocked;
@@ -243,10 +243,10 @@ export class WorldDrawing {
   }
 
   #addPoint() {
-    const added = withPoint(this.#page.world(), this.#chosenPart, this.#pointIndex);
-    if (!added) return;
-    this.#pointIndex = added.point;
-    this.#applyChange(added.world);
+    const addition = withPoint(this.#page.world(), this.#chosenPart, this.#pointIndex);
+    if (!addition) return;
+    this.#pointIndex = addition.point;
+    this.#applyChange(addition.world);
   }
 
   /** @param {KeyboardEvent} event */
@@ -258,8 +258,8 @@ export class WorldDrawing {
       if (isUndo) this.#giveDragUp() || this.#undoOrRedo(this.#undoWorlds, this.#redoWorlds);
       else if (event.key === 'y' || event.key === 'Z') this.#undoOrRedo(this.#redoWorlds, this.#undoWorlds);
       else return;
-    } else if (ARROWS[event.key]) {
-      const [right = 0, up = 0] = ARROWS[event.key] ?? [];
+    } else if (ARROW_DIRECTIONS[event.key]) {
+      const [right = 0, up = 0] = ARROW_DIRECTIONS[event.key] ?? [];
       const step = event.shiftKey ? FINE_CM : STEP_CM;
       this.#applyChange(withMovedPart(this.#page.world(), this.#chosenPart, right * step, up * step, this.#pointIndex));
     } else if (event.key === 'r' || event.key === 'R') this.#turnChosen(event.shiftKey ? -TURN_DEGREES : TURN_DEGREES);
@@ -312,21 +312,21 @@ export class WorldDrawing {
     const drag = this.#drag;
     if (!drag || !event.isPrimary) return;
     const { place: point } = this.#arena.floorAt(event);
-    const { worldBefore: before, baseWorld: base, start: from } = drag;
+    const { worldBefore, baseWorld, start } = drag;
     if (drag.gesture === 'draw') {
-      drag.track.push(clampToFloor(point, before));
+      drag.track.push(clampToFloor(point, worldBefore));
       this.#arena.setMark({ points: drag.track, pointIndex: -1, handle: null });
       this.#page.tell();
       return;
     }
     if (drag.gesture === 'turn') {
-      this.#page.preview(withTurnedHandle(base, drag.part, from, point));
+      this.#page.preview(withTurnedHandle(baseWorld, drag.part, start, point));
       this.#markChosen();
       return;
     }
-    const offset = [Math.round(point[0] - from[0]), Math.round(point[1] - from[1])];
-    if (this.#page.world() === before && !offset[0] && !offset[1]) return; // not moved yet
-    this.#page.preview(withMovedPart(base, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.point));
+    const offset = [Math.round(point[0] - start[0]), Math.round(point[1] - start[1])];
+    if (this.#page.world() === worldBefore && !offset[0] && !offset[1]) return; // not moved yet
+    this.#page.preview(withMovedPart(baseWorld, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.point));
     this.#markChosen();
   }
 

@@ -347,6 +347,6 @@ function roundCm(cm) {
 
 /** The same, but what is on the floor is not rounded off it. @param {number} cm @param {number} end */
 function roundOnFloor(cm, end) {
-  const rounded = roundCm(cm);
-  return rounded - end < SMALLEST_CM / 10 ? Math.min(end, rounded) : rounded;
+  const rounded_cm = roundCm(cm);
+  return rounded_cm - end < SMALLEST_CM / 10 ? Math.min(end, rounded_cm) : rounded_cm;
 }

@@ -28,13 +28,13 @@ const setBreakpointEffect = StateEffect.define();
 const breakpointField = StateField.define({
   create: () => RangeSet.empty,
   update(breakpointSet, transaction) {
-    let updated = breakpointSet.map(transaction.changes);
+    let newSet = breakpointSet.map(transaction.changes);
     for (const effect of transaction.effects) {
       if (!effect.is(setBreakpointEffect)) continue;
       const { offset, isSet } = effect.value;
-      updated = updated.update({ filter: (from) => from !== offset, add: isSet ? [new BreakpointValue().range(offset)] : [] });
+      newSet = newSet.update({ filter: (from) => from !== offset, add: isSet ? [new BreakpointValue().range(offset)] : [] });
     }
-    return updated;
+    return newSet;
   },
   provide: (breakpointField) => EditorView.decorations.from(breakpointField, (breakpointSet) => {
     /** @type {import('@codemirror/state').Range<Decoration>[]} */
