@@ -71,15 +71,15 @@ pageState.note.subscribe((sentence) => {
 pageState.areWordsShown.subscribe((areShown) => {
   work.words = areShown;
   wordsButton.setAttribute('aria-pressed', String(areShown));
-  remember();
+  storeCurrentWork();
 });
 pageState.robotName.subscribe((name) => {
   work.robot = robotSelect.value = name;
-  remember();
+  storeCurrentWork();
 });
 pageState.programText.subscribe((program) => {
   work.text = program;
-  remember();
+  storeCurrentWork();
 });
 pageState.areWordsShown.set(work.words);
 pageState.ownRobot.subscribe(showRobots);
@@ -88,7 +88,7 @@ pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
-  python, editor, work, remember,
+  python, editor, work, remember: storeCurrentWork,
   tryAlone: (program, isAsked) => simulatorPanel.tryAlone(program, isAsked, () => {
     element('side_virtual', HTMLButtonElement).click();
     phone.show('robot');
@@ -97,7 +97,7 @@ const views = new Views({
 });
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
-  python, work, remember, pad,
+  python, work, remember: storeCurrentWork, pad,
   whenCompiled: () => checker.whenChecked(),
   put: ({ text: program, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
@@ -131,7 +131,7 @@ pageState.language.subscribe(() => {
   showRobots();
   pageState.note.set('');
   if (!isReady) statusElement.textContent = text('starting');
-  remember();
+  storeCurrentWork();
 });
 const checker = new Checker(python, (error) => {
   showStatus(bugSentence(error), 'wrong');
@@ -228,7 +228,7 @@ function showRobots() {
   robotSelect.value = work.robot;
 }
 
-function remember() {
+function storeCurrentWork() {
   if (!storeWork(work)) pageState.note.set(text(work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
 }
 
@@ -257,7 +257,7 @@ function openProgram(program) {
   views.beginProgram();
   editor.replace(program.text);
   simulatorPanel.beginAnew();
-  remember();
+  storeCurrentWork();
 }
 
 languageSelect.addEventListener('change', async () => {

@@ -34,7 +34,7 @@ export class Pictures {
   }
 
   /**
-   * Calls `done` with the address of a picture, or with nothing where there is none.
+   * Calls `onDone` with the address of a picture, or with nothing where there is none.
    * @param {string} owner @param {Program} program @param {(address: string) => void} onDone
    */
   request(owner, program, onDone) {

@@ -3,22 +3,22 @@
 import * as Blockly from 'blockly/core';
 import { KINDS } from '../page/words.js';
 
-/** @typedef {Blockly.BlockSvg} Block */
+/** @typedef {Blockly.BlockSvg} BlockSvg */
 
-/** @param {Block | null} block @returns {Block | null} it, or what is around it, that stands in a stack */
+/** @param {BlockSvg | null} block @returns {BlockSvg | null} it, or what is around it, that stands in a stack */
 function stackBlockAround(block) {
   let ancestor = block;
   while (ancestor && !ancestor.nextConnection && !ancestor.previousConnection) ancestor = ancestor.getParent();
   return ancestor;
 }
 
-/** @param {Block} block @returns {Blockly.Connection | null} what is in it, where that is empty */
+/** @param {BlockSvg} block @returns {Blockly.Connection | null} what is in it, where that is empty */
 function emptyConnectionIn(block) {
   const input = block.inputList.find(({ connection }) => connection?.type === Blockly.ConnectionType.NEXT_STATEMENT);
   return input?.connection && !input.connection.isConnected() ? input.connection : null;
 }
 
-/** @param {Block} block @param {Block} value a value @returns {Blockly.Connection | null} the first of its places that the value fits in and nobody has filled */
+/** @param {BlockSvg} block @param {BlockSvg} value a value @returns {Blockly.Connection | null} the first of its places that the value fits in and nobody has filled */
 function freeConnectionFor(block, value) {
   const checker = block.workspace.connectionChecker;
   const input = block.inputList.find(({ connection }) => {
@@ -32,16 +32,16 @@ function freeConnectionFor(block, value) {
 /**
  * Puts a block of a list into the program: what stands in a stack below what had the focus, or into it where
  * that is empty; a value into the place that had the focus, or the first free one of its block.
- * @param {Block} listBlock of the list
+ * @param {BlockSvg} listBlock of the list
  * @param {Blockly.WorkspaceSvg} workspace
- * @param {Block | null} focusedBlock that the workspace had last
- * @returns {Block | null} the new block; null where there is no such place
+ * @param {BlockSvg | null} focusedBlock that the workspace had last
+ * @returns {BlockSvg | null} the new block; null where there is no such place
  */
 export function insert(listBlock, workspace, focusedBlock) {
   const state = Blockly.serialization.blocks.save(listBlock);
-  const program = /** @type {Block | undefined} */ (workspace.getBlocksByType('program')[0]);
+  const program = /** @type {BlockSvg | undefined} */ (workspace.getBlocksByType('program')[0]);
   if (!state || !program) return null;
-  const block = /** @type {Block} */ (Blockly.serialization.blocks.append(state, workspace));
+  const block = /** @type {BlockSvg} */ (Blockly.serialization.blocks.append(state, workspace));
   if (KINDS[block.type]?.is_hat) return block;
   let connection = null;
   if (block.previousConnection) {

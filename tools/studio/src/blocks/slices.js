@@ -4,7 +4,7 @@ const SLICE_MS = 8;
 
 /**
  * Does all steps of a work; between slices of them the page does what is asked of it. Each slice is one
- * call of `within`.
+ * call of `runSlice`.
  * @template T
  * @param {Iterator<void, T>} steps
  * @param {(slice: () => void) => void} [runSlice]

@@ -82,7 +82,7 @@ export class BigPupil extends BigWindow {
     });
   }
 
-  /** @param {PupilView} shown */
+  /** @param {PupilView} view */
   show({ key, title, stateText, picture, text: program, history, isDriving, isHandUp }) {
     this.key = key;
     setText(this.title, title);

@@ -430,13 +430,13 @@ function makeConfirmedButton(key, onConfirm) {
     if (isArmed) onConfirm();
     setArmed(!isArmed);
   });
-  const setArmed = (/** @type {boolean} */ armed) => {
-    isArmed = armed;
-    const textKeyNow = armed ? textKey(`${key}_sure`) : key;
+  const setArmed = (/** @type {boolean} */ isNowArmed) => {
+    isArmed = isNowArmed;
+    const textKeyNow = isNowArmed ? textKey(`${key}_sure`) : key;
     confirmedButton.dataset['text'] = textKeyNow;
     confirmedButton.textContent = text(textKeyNow);
     clearTimeout(timer);
-    if (armed) timer = window.setTimeout(() => setArmed(false), CONFIRM_MS);
+    if (isNowArmed) timer = window.setTimeout(() => setArmed(false), CONFIRM_MS);
   };
   return confirmedButton;
 }

@@ -75,7 +75,7 @@ export class Wall {
     return this.#tiles.get(key)?.picture.getAttribute('src') ?? '';
   }
 
-  /** @param {TileContent} of @returns {Tile} */
+  /** @param {TileContent} content @returns {Tile} */
   #makeTile({ key }) {
     const seeButton = makeButton('', () => this.#actions.see(key));
     const handButton = makeButton('', () => this.#actions.lower(key), makeSign('hand', 26));
@@ -93,7 +93,7 @@ export class Wall {
     return { item: listItem, see: seeButton, own: ownRobotDrawing, name: nameElement, hand: handButton, out: outButton, play: playButton, join: joinButton, picture: pictureElement, empty: emptyElement, badge: badgeElement, pips: pipsElement, said: stateElement };
   }
 
-  /** @param {Tile} tile @param {TileContent} seen @param {number} lessonCount */
+  /** @param {Tile} tile @param {TileContent} content @param {number} lessonCount */
   #fillTile(tile, { key, name, lessons: lessonsDone, pupil }, lessonCount) {
     const isGroup = key.startsWith('group '); // whose pupils leave it
     const plainName = asPlainText(name);

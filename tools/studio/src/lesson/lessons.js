@@ -18,7 +18,7 @@ import { isSecondPress } from '../page/twice.js';
 
 /** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {{text: string, robot: string, name: string}} Program */
-/** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
+/** @typedef {{blocks: import('./page.js').StepBlock[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
  * @typedef {object} CheckAnswer

@@ -4,7 +4,7 @@ import { makeButton, makeElement } from '../page/made.js';
 
 const PICTURE_RATIO = 2.6; // of a picture of blocks, for one of the page
 
-/** @typedef {{kind: string, rows: string[][]}} Block */
+/** @typedef {{kind: string, rows: string[][]}} StepBlock */
 
 /**
  * @typedef {object} Reader what is done for who reads a step
@@ -14,7 +14,7 @@ const PICTURE_RATIO = 2.6; // of a picture of blocks, for one of the page
  */
 
 /**
- * @param {Block} block
+ * @param {StepBlock} block
  * @param {Reader} reader
  * @returns {HTMLElement}
  */

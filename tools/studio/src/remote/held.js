@@ -7,7 +7,7 @@ export const MOST_PERCENT = 100;
 export const NOTHING_HELD = Object.freeze({ keys: 0, x: 0, y: 0 });
 
 /** @param {HeldControls} first @param {HeldControls} second */
-export function isSameHeld(first, second) {
+export function areControlsSame(first, second) {
   return first.keys === second.keys && first.x === second.x && first.y === second.y;
 }
 
@@ -24,9 +24,9 @@ export class HeldByHolder {
   /** @param {unknown} holder @param {HeldControls} controls */
   hold(holder, controls) {
     const heldBefore = this.#heldByHolder.get(holder);
-    if (heldBefore && isSameHeld(heldBefore, controls)) return; // who has not moved is not the newest
+    if (heldBefore && areControlsSame(heldBefore, controls)) return; // who has not moved is not the newest
     this.#heldByHolder.delete(holder);
-    if (!isSameHeld(controls, NOTHING_HELD)) this.#heldByHolder.set(holder, controls);
+    if (!areControlsSame(controls, NOTHING_HELD)) this.#heldByHolder.set(holder, controls);
   }
 
   /** @param {unknown} holder */

@@ -10,7 +10,7 @@ import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
 import { LINK, REMOTE } from '../page/words.js';
 import { readGamepads } from './gamepads.js';
-import { HeldByHolder, isSameHeld, heldOfStick, NOTHING_HELD } from './held.js';
+import { HeldByHolder, areControlsSame, heldOfStick, NOTHING_HELD } from './held.js';
 
 /** @import { HeldControls } from './held.js' */
 /**
@@ -128,7 +128,7 @@ export class Pad {
 
   // -- who holds ----------------------------------------------------------------------------------
 
-  /** A part is held by fingers; of one that `isOne`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} heldAt @param {boolean} [isSingleFinger] */
+  /** A part is held by fingers; of one that `isSingleFinger`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} heldAt @param {boolean} [isSingleFinger] */
   #listenToFingers(part, heldAt, isSingleFinger) {
     let fingerId = -1;
     part.addEventListener('pointerdown', (event) => {
@@ -175,11 +175,11 @@ export class Pad {
   }
 
   #holdPressedKeys() {
-    const isStick = !this.#stickElement.hidden && this.#keyButtons.slice(0, 4).every((part) => part.hidden);
+    const doArrowsMoveStick = !this.#stickElement.hidden && this.#keyButtons.slice(0, 4).every((part) => part.hidden);
     let keys = 0, right = 0, up = 0;
     for (const keyIndex of this.#pressedKeys.values()) {
       const direction = Object.values(ARROW_DIRECTIONS)[keyIndex];
-      if (isStick && direction) [right, up] = [right + (direction[0] ?? 0), up + (direction[1] ?? 0)];
+      if (doArrowsMoveStick && direction) [right, up] = [right + (direction[0] ?? 0), up + (direction[1] ?? 0)];
       else keys |= 1 << keyIndex;
     }
     this.#hold('keyboard', { ...heldOfStick(right, up), keys });
@@ -193,7 +193,7 @@ export class Pad {
     this.#gamepadNumbers = [...heldByGamepad.keys()];
     if (!this.#drivenRobot || !heldByGamepad.size) return;
     for (const [gamepadNumber, controls] of heldByGamepad) {
-      if (isSameHeld(controls, NOTHING_HELD)) this.#staleGamepads.delete(gamepadNumber);
+      if (areControlsSame(controls, NOTHING_HELD)) this.#staleGamepads.delete(gamepadNumber);
       if (!this.#staleGamepads.has(gamepadNumber)) this.#hold(gamepadHolder(gamepadNumber), controls);
     }
     this.#frameRequest = requestAnimationFrame(() => this.#pollGamepads());
@@ -215,7 +215,7 @@ export class Pad {
 
   #updateHeld() {
     const controls = this.#heldByHolder.combinedControls;
-    if (isSameHeld(controls, this.#lastHeld)) return;
+    if (areControlsSame(controls, this.#lastHeld)) return;
     this.#lastHeld = controls;
     this.#thumbElement.style.setProperty('translate', `${controls.x * THUMB_SHARE}% ${-controls.y * THUMB_SHARE}%`);
     this.#keyButtons.forEach((part, keyIndex) => part.classList.toggle('held', Boolean(controls.keys & (1 << keyIndex))));
@@ -226,7 +226,7 @@ export class Pad {
     clearTimeout(this.#timer);
     if (!this.#drivenRobot || this.#drivenRobot.isDeaf) return;
     this.#drivenRobot.tell(this.#lastHeld);
-    if (!isSameHeld(this.#lastHeld, NOTHING_HELD)) this.#timer = window.setTimeout(() => this.#sendHeld(), LINK.keys_every_ms);
+    if (!areControlsSame(this.#lastHeld, NOTHING_HELD)) this.#timer = window.setTimeout(() => this.#sendHeld(), LINK.keys_every_ms);
   }
 }
 

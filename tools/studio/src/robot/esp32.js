@@ -54,7 +54,7 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
     if (cancelSignal.aborted) throw new ConnectionFailure('flash_not_begun');
     await loader.flashSpiAttach(0);
     isWriting = true;
-    const checksum = { wanted: '' };
+    const expectedChecksum = { wanted: '' };
     await loader.writeFlash({
       fileArray: [{ data: firmware, address: 0 }], flashMode: 'keep', flashFreq: 'keep', flashSize: 'keep', eraseAll: false, compress: true,
       reportProgress: (_, writtenBytes, totalBytes) => {
@@ -62,7 +62,7 @@ export async function flashEsp32(port, board, firmware, onProgress, cancelSignal
         onProgress(writtenBytes / totalBytes);
       },
       // What the ROM answers are the letters of a sum; esptool-js shows their numbers.
-      calculateMD5Hash: (image) => (checksum.wanted = hexOfLetters(md5(image))),
+      calculateMD5Hash: (image) => (expectedChecksum.wanted = hexOfLetters(md5(image))),
     });
     await restartChip(transport);
   } catch (error) {

@@ -49,9 +49,9 @@ export class Run {
   parting = null;
   #characters = 0;
   #bumpCount = 0;
-  /** @type {import('./why.js').Block[] | null} */
+  /** @type {import('./why.js').CodeBlock[] | null} */
   #whenBlocks = null;
-  /** Those in which a task was. @type {import('./why.js').Block[]} */
+  /** Those in which a task was. @type {import('./why.js').CodeBlock[]} */
   #begunBlocks = [];
 
   /**

@@ -58,14 +58,14 @@ function bracketContent(text, offset) {
   return text.slice(offset + opening[0].length, end - 1).replace(/\s+/g, ' ').trim();
 }
 
-/** @typedef {{line: number, has: (at: number, isBody?: boolean) => boolean}} Block whether an offset of the code is in it, or in what comes after its head */
+/** @typedef {{line: number, has: (at: number, isBody?: boolean) => boolean}} CodeBlock whether an offset of the code is in it, or in what comes after its head */
 
 /**
  * The blocks of a program that begin with a word.
  * @param {string} text
  * @param {Places} places
  * @param {RegExp} word
- * @returns {Block[]}
+ * @returns {CodeBlock[]}
  */
 export function blocksOf(text, places, word) {
   const lines = text.split('\n');

@@ -14,7 +14,7 @@ import { partName, showNumbers } from './numbers.js';
 
 /** @import { World, Part, PartKind, Point } from './parts.js' */
 /** @typedef {import('./choice.js').Page} Page */
-/** @typedef {{gesture: 'move' | 'draw' | 'turn', part: Part, point: number, start: Point, worldBefore: World, baseWorld: World, track: Point[]}} Drag `base`: what is moved */
+/** @typedef {{gesture: 'move' | 'draw' | 'turn', part: Part, point: number, start: Point, worldBefore: World, baseWorld: World, track: Point[]}} Drag `baseWorld`: what is moved */
 
 const STEP_CM = 5;
 const FINE_CM = 1;

@@ -130,7 +130,7 @@ export function withMovedPart(world, part, right_cm, up_cm, pointIndex = -1) {
   return withValue(world, part, { ...value, points: newPoints });
 }
 
-/** A way that leaves none of `places` off the floor, if it was on it. @param {number} offset @param {number[]} coordinates @param {number} end */
+/** A way that leaves none of `coordinates` off the floor, if it was on it. @param {number} offset @param {number[]} coordinates @param {number} end */
 function offsetWithin(offset, coordinates, end) {
   const low = Math.min(0, -Math.min(...coordinates)), high = Math.max(0, end - Math.max(...coordinates));
   return Math.max(low, Math.min(high, offset));

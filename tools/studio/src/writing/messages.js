@@ -51,13 +51,13 @@ export function showRepair(list, findingIndex, finding, repair) {
 }
 
 /** @param {CheckResult} checked @returns {string} */
-export function summaryOf({ findings, bytes, loose }) {
+export function summaryOf({ findings, bytes, loose: looseCount }) {
   const mistakes = findings.filter((finding) => finding.severity === 'mistake').length;
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(text('mistakes', { count: mistakes }));
-  else if (!loose) parts.push(text('right', { bytes }));
-  if (loose) parts.push(text('loose', { count: loose }));
+  else if (!looseCount) parts.push(text('right', { bytes }));
+  if (looseCount) parts.push(text('loose', { count: looseCount }));
   if (warnings) parts.push(text('warnings', { count: warnings }));
-  return parts.join(mistakes || loose ? ', ' : ' ');
+  return parts.join(mistakes || looseCount ? ', ' : ' ');
 }

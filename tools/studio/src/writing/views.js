@@ -368,7 +368,7 @@ export class Views {
 
   /**
    * Makes the blocks of the text. While somebody types a text that does not parse, the blocks stay
-   * as they are, unless `isWanted`.
+   * as they are, unless `isForced`.
    * @param {boolean} isForced
    */
   async #refreshBlocks(isForced) {
