@@ -77,8 +77,8 @@ pageState.robotName.subscribe((name) => {
   work.robot = robotSelect.value = name;
   storeCurrentWork();
 });
-pageState.programText.subscribe((program) => {
-  work.text = program;
+pageState.programText.subscribe((programText) => {
+  work.text = programText;
   storeCurrentWork();
 });
 pageState.areWordsShown.set(work.words);
@@ -89,7 +89,7 @@ pageState.robotName.set(work.robot);
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
   python, editor, work, remember: storeCurrentWork,
-  tryAlone: (program, isAsked) => simulatorPanel.tryAlone(program, isAsked, () => {
+  tryAlone: (programText, isAsked) => simulatorPanel.tryAlone(programText, isAsked, () => {
     element('side_virtual', HTMLButtonElement).click();
     phone.show('robot');
   }),
@@ -99,9 +99,9 @@ const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
   python, work, remember: storeCurrentWork, pad,
   whenCompiled: () => checker.whenChecked(),
-  put: ({ text: program, robot: robotName }) => {
+  put: ({ text: programText, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
-    if (program !== work.text || robotName !== work.robot) programs.replaceProgram({ text: program, robot: robotName, name: '' });
+    if (programText !== work.text || robotName !== work.robot) programs.replaceProgram({ text: programText, robot: robotName, name: '' });
     phone.show('robot');
   },
 });
@@ -142,9 +142,9 @@ if (storedWork) programs.storeVersion();
 new OwnWindow();
 new Start({
   putProgram: (program) => programs.replaceProgram(program),
-  runInWorld: (world) => {
+  runInWorld: (worldName) => {
     phone.show('robot');
-    return simulatorPanel.run(world);
+    return simulatorPanel.run(worldName);
   },
   seeProgram: () => views.wake(),
   showSide: (id) => {

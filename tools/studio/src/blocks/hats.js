@@ -21,15 +21,15 @@
  */
 export function inTextOrder(program, hats, earlyDefs) {
   /** @type {Hat[][]} */
-  const gaps = Array.from({ length: program.length + 1 }, () => []);
-  for (const hat of hats) if (hat.gap !== null) gaps[hat.gap]?.push(hat);
+  const hatsByGap = Array.from({ length: program.length + 1 }, () => []);
+  for (const hat of hats) if (hat.gap !== null) hatsByGap[hat.gap]?.push(hat);
   const commentCount = countComments(program);
   for (const hat of hats.filter(({ gap }) => gap === null).sort((a, b) => a.y - b.y || a.x - b.x)) {
-    const gap = gaps[hat.block.kind === 'def' ? commentCount : program.length] ?? [];
-    const indexBelow = gap.findIndex((other) => other.y > hat.y);
-    gap.splice(indexBelow < 0 ? gap.length : indexBelow, 0, hat);
+    const hatsInGap = hatsByGap[hat.block.kind === 'def' ? commentCount : program.length] ?? [];
+    const indexBelow = hatsInGap.findIndex((other) => other.y > hat.y);
+    hatsInGap.splice(indexBelow < 0 ? hatsInGap.length : indexBelow, 0, hat);
   }
-  const items = gaps.flatMap((gap, index) => [...gap, ...program.slice(index, index + 1)]);
+  const items = hatsByGap.flatMap((hatsInGap, index) => [...hatsInGap, ...program.slice(index, index + 1)]);
   return withDefsBeforeCalls(items, earlyDefs);
 }
 

@@ -83,11 +83,11 @@ export class BigPupil extends BigWindow {
   }
 
   /** @param {PupilView} view */
-  show({ key, title, stateText, picture, text: program, history, isDriving, isHandUp }) {
+  show({ key, title, stateText, picture, text: programText, history, isDriving, isHandUp }) {
     this.key = key;
     setText(this.title, title);
     setText(this.#stateElement, stateText);
-    setText(this.#programElement, program);
+    setText(this.#programElement, programText);
     this.#programElement.setAttribute('aria-label', text('class_program_of', { name: title }));
     this.#historyElement.hidden = !history.length;
     setText(this.#historyElement, [text('class_history'), '', ...history].join('\n'));

@@ -34,9 +34,9 @@ export class Membership {
 
   /** A page that was loaded again goes on, if it was in a group; returns whether it was. */
   resume() {
-    const stored = loadJson(STORAGE_KEY, 'sessionStorage');
-    const wasInGroup = Boolean(stored?.request?.do && stored.page?.name);
-    if (wasInGroup) this.join(stored.request, stored.page);
+    const storedMembership = loadJson(STORAGE_KEY, 'sessionStorage');
+    const wasInGroup = Boolean(storedMembership?.request?.do && storedMembership.page?.name);
+    if (wasInGroup) this.join(storedMembership.request, storedMembership.page);
     return wasInGroup;
   }
 

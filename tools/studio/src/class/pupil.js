@@ -233,8 +233,8 @@ export class Pupil {
   }
 
   /** @param {PupilState} here */
-  #showState({ place: queuePlace, waiting: waitingCount, robots: robotCount, robot: robotName, left_s, name, hand: isHandUp, groups = [], driver: driverName = '', stops = 0 }) {
-    noteStopCount(stops);
+  #showState({ place: queuePlace, waiting: waitingCount, robots: robotCount, robot: robotName, left_s, name, hand: isHandUp, groups = [], driver: driverName = '', stops: stopCount = 0 }) {
+    noteStopCount(stopCount);
     this.#showHand(isHandUp);
     this.#group.showGroups(groups, driverName);
     const isTurnNew = queuePlace === 0 && this.#stayState.queuePlace !== 0 && !driverName;

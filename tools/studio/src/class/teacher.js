@@ -61,7 +61,7 @@ export class Teacher {
   #settingsWindow = makeElement('dialog');
   #fileInput = makeElement('input');
   #endButton = makeConfirmedButton('class_end', () => this.#request({ do: 'class_over', erases: this.#erasesInput.checked }));
-  #givingWindow = new GivingWindow((key, pupil) => this.#request({ do: 'class_give_back', key, pupil }));
+  #givingWindow = new GivingWindow((key, pupilNumber) => this.#request({ do: 'class_give_back', key, pupil: pupilNumber }));
   #giveBackButton = makeButton('class_give_back', () => this.#givingWindow.window.showModal());
   #anewButton = makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' }));
   #leaveButton = makeButton('', () => this.#leaveGroup());
@@ -186,12 +186,12 @@ export class Teacher {
 
   /** @param {import('../page/texts.js').Key | ''} key */
   #showVisit(key) {
-    const group = asPlainText(pageState.groupName.value);
+    const groupName = asPlainText(pageState.groupName.value);
     this.#leaveButton.hidden = !this.#membership.isInGroup;
-    setText(this.#leaveButton, text('class_leave_of', { name: group }));
+    setText(this.#leaveButton, text('class_leave_of', { name: groupName }));
     if (this.#visitKey === key) return;
     this.#visitKey = key;
-    pageState.note.set(key ? text(key, { group }) : '');
+    pageState.note.set(key ? text(key, { group: groupName }) : '');
   }
 
   /** Plays a pupil's newest run here. @param {string} key */
@@ -268,7 +268,7 @@ export class Teacher {
   async #lookForPorts() {
     try {
       const hostPortList = await fetchPorts();
-      this.#portSelect.replaceChildren(...hostPortList.map(({ port, name }) => new Option(asPlainText([name, port].filter(Boolean).join(' · ')), port)));
+      this.#portSelect.replaceChildren(...hostPortList.map(({ port: portId, name }) => new Option(asPlainText([name, portId].filter(Boolean).join(' · ')), portId)));
     } catch {
       this.#sayInBar('why_host_gone');
     }
@@ -316,7 +316,7 @@ export class Teacher {
     }
     const hands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
     const handNames = hands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (hands.length > MOST_NAMED_HANDS ? ` +${hands.length - MOST_NAMED_HANDS}` : '');
-    const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
+    const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place: queuePlace }) => queuePlace).length });
     setText(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
     this.#giveBackButton.hidden = !keptRows.length || !pupils.length;
@@ -350,22 +350,22 @@ export class Teacher {
   /** @param {RobotRow[]} robots */
   #showRobots(robots) {
     const rows = robots.map((robot) => ({ ...robot, title: asPlainText(robot.name || robot.port), said: robot.pupil ? text('class_held', { name: asPlainText(robot.pupil), time: clockText(robot.left_s) }) : text('class_free') }));
-    const chipsKey = JSON.stringify(rows.map(({ title, pupil }) => [title, Boolean(pupil)]));
+    const chipsKey = JSON.stringify(rows.map(({ title, pupil: pupilName }) => [title, Boolean(pupilName)]));
     if (this.#robotChips.dataset['seen'] !== chipsKey) {
       this.#robotChips.dataset['seen'] = chipsKey;
-      this.#robotChips.replaceChildren(...rows.map(({ title, pupil }) => {
+      this.#robotChips.replaceChildren(...rows.map(({ title, pupil: pupilName }) => {
         const chip = makeElement('li', '', makeSign('robot', 20), makeElement('strong', '', title), makeElement('span'));
-        chip.classList.toggle('held', Boolean(pupil));
+        chip.classList.toggle('held', Boolean(pupilName));
         return chip;
       }));
       this.#robotChips.hidden = !rows.length;
     }
     rows.forEach(({ said: stateText }, index) => setText(/** @type {HTMLElement} */ (this.#robotChips.children[index]?.lastElementChild), stateText));
-    const portsKey = JSON.stringify(robots.map(({ port, name }) => [port, name]));
+    const portsKey = JSON.stringify(robots.map(({ port: portId, name }) => [portId, name]));
     if (this.#robotList.dataset['seen'] === portsKey) return;
     this.#robotList.dataset['seen'] = portsKey;
-    this.#robotList.replaceChildren(...robots.map(({ port, name }) => makeElement('li', '', makeElement('strong', '', asPlainText([name, port].filter(Boolean).join(' · '))), ' ',
-      makeButton('class_take', () => this.#request({ do: 'class_robot', port, gives: false })))));
+    this.#robotList.replaceChildren(...robots.map(({ port: portId, name }) => makeElement('li', '', makeElement('strong', '', asPlainText([name, portId].filter(Boolean).join(' · '))), ' ',
+      makeButton('class_take', () => this.#request({ do: 'class_robot', port: portId, gives: false })))));
   }
 
   /** Fetches a program that is another one now, and wants its picture. @param {string} key @param {number} version */

@@ -117,7 +117,7 @@ export class Wall {
       tile.badge.replaceChildren(makeSign(drivenRobot ? 'robot' : 'queue', 18), makeElement('span', '', badge));
       tile.badge.classList.toggle('drives', Boolean(drivenRobot));
     }
-    const marks = Array.from({ length: lessonCount }, (_, index) => (lessonsDone.some((lesson) => Number.parseInt(lesson, 10) === index + 1) ? '●' : '○')).join('');
+    const marks = Array.from({ length: lessonCount }, (_, index) => (lessonsDone.some((lessonName) => Number.parseInt(lessonName, 10) === index + 1) ? '●' : '○')).join('');
     if (tile.pips.dataset['marks'] !== marks) {
       tile.pips.dataset['marks'] = marks;
       tile.pips.replaceChildren(...[...marks].map((mark) => {

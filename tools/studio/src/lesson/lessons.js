@@ -263,16 +263,16 @@ export class Lessons {
   /** What is done for who reads a lesson. @param {Lesson} lesson @returns {import('./page.js').Reader} */
   #makeReader(lesson) {
     return {
-      useProgram: (program) => {
-        this.#page.put(this.#lendProgram(lesson, program));
+      useProgram: (programText) => {
+        this.#page.put(this.#lendProgram(lesson, programText));
         pageState.note.set(text('lesson_used'));
       },
       labelOfCode: (code) => {
         const spokenBlock = this.#spokenBlocks[code];
         return this.#areBlocks ? spokenBlock ? withNamesAsWritten(labelOfBlock(spokenBlock), code) : labelOfWord(code) : null;
       },
-      drawProgram: this.#areBlocks ? (program, onDone) => {
-        this.#pictures.request(program, { text: program, robot: pageState.robotName.value }, onDone);
+      drawProgram: this.#areBlocks ? (programText, onDone) => {
+        this.#pictures.request(programText, { text: programText, robot: pageState.robotName.value }, onDone);
       } : null,
     };
   }
@@ -304,9 +304,9 @@ export class Lessons {
   async #isForOtherRobot(lesson) {
     const programText = pageState.programText.value, robotName = pageState.robotName.value;
     if (robotName === lesson.robot || pageState.isRobotNamed.value || pageState.groupName.value || !programText.trim()) return false;
-    const program = new TextEncoder().encode(programText), language = currentLanguage();
+    const programBytes = new TextEncoder().encode(programText), language = currentLanguage();
     /** @param {string} robotName */
-    const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, program)).image);
+    const isRightOn = async (robotName) => Boolean((await this.#page.python.ask({ do: 'check', robot: robotName, language }, programBytes)).image);
     return await isRightOn(robotName) && !(await isRightOn(lesson.robot)) && programText === pageState.programText.value;
   }
 
@@ -315,12 +315,12 @@ export class Lessons {
     return this.#ownProgram !== null && this.#page.work.name === this.#lessonProgramName;
   }
 
-  /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} program @returns {Program} */
-  #lendProgram(lesson, program) {
-    const { text: programText, robot: robotName, name } = this.#page.work;
-    if (!this.#isOfLesson) this.#ownProgram = { text: programText, robot: robotName, name };
+  /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} programText @returns {Program} */
+  #lendProgram(lesson, programText) {
+    const { text: ownText, robot: robotName, name } = this.#page.work;
+    if (!this.#isOfLesson) this.#ownProgram = { text: ownText, robot: robotName, name };
     this.#lessonProgramName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
-    return { text: program, robot: lesson.robot, name: this.#lessonProgramName };
+    return { text: programText, robot: lesson.robot, name: this.#lessonProgramName };
   }
 
   /** The lesson is over: this person's own program comes back, unless another one has been opened since. */
@@ -345,7 +345,7 @@ export class Lessons {
     this.#forgetCheck();
     const checkNumber = this.#checkCount;
     const number = this.#lessonNumber;
-    const program = new TextEncoder().encode(pageState.programText.value);
+    const programBytes = new TextEncoder().encode(pageState.programText.value);
     const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
     this.#endButton.hidden = false;
     this.#showButtons();
@@ -353,7 +353,7 @@ export class Lessons {
     this.#verdictElement.textContent = text('lesson_checking', { seed: 1, worlds });
     let most_ms = LEAST_ROBOT_MS;
     try {
-      await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, program);
+      await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, programBytes);
       while (checkNumber === this.#checkCount) {
         const began_ms = performance.now();
         /** @type {CheckAnswer} */

@@ -24,14 +24,14 @@ export function makeBlockElement({ kind, rows }, reader) {
 }
 
 /**
- * @param {string} program
+ * @param {string} programText
  * @param {Reader} reader
  */
-function makeProgramElement(program, { useProgram, drawProgram }) {
-  const programElement = makeElement('pre', '', program);
-  const container = makeElement('div', '', programElement, makeButton('lesson_use', () => useProgram(`${program}\n`)));
+function makeProgramElement(programText, { useProgram, drawProgram }) {
+  const programElement = makeElement('pre', '', programText);
+  const container = makeElement('div', '', programElement, makeButton('lesson_use', () => useProgram(`${programText}\n`)));
   container.className = 'program';
-  drawProgram?.(program, (address) => {
+  drawProgram?.(programText, (address) => {
     if (!address) return;
     const picture = makeElement('img');
     picture.alt = ''; // its text is read

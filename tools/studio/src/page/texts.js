@@ -82,10 +82,10 @@ function pluralFormOf(count) {
   return Number(texts['']?.[count < 100 ? count : 100 + (count % 100)]);
 }
 
-/** @param {string} group of keys @returns {Record<string, string>} its texts as they are, by what follows in their keys */
-export function textsOf(group) {
-  const entries = Object.entries(texts).filter(([key]) => key.startsWith(`${group}/`));
-  return Object.fromEntries(entries.map(([key, entry]) => [key.slice(group.length + 1), String(entry)]));
+/** @param {string} prefix of keys @returns {Record<string, string>} its texts as they are, by what follows in their keys */
+export function textsOf(prefix) {
+  const entries = Object.entries(texts).filter(([key]) => key.startsWith(`${prefix}/`));
+  return Object.fromEntries(entries.map(([key, entry]) => [key.slice(prefix.length + 1), String(entry)]));
 }
 
 /** @param {Record<string, string>} labels of a world, a robot or a device by language, or none @returns {string} what it is called */

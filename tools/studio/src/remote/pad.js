@@ -114,8 +114,8 @@ export class Pad {
     });
     this.#stickElement.hidden = isDeaf || !remoteWords.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
     for (const groupId of ['pad_arrows', 'pad_letters']) {
-      const group = element(groupId, HTMLElement);
-      group.hidden = [...group.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);
+      const keyGroup = element(groupId, HTMLElement);
+      keyGroup.hidden = [...keyGroup.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);
     }
     this.#updateNames();
     this.#pollGamepads();

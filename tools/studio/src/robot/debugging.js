@@ -177,7 +177,7 @@ export class Debugging {
   /** @param {number} offset @param {number} taskNumber */
   #onHalt(offset, taskNumber) {
     if (!this.#program) return;
-    const { places, halts, program } = this.#program;
+    const { places, halts, program: checksum } = this.#program;
     const place = places[halts.lastIndexOf(offset)];
     this.#page.recorder.halt();
     if (!place && (this.#isStepping || this.#isHaltingFirst)) { // within one instruction of the text
@@ -187,7 +187,7 @@ export class Debugging {
     const halt = this.#halt = {};
     this.#isHaltingFirst = false;
     this.#sendPlaces();
-    this.#page.place.hold(place?.[0] ?? offset, program);
+    this.#page.place.hold(place?.[0] ?? offset, checksum);
     if (place) this.#page.say('robot_held', { line: place[1] });
     this.#show();
     this.#readValues(halt, taskNumber);

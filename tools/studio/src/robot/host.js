@@ -116,18 +116,18 @@ export class HostRobot extends RequestQueue {
 
   /**
    * Connects; rejects with a ConnectionFailure.
-   * @param {string} port
+   * @param {string} portId
    * @param {string} robotName
    * @param {string} language
    * @returns {Promise<RobotInfo>}
    */
-  connect(port, robotName, language) {
+  connect(portId, robotName, language) {
     /** @type {Promise<RobotInfo>} */
     const connection = new Promise((resolve, reject) => {
       this.#resolveConnect = resolve;
       this.#rejectConnect = reject;
     });
-    this.#open({ port, robot: robotName, language, saw_stops: seenStopCount });
+    this.#open({ port: portId, robot: robotName, language, saw_stops: seenStopCount });
     return connection;
   }
 

@@ -193,10 +193,10 @@ export class RobotPanel {
     let failure = null;
     if (hasHost) {
       try {
-        for (const { port, name, description, virtual } of await fetchPorts()) {
+        for (const { port: portId, name, description, virtual } of await fetchPorts()) {
           const details = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
-          const label = asPlainText([name, details, port].filter(Boolean).join(' · '));
-          choices.push({ label, symbolId: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.connectByHost(port) });
+          const label = asPlainText([name, details, portId].filter(Boolean).join(' · '));
+          choices.push({ label, symbolId: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.connectByHost(portId) });
         }
       } catch (error) {
         failure = error;
@@ -215,11 +215,11 @@ export class RobotPanel {
     else this.#speech.say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
   }
 
-  /** Connects through `tsc studio`; a pupil's port is that of the turn. @param {string} port */
-  connectByHost(port = 'turn') {
+  /** Connects through `tsc studio`; a pupil's port is that of the turn. @param {string} portId */
+  connectByHost(portId = 'turn') {
     return this.#connect(async (listener) => {
       const transport = new HostRobot(listener);
-      return { transport, connected: transport.connect(port, pageState.robotName.value, currentLanguage()) };
+      return { transport, connected: transport.connect(portId, pageState.robotName.value, currentLanguage()) };
     });
   }
 
@@ -495,14 +495,14 @@ export class RobotPanel {
   /** The robot of the group, which another page drives, has told this. @param {GroupRobotEvent} event */
   onGroupEvent(event) {
     if (this.#transport || this.#isBusy) return;
-    const { event: eventName, program, robot: robotName = '', nth: valueNumber } = event;
+    const { event: eventName, program: checksum, robot: robotName = '', nth: valueNumber } = event;
     if (eventName === 'ROBOT') {
       if (isRobot(robotName) && robotName !== pageState.robotName.value) pageState.robotName.set(robotName);
       return;
     }
     if (eventName === 'STARTED') {
       const checkResult = pageState.checkResult.value;
-      if (checkResult?.image && checkResult.program === program) this.#expectProgram(checkResult);
+      if (checkResult?.image && checkResult.program === checksum) this.#expectProgram(checkResult);
       this.#isWitness = true;
       this.#valueCount = 0;
       this.#speech.begin('group_runs');
@@ -555,9 +555,9 @@ export class RobotPanel {
   }
 
   /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
-  #shownValueName({ program, at: offset }) {
-    if (!program) return '';
-    if (this.#runningProgram?.program !== program) this.#runningProgram = this.#programOf(program);
+  #shownValueName({ program: checksum, at: offset }) {
+    if (!checksum) return '';
+    if (this.#runningProgram?.program !== checksum) this.#runningProgram = this.#programOf(checksum);
     const show = this.#runningProgram && showAt(this.#runningProgram, offset);
     return show ? shownName(show, show[1], false) : '';
   }

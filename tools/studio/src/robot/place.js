@@ -24,10 +24,10 @@ export class RunningPlace {
     else if (event.event === 'PLACE' && !this.#isHeld) this.#setEvent(event);
   }
 
-  /** It is halted there. @param {number} offset @param {string} program */
-  hold(offset, program) {
+  /** It is halted there. @param {number} offset @param {string} checksum */
+  hold(offset, checksum) {
     this.#isHeld = true;
-    this.#setEvent({ event: 'HALTED', at: offset, program });
+    this.#setEvent({ event: 'HALTED', at: offset, program: checksum });
   }
 
   /** It goes on from there. */

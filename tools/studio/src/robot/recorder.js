@@ -50,9 +50,9 @@ export class Recorder {
     this.#sentPrograms.set(checkResult.program, { checkResult, text: pageState.programText.value, robot: pageState.robotName.value });
   }
 
-  /** A program waits for the robot's button: no robot tells when it begins. @param {string} program its checksum, in hexadecimal */
-  awaitButton(program) {
-    this.#beginRecording(program, null);
+  /** A program waits for the robot's button: no robot tells when it begins. @param {string} checksum its checksum, in hexadecimal */
+  awaitButton(checksum) {
+    this.#beginRecording(checksum, null);
   }
 
   /** The program is halted: its time stands still. */
@@ -109,19 +109,19 @@ export class Recorder {
   }
 
   /**
-   * @param {string} program
+   * @param {string} checksum
    * @param {number | null} began_ms
    */
-  #beginRecording(program, began_ms) {
+  #beginRecording(checksum, began_ms) {
     this.end('STOPPED');
-    const sentProgram = this.#sentPrograms.get(program);
+    const sentProgram = this.#sentPrograms.get(checksum);
     this.#run = null;
     this.#isOver = !sentProgram;
     this.#incompleteSensors.clear();
     this.#began_ms = began_ms;
     if (sentProgram) {
       const { checkResult, text, robot: robotName } = sentProgram;
-      const run = this.#run = new Run({ of: 'real', text, robot: robotName, program, is_by_button: began_ms === null }, checkResult, null);
+      const run = this.#run = new Run({ of: 'real', text, robot: robotName, program: checksum, is_by_button: began_ms === null }, checkResult, null);
       run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
       this.#page.runs.addRun(run);
     }

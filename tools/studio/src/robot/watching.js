@@ -105,12 +105,12 @@ export class SensorWatch {
   }
 
   /** @param {RobotEvent} event @param {boolean} isTyped it tells of a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
-  onEvent({ event, program = '', value = '', at: offset = -1, cause }, isTyped) {
-    const isOwn = this.#lines.has(program);
+  onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause }, isTyped) {
+    const isOwn = this.#lines.has(checksum);
     if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
-      if (isOwn) this.#takeReading(program, offset, value);
-      return isOwn || (!program && this.#isOwnLine);
+      if (isOwn) this.#takeReading(checksum, offset, value);
+      return isOwn || (!checksum && this.#isOwnLine);
     }
     if (event === 'STARTED' || event === 'PLACE') {
       if (isOwn) return true;
@@ -223,9 +223,9 @@ export class SensorWatch {
 
   // -- what it tells ------------------------------------------------------------------------------
 
-  /** @param {string} program @param {number} offset @param {string} value */
-  #takeReading(program, offset, value) {
-    const line = this.#lines.get(program);
+  /** @param {string} checksum @param {number} offset @param {string} value */
+  #takeReading(checksum, offset, value) {
+    const line = this.#lines.get(checksum);
     const show = line && showAt(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);

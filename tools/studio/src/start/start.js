@@ -54,13 +54,13 @@ export class Start {
 
   /** @param {string} name */
   async #beginWith(name) {
-    const { text: program, robot: robotName, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
+    const { text: programText, robot: robotName, world: worldName } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
     this.#isBeginning = true;
-    this.#page.putProgram({ text: program, robot: robotName, name: `${text(textKey(`begin_${name}`)).toLowerCase()}.ts` });
+    this.#page.putProgram({ text: programText, robot: robotName, name: `${text(textKey(`begin_${name}`)).toLowerCase()}.ts` });
     this.#page.showSide('side_virtual');
     element('stop', HTMLButtonElement).focus();
     try {
-      await this.#page.runInWorld(world);
+      await this.#page.runInWorld(worldName);
     } finally {
       this.#isBeginning = false;
       this.#page.seeProgram();

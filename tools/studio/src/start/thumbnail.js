@@ -10,16 +10,16 @@ const ROW_HEIGHT = 9, BAR_HEIGHT = 7, INDENT = 7, MOST_BAR_WIDTH = 60;
 const OPENING_WORD = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, ARM_WORD = /^ELSE/i, CLOSING_WORD = /^END/i;
 
 /**
- * @param {string} program
+ * @param {string} programText
  * @param {string} robotName
  * @returns {SVGElement}
  */
-export function makeThumbnail(program, robotName) {
+export function makeThumbnail(programText, robotName) {
   const words = wordsOf(robotName);
   /** @type {SVGElement[]} */
   const bars = [];
   let depth = 0;
-  for (const rawLine of program.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
+  for (const rawLine of programText.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
     const line = rawLine.trim();
     if (!line) continue;
     if (CLOSING_WORD.test(line) || ARM_WORD.test(line)) depth = Math.max(0, depth - 1);

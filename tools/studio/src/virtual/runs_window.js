@@ -115,8 +115,8 @@ export function isRunFile(name) {
   return name.toLowerCase().endsWith(FILE_EXTENSION);
 }
 
-/** @param {string} program */
-function beginningOf(program) {
-  const line = program.split('\n').map((line) => line.trim()).filter(Boolean).join(' ');
+/** @param {string} programText */
+function beginningOf(programText) {
+  const line = programText.split('\n').map((line) => line.trim()).filter(Boolean).join(' ');
   return line.length > 60 ? `${line.slice(0, 60)}…` : line;
 }

@@ -500,12 +500,12 @@ export class SimulatorPanel {
     this.#variables = program.variables;
     this.#findStops();
     this.#remoteWords = judgedRun || replay ? [] : program.remote;
-    const world = judgedRun ?? this.#worldChoice.request;
-    const run = this.#newestRun = this.#makeRun(program, world, replay, partProgram?.text);
+    const worldRequest = judgedRun ?? this.#worldChoice.request;
+    const run = this.#newestRun = this.#makeRun(program, worldRequest, replay, partProgram?.text);
     run.isJudged = judgedRun !== null;
     this.#timeLine.begin(run);
     const breakpoints = judgedRun || replay || partProgram ? [] : this.#stops.offsets;
-    const beginning = this.#simulator.begin(program, pageState.robotName.value, world, breakpoints, isPaused, leastSpeed, replay !== null);
+    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, breakpoints, isPaused, leastSpeed, replay !== null);
     if (!partProgram && !judgedRun) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
@@ -513,12 +513,12 @@ export class SimulatorPanel {
   /**
    * The run that begins, among those that are kept.
    * @param {CheckResult} program
-   * @param {unknown} world
+   * @param {unknown} worldRequest
    * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay
    * @param {string} [programText] its text
    */
-  #makeRun(program, world, replay, programText = pageState.programText.value) {
-    const run = replay?.again ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world }, program, null);
+  #makeRun(program, worldRequest, replay, programText = pageState.programText.value) {
+    const run = replay?.again ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world: worldRequest }, program, null);
     if (replay && !replay.again) {
       run.origin = { ...run.origin, of: replay.opened.of };
       run.file = replay.opened.file;
