@@ -6,13 +6,14 @@ values are, `test_board_devices.py` says. A driver whose pins are of a new kind 
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 
 import pytest
 
 from tests.firmware.test_boards import START, pulses, started
-from tests.machines.board import Board
-from tests.wiring.test_wiring import DEVICES, robot_with
+from tests.machines.board import Board, simulates
+from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Driver, SensorDriver
 from tiniscript.robots.profile import Wiring
@@ -54,6 +55,20 @@ def wired_as(driver: Driver) -> tuple[str, Wiring]:
 
 def names(drivers: list[Driver]) -> list[str]:
     return [f"{driver.used_by} {driver.name}" for driver in drivers]
+
+
+@pytest.mark.parametrize("motors", MOTORS)
+def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(motors: str) -> None:
+    """So a new driver, wherever its name stands among the others, leaves them what they need."""
+    draw = random.Random(motors)
+    for _ in range(20):
+        devices = draw.sample(DEVICES * 2, len(DEVICES) * 2)
+        board = robot_with(motors, devices).board
+        for driver in devices:
+            wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
+            for wiring in wirings:
+                for pin in driver.pins if wiring.driver == driver.name else ():
+                    assert simulates(board.chip, wiring.pins[pin.key], pin.ability), (pin, wiring)
 
 
 @pytest.mark.sampled("driver", keep=2)

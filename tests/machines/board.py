@@ -49,6 +49,15 @@ LINKED = ("uart.cpp", "eeprom.cpp")  # what only the firmware needs
 BUILT_IN = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
 
 
+# Of an ATmega2560, simavr leaves out changes of ports J and K, and the analog inputs of port K.
+_LEFT_OUT = {"echo": "jk", "analog": "k"}
+
+
+def simulates(board: str, pin: int, ability: str) -> bool:
+    """Return whether a pin of a board does on the simulated chip what it does on a real one."""
+    return board != "mega" or AVRS[board].bit_by_pin[pin].port not in _LEFT_OUT.get(ability, "")
+
+
 def missing() -> str:
     """Return why there is no simulated board, or nothing."""
     names = [name for name in ("avr-g++", "gcc") if not shutil.which(name)]
@@ -105,15 +114,19 @@ def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
     )
 
 
+def flags_for(header: str) -> tuple[str, ...]:
+    """Return what platformio.ini defines for the robot of a header."""
+    has_discs = "tiniscript_discs" in header
+    return ("-Dtiniscript_with_tasks", "-Dtiniscript_with_discs") if has_discs else ()
+
+
 @lru_cache(maxsize=32)
 def built(header: str, board: str, more: str = "") -> bytes:
     """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
     main = Path(__file__).with_name("board_main.cpp")
-    discs = ("-Dtiniscript_with_tasks", "-Dtiniscript_with_discs")  # as platformio.ini has them
-    with_discs = discs if "tiniscript_discs" in header else ()
     alone = "-Dtiniscript_without_breakpoints"  # nobody is told where it halts, nor what it reads
-    flags = (*flags_of(board, FLAGS), *with_discs, alone, *CPP, "-Wall", "-Wextra", "-Werror",
-             "-Wl,--gc-sections")  # fmt: skip
+    flags = (*flags_of(board, FLAGS), *flags_for(header), alone, *CPP, "-Wall", "-Wextra",
+             "-Werror", "-Wl,--gc-sections")  # fmt: skip
     made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
 
     def make(path: Path) -> None:

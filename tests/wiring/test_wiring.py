@@ -11,13 +11,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines.board import simulates
 from tests.support.command import Tsc
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.cli.commands import firmware_wiring
-from tiniscript.robots.boards import CHIPS, Chip
+from tiniscript.robots.boards import CHIPS, NEEDS, Chip
 from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Place, Robot, Wiring
@@ -48,7 +49,11 @@ def pins_of(robot: Robot) -> set[int]:
 
 
 def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) -> Wiring:
-    """Wire a driver to the first pins that fit. `is_whole`: with what is optional, too."""
+    """Wire a driver to the first pins that fit. `is_whole`: with what is optional, too.
+
+    Pins that a simulated board has come first, and of these the pins that can do the least: they
+    leave to each driver the pins that only it needs, in whatever order the drivers come.
+    """
     pins = {}
     settings = {setting.key: setting.default for setting in driver.settings}
     for key, need, is_optional, fixed, _ in driver.pins:
@@ -59,8 +64,16 @@ def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) ->
             continue
         if is_optional and not is_whole:
             continue
-        every = sorted(chip.digital_pins | chip.analog_pins, key=lambda pin: (-pin % 7, pin))
-        pins[key] = next(pin for pin in every if chip.can(pin, need) and pin not in taken)
+        free = [pin for pin in chip.digital_pins | chip.analog_pins if pin not in taken]
+        pins[key] = min(
+            (pin for pin in free if chip.can(pin, need)),
+            key=lambda pin: (
+                not simulates(chip.name, pin, need),
+                sum(chip.can(pin, ability) for ability in NEEDS),
+                -pin % 7,  # all over the board
+                pin,
+            ),
+        )
         taken.add(pins[key])
     return Wiring(driver.name, pins, settings)
 
