@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,6 +16,7 @@ from tests.machines.esp32 import flags_of
 from tests.machines.host import SOURCES, missing
 from tests.support.casefile import ROOT
 from tests.support.needs import need
+from tests.support.sampling import some_of
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
@@ -21,7 +25,7 @@ from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.robots import firmware
 from tiniscript.robots.driver import Driver, HeaderPart, SensorDriver
 from tiniscript.robots.drivers import DRIVERS
-from tiniscript.robots.profile import Robot, Wiring
+from tiniscript.robots.profile import Board, Robot, Wiring
 
 
 def written(robot: Robot) -> tuple[str, str]:
@@ -137,25 +141,61 @@ ALL = [
 ]  # fmt: skip
 
 
-@pytest.mark.sampled("robot", keep=12)
-@pytest.mark.parametrize("robot", ALL)
-def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
+def compile_all(robot: Robot, folder: Path) -> None:
     """Nothing is made of it: in a second a compiler says what no text of a test shows."""
-    own = tmp_path / "own.h"
-    own.write_text(firmware.header([robot], "a test."), encoding="utf-8")
+    header, own = firmware.header([robot], "a test."), folder / "own.h"
+    own.write_text(header, encoding="utf-8")
     told = f'-Dtiniscript_own="{own}"'
     if robot.board.chip.startswith("esp32"):
         need(missing())
-        flags = (*flags_of(robot.board.chip, 2), told)
+        flags = (*flags_of(robot.board.chip, 2), told, "-Wpedantic")
         assert "".join(complaints(path, *flags) for path in KNOWING) == ""
         return
     need(boards.missing())
     words = (*boards.flags_of(robot.board.chip, boards.FLAGS), *boards.CPP, "-Wall", "-Wextra",
-             "-Werror", "-fsyntax-only")  # fmt: skip
-    boards.run("avr-g++", *words, told, *KNOWING)
-    its = tmp_path / "sketch.cpp"
+             "-Wpedantic", "-Werror", "-fsyntax-only")  # fmt: skip
+    boards.run("avr-g++", *words, *boards.flags_for(header), told, *KNOWING)
+    its = folder / "sketch.cpp"
     its.write_text(written(robot)[1], encoding="utf-8")
     boards.run("avr-g++", *words, its)
+
+
+@pytest.mark.sampled("robot", keep=12)
+@pytest.mark.parametrize("robot", ALL)
+def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
+    compile_all(robot, tmp_path)
+
+
+DEVICE_PARTS = ("sensors", "actuators")
+OPTIONAL = [name for name, default in Board._field_defaults.items() if default is None]
+SETS_OF_PARTS = [
+    parts
+    for count in range(len(DEVICE_PARTS) + len(OPTIONAL) + 1)
+    for parts in combinations((*DEVICE_PARTS, *OPTIONAL), count)
+]
+
+
+def with_parts(chip: str, parts: Sequence[str]) -> Robot:
+    """Return a robot that has of all that a robot may lack only these parts."""
+    devices = [
+        next(driver for driver in DEVICES if driver.used_by.startswith(part))
+        for part in DEVICE_PARTS
+        if part in parts
+    ]
+    kit_robot = robot_with("l298n", devices, chip, is_whole=False)
+    boards_with_some = (with_discs(chip, DISCS[0]).board, robots.load("tinibot").board)
+    chosen: dict[str, Any] = dict.fromkeys(OPTIONAL)
+    for name in set(OPTIONAL) & set(parts):
+        chosen[name] = next(filter(None, (getattr(each, name) for each in boards_with_some)))
+    return kit_robot._replace(board=kit_robot.board._replace(**chosen))
+
+
+@pytest.mark.parametrize("chip", ["uno", "mega", "esp32dev"])
+def test_a_robot_compiles_with_none_of_a_part(
+    chip: str, tmp_path: Path, pytestconfig: pytest.Config
+) -> None:
+    for parts in ((), *some_of(pytestconfig, chip, SETS_OF_PARTS, 3)):
+        compile_all(with_parts(chip, parts), tmp_path)
 
 
 def test_motors_that_the_firmware_does_not_know_are_named() -> None:

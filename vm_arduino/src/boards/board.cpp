@@ -27,7 +27,11 @@ constexpr uint16_t kSteadyUs = 50000;  // a change of the STATE pin counts after
 bool is_connected;
 uint16_t agreed_us;  // when the STATE pin last agreed with `is_connected`
 uint8_t seen_ms;     // lowest bits of the clock at the last look
-int32_t readings[readings_of(kBoardSensors)];
+constexpr uint8_t kReadings = readings_of(kBoardSensors);
+int32_t readings[kReadings == 0 ? 1 : kReadings];  // C++ has no empty array
+
+// `sensors` is a parameter as no uint8_t can be less than a constant 0.
+constexpr bool is_of_kit(uint8_t sensor, uint8_t sensors = kBoardSensors) { return sensor < sensors; }
 
 }  // namespace
 
@@ -152,7 +156,7 @@ void robot_off() {
 
 bool robot_read(uint8_t sensor, int32_t* value) {
   const int32_t before = *value;
-  if (!kHasRemote || sensor < kBoardSensors) {
+  if (!kHasRemote || is_of_kit(sensor)) {
     return read_sensor(sensor, value) && note_reading(sensor, before, *value);
   }
   *value = remote_reading(static_cast<uint8_t>(sensor - kBoardSensors));
