@@ -1,7 +1,8 @@
-"""Who reads a wrong program, and by which rows: `python -m tools.readers 'SI|REPEAT 4'`.
+"""Who reads a wrong program: `python -m tools.readers 'SI|REPEAT 4;F(1, 50);END'`.
 
-Follows a text through `recovery.told`: each reader that finds something, each rewrite of the lines
-that it reads as a whole, and what people are told in the end, when the laws have been kept.
+Follows a text through `recovery.told`: each reader that finds something, what the lines that it
+reads as a whole become step by step, the codes that this is told with, and what people are told in
+the end, when the laws have been kept.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from tiniscript.library.compiling import analyze, check_text
 from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
-from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
+from tiniscript.recovery.meanings import UNNAMED_END, Lexeme, Names, lexemes, setup_of, texts
+from tiniscript.recovery.search import Change
 from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
 
 WHOLE_LINE_READERS = (
@@ -44,15 +46,30 @@ def trace(text: str) -> Iterator[str]:
             yield f"{_line(text_left)}: no reader, so usage.py says what it knows of the mistake"
             break
         yield f"{_line(text_left)}: {reader.__name__.strip('_')}"
-        is_whole = reader.__name__ in WHOLE_LINE_READERS and wrong_text.recovery is not None
-        candidate = (
-            wrong_text.recovery.chosen_candidate if is_whole and wrong_text.recovery else None
-        )
-        for change in candidate.changes if candidate else ():
-            for step in change.steps:
-                yield f"  {_step_text(step)}\n    by {describe_row(step, kit)}"
+        is_whole = reader.__name__ in WHOLE_LINE_READERS
+        recovery = wrong_text.recovery if is_whole else None
+        if recovery is not None and recovery.chosen_candidate:
+            lines = recovery.program.split("\n")
+            for change in recovery.chosen_candidate.changes:
+                old_text = "\n".join(lines[change.first_line : change.last_line + 1])
+                yield from _line_changes(old_text, change, kit)
+            told = ", ".join(map(_told_text, finding.diagnostics))
+            yield f"  which slips.py and meant.py tell as {told or 'nothing'}"
         text_left = apply_edits(text_left, finding.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
+
+
+def _line_changes(old_text: str, change: Change, kit: Kit) -> Iterator[str]:
+    """Give lines on what a line of the text becomes, step by step."""
+    for step in change.steps:
+        yield f"  {_tokens_text(step.old_tokens)}  ->  {_tokens_text(step.new_tokens)}"
+        yield f"    by {describe_row(step, kit)}"
+    tokens = change.steps[-1].new_tokens if change.steps else lexemes(old_text)
+    tokens_with_ends = lexemes(change.text)
+    before, after = (each[len(setup_of(each)) :] for each in (tokens, tokens_with_ends))
+    if texts(before) != texts(after):
+        yield f"  {_tokens_text(before)}  ->  {_tokens_text(after)}"
+        yield "    by blocks.py, which gives each block its end"
 
 
 def describe_row(step: Step, kit: Kit) -> str:
@@ -83,9 +100,17 @@ def _line(text: str) -> str:
     return text.strip().replace("\n", " ⏎ ")
 
 
-def _step_text(step: Step) -> str:
-    old_text, new_text = " ".join(texts(step.old_tokens)), " ".join(texts(step.new_tokens))
-    return f"{step.code.number}  {old_text}  ->  {new_text}"
+def _tokens_text(tokens: Iterable[Lexeme]) -> str:
+    """Return tokens as a person may know them; `UNNAMED_END` is no word of anybody."""
+    return " ".join(
+        "(an end)" if token.text == UNNAMED_END and token.source is None else token.text
+        for token in tokens
+    )
+
+
+def _told_text(diagnostic: Diagnostic) -> str:
+    found = diagnostic.values.get("found", "")
+    return f"{diagnostic.code.number} {found}".strip()
 
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tiniscript.recovery.meanings import UNNAMED_END
 from tiniscript.recovery.told import READERS
 from tools import readers
 
@@ -14,10 +15,17 @@ def test_the_readers_that_ask_what_was_meant_are_there() -> None:
 
 def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
     readers.main(["SI|REPEAT 4;F(1, 50);END"])
-    first, *rest = capsys.readouterr().out.splitlines()
+    shown = capsys.readouterr().out
+    assert UNNAMED_END not in shown
+    first, *rest = shown.splitlines()
     assert first == "SI|REPEAT 4;F(1, 50);END: sure_findings"
     assert any("->  LOOP ( 4 ) ; F ( 1 , 50 )" in line for line in rest)
     assert "    by the row of repite 4: ⏎ F(1, 60) => LOOP(4) ⏎ F(1, 60) ⏎ END_LOOP" in rest
+    assert rest[-4:-1] == [
+        "    by blocks.py, which gives each block its end",
+        "  which slips.py and meant.py tell as TS102 REPEAT, TS023 END",
+        "TS102 {'found': 'REPEAT', 'right': 'LOOP', 'usage': 'LOOP(n)', 'fix': 'LOOP(4)'} made",
+    ]
     assert rest[-1] == "TS023 {'found': 'END', 'right': 'END_LOOP'} made"
 
 
@@ -29,6 +37,10 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
         ("W(2×3)", ["W(2×3): sure_findings", "    by the row of W(2×3) => W(2*3)"]),
         ("avanza 2 segundos", ["    by no row (slots.py, or a sign: lines.py)"]),
         ("F(2, 80", ["F(2, 80: sure_findings"]),
+        (
+            "LOOP 3\nW(1)\nFIN",
+            ["  FIN  ->  END_LOOP", "  which slips.py and meant.py tell as TS015"],
+        ),
         ("W(1); XYZZY", ["W(1); XYZZY: no reader, so usage.py says what it knows of the mistake"]),
     ],
 )
