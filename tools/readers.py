@@ -20,7 +20,7 @@ from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import UNNAMED_END, Lexeme, Names, lexemes, setup_of, texts
-from tiniscript.recovery.search import Change
+from tiniscript.recovery.search import LineChange
 from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
 
 WHOLE_LINE_READERS = (
@@ -59,7 +59,7 @@ def trace(text: str) -> Iterator[str]:
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
-def _line_changes(old_text: str, change: Change, kit: Kit) -> Iterator[str]:
+def _line_changes(old_text: str, change: LineChange, kit: Kit) -> Iterator[str]:
     """Give lines on what a line of the text becomes, step by step."""
     for step in change.steps:
         yield f"  {_tokens_text(step.old_tokens)}  ->  {_tokens_text(step.new_tokens)}"

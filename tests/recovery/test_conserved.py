@@ -63,7 +63,7 @@ def is_kept(written: str, value: float, unit: str, made: str) -> bool:
     )
 
 
-ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.sign_rows(), *rewrites.token_rows()]
+ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewrites.token_rows()]
 EXAMPLES = [each.example[0] for each in ROWS]
 WRITTEN = [
     *("{}({}, 60)".replace("{}", word, 1) for word in "FBLR"),

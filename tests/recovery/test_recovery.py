@@ -32,11 +32,11 @@ from tiniscript.syntax.outline import Failure
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 KIT = robots.load(robots.DEFAULT).kit
 _F, _MOVE = "F(time, power)", "F(2, 80)"
-ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.sign_rows(), *rewrites.token_rows()]
+ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewrites.token_rows()]
 
 
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
-def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
+def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrites.SignRow) -> None:
     wrong, right = row.example
     made = []
     for kit in KITS:

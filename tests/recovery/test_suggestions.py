@@ -15,13 +15,13 @@ from tiniscript.recovery import rows as recovery_rows
 from tiniscript.recovery import usage
 from tiniscript.recovery.rows import SIGNS, TOKENS
 from tiniscript.recovery.suggestion_rows import SUGGESTIONS
-from tiniscript.recovery.suggestions import Gaps, Row, find_suggestions, rows
+from tiniscript.recovery.suggestions import Gaps, SuggestionRow, find_suggestions, rows
 
 KIT = robots.load(robots.DEFAULT).kit
 
 
 @each_row("row", [pytest.param(row, id=row.example[0]) for row in rows()])
-def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
+def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
     wrong, told = row.example
     name, _, value = told.partition("=")
     beside = [each.diagnostic for each in find_suggestions(wrong, KIT)]
@@ -38,10 +38,10 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
 
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
     """Each row of what was found is the one that tells its example, and none is in vain."""
-    telling: list[Row] = []
+    telling: list[SuggestionRow] = []
     told = usage.Usage.diagnostic_of
 
-    def noted(place: usage.Usage, row: Row, gaps: Gaps) -> Diagnostic:
+    def noted(place: usage.Usage, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
         telling.append(row)
         return told(place, row, gaps)
 

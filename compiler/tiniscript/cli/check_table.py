@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.cli import compiling, inputs, outputs
+from tiniscript.cli import compilations, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import ProgramFile, programs
 from tiniscript.cli.repairing import print_difference, repair
@@ -74,8 +74,8 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
         if problem:
             return Row(file.name, [], 0, problem)
     else:
-        compilation = compiling.compile_input(program_input, robot, is_strict=False)
-    compilation = compiling.for_level(compilation, robot, options.text_level)
+        compilation = compilations.compile_input(program_input, robot, is_strict=False)
+    compilation = compilations.for_level(compilation, robot, options.text_level)
     messages = [
         message(diagnostic, compilation.source, language) for diagnostic in compilation.diagnostics
     ]
@@ -92,7 +92,7 @@ def _repair(
         print_difference(program_input.data, repaired.data, program_input.name)
     if options.diff:
         return (
-            compiling.compile_input(program_input, robot, is_strict=False),
+            compilations.compile_input(program_input, robot, is_strict=False),
             repaired.repair_count,
             "",
         )

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
 from tiniscript.bytecode.verify import Refused, check
-from tiniscript.cli import compiling, inputs, outputs
+from tiniscript.cli import compilations, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compilation, fit_to_robot, image_of
@@ -50,7 +50,7 @@ def ready_program(
                 1, need_key, robot=robot.name, file=inputs.printable_name(program_input.name)
             )
         return ReadyProgram(image, len(program_input.data), source_map.recall(image.checksum))
-    compilation = compiling.compile_input(program_input, robot, is_strict)
+    compilation = compilations.compile_input(program_input, robot, is_strict)
     if may_choose_robot and not compilation.is_right:
         if has_words_of_other_robots(compilation.diagnostics):
             raise OtherRobot(compilation)

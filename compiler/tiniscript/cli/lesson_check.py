@@ -23,7 +23,7 @@ from rich.cells import cell_len, set_cell_size
 
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDINGS, Unreadable, decode, printable
-from tiniscript.cli import compiling, inputs, outputs
+from tiniscript.cli import compilations, inputs, outputs
 from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import ProgramFile, in_folder, read
@@ -134,7 +134,7 @@ class _Marker:
                 2, "needs_text", file=inputs.printable_name(program_input.name), verb="lesson check"
             )
         robot = robot_of(program_input.data, self.robot)
-        compilation = compiling.compile_input(
+        compilation = compilations.compile_input(
             program_input, robot, is_strict=True, names_robots=False
         )
         return fit_to_robot(compilation, robot)

@@ -11,7 +11,7 @@ from difflib import unified_diff
 from typing import NamedTuple
 
 from tiniscript.base.source import printable
-from tiniscript.cli import compiling
+from tiniscript.cli import compilations
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.streams import has_colors
 from tiniscript.diagnostics.fixing import repair_program
@@ -38,7 +38,7 @@ def repair(program_input: Input, robot: Robot) -> RepairedProgram:
         return RepairedProgram(program_input.data, 0, text)
 
     def compile_data(data: bytes) -> Compilation:
-        return compiling.compile_input(program_input._replace(data=data), robot, is_strict=False)
+        return compilations.compile_input(program_input._replace(data=data), robot, is_strict=False)
 
     repaired = repair_program(text, lambda new_text: compile_data(new_text.encode()).diagnostics)
     new_data = repaired.text.encode()

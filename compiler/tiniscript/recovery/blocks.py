@@ -35,7 +35,7 @@ class Line(NamedTuple):
         return any(step.code is codes.ASKED_AFTER for step in self.reading.steps)
 
 
-class Edit(NamedTuple):
+class TokenEdit(NamedTuple):
     """From token `start` on, `old_count` tokens become `new_tokens`."""
 
     start: int
@@ -46,7 +46,7 @@ class Edit(NamedTuple):
 _UNREADABLE_ITEMS = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
 
 
-class _Block:
+class _OpenBlock:
     def __init__(self, item: Item, k: int, line: Line) -> None:
         is_header = item.kind == "open"
         self.word = item.word if is_header else ""  # nothing for braces that belong to no header
@@ -98,8 +98,8 @@ class Matching:
             for item in (_UNREADABLE_ITEMS if line.reading.items is None else line.reading.items)
         ]
         self.items.append((len(lines), Item("", "", 0, 0)))
-        self.open_blocks: list[_Block] = []
-        self.edits_by_line: dict[int, list[Edit]] = {}
+        self.open_blocks: list[_OpenBlock] = []
+        self.edits_by_line: dict[int, list[TokenEdit]] = {}
         self.ends_on_line: dict[int, list[str]] = {}
         self.ends_below: dict[int, list[str]] = {}
         self.is_sure = True
@@ -135,9 +135,9 @@ class Matching:
         self.edit_tokens(self.item.start, old_count, [make_token(text) for text in new_texts])
 
     def edit_tokens(self, start: int, old_count: int, new_tokens: list[Lexeme]) -> None:
-        self.edits_by_line.setdefault(self.k, []).append(Edit(start, old_count, new_tokens))
+        self.edits_by_line.setdefault(self.k, []).append(TokenEdit(start, old_count, new_tokens))
 
-    def close_below(self, k: int, block: _Block) -> None:
+    def close_below(self, k: int, block: _OpenBlock) -> None:
         self.ends_below.setdefault(k, []).append(" " * block.indent + block.end)
 
     # -- the beginning of a line: its indentation may close what is open -----------------------
@@ -168,7 +168,7 @@ class Matching:
                 if self.is_when():
                     self.edit_item(1, "WHEN")
                     self.item = self.item._replace(word="WHEN")
-                self.open_blocks.append(_Block(self.item, self.k, self.line))
+                self.open_blocks.append(_OpenBlock(self.item, self.k, self.line))
         elif kind == "{":
             return self.read_brace()
         elif kind == "}":
@@ -224,7 +224,7 @@ class Matching:
             is_first = self.item.start == 0 or self.line.reading.tokens[0].text == "START"
             self.is_sure = self.is_sure and is_first
             self.edit_item(1)
-            self.open_blocks.append(_Block(self.item, self.k, self.line))
+            self.open_blocks.append(_OpenBlock(self.item, self.k, self.line))
             return True
         if self.open_blocks[-1].has_brace:
             return False
@@ -358,7 +358,7 @@ class Matching:
                 self.is_sure = self.is_sure and next_item.word == block.name
             self.ends_on_line.setdefault(self.k, []).append(block.end)
 
-    def has_break_in(self, block: _Block) -> bool:
+    def has_break_in(self, block: _OpenBlock) -> bool:
         """Whether a block may end before this: at a `;` of the text, or at another block."""
         current_start = self.item.start
         items = [

@@ -34,7 +34,13 @@ from tiniscript.recovery.meanings import (
     texts,
 )
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import BLOCK_WORDS, Change, Slip, common_lengths, instructions
+from tiniscript.recovery.slips import (
+    BLOCK_WORDS,
+    InstructionChange,
+    Slip,
+    common_lengths,
+    instructions,
+)
 from tiniscript.recovery.writing import (
     format_line,
     in_one_line,
@@ -164,7 +170,7 @@ def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
 
 
 @dataclass
-class _Block:
+class _ExplainedBlock:
     """A block that is open: what is told of its beginning, which is in change `first_change`.
 
     `first_words` is the first word of each line of its last arm.
@@ -184,7 +190,7 @@ class _Explainer:
         self.lines = program.split("\n")
         self.line_starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.explanations: list[Explanation] = []
-        self.open_blocks: list[_Block] = []
+        self.open_blocks: list[_ExplainedBlock] = []
 
     def finish(self, explanation: Explanation) -> None:
         if explanation.code is not codes.NEVER_ENDS:
@@ -240,7 +246,7 @@ class _Explainer:
         )
         return in_one_line("\n".join((*earlier_lines, *last_text.split("\n")[: last_line[1]])))
 
-    def explain_change(self, k: int, change: search.Change) -> None:
+    def explain_change(self, k: int, change: search.LineChange) -> None:
         old_text = "\n".join(self.lines[change.first_line : change.last_line + 1]).rstrip("\r")
         own_text, *ends = change.text.split("\n")
         enclosing = self.open_blocks[-1] if self.open_blocks else None
@@ -263,7 +269,9 @@ class _Explainer:
                 edit = Edit(
                     span, own_text
                 )  # the ends that are missing behind it come behind all of it
-            instruction = Change(span, edit, self.changes[k].steps, old_tokens, new_tokens)
+            instruction = InstructionChange(
+                span, edit, self.changes[k].steps, old_tokens, new_tokens
+            )
             code, step = slips.code_of(instruction)
             is_brace = code is codes.BRACES and old_tokens[0].text in BRACES
             is_arm = bool(new_tokens) and new_tokens[0].text in _ARMS
@@ -299,7 +307,7 @@ class _Explainer:
         own_text: str,
         old_tokens: Sequence[Lexeme],
         new_tokens: Sequence[Lexeme],
-    ) -> list[Change]:
+    ) -> list[InstructionChange]:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps_by_instruction: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
@@ -340,7 +348,7 @@ class _Explainer:
                 if edit.span.start == span.end:
                     edit = Edit(span, new_text)  # an end that is missing comes behind all of it
                 changes.append(
-                    Change(
+                    InstructionChange(
                         span, edit, steps_by_instruction.get(n, []), instruction, new_instruction
                     )
                 )
@@ -352,7 +360,7 @@ class _Explainer:
             changes if len(changes) > 1 or (len(old_instructions) > 1 and is_separate_line) else []
         )
 
-    def track_blocks(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
+    def track_blocks(self, k: int, tokens: Sequence[Lexeme]) -> _ExplainedBlock | None:
         """Open and close blocks; return the first one that began in an earlier change."""
         closed_block = None
         if self.open_blocks and tokens:
@@ -360,7 +368,7 @@ class _Explainer:
             block_instructions[:] = [] if head in _ARMS else [*block_instructions, head]
         for token in tokens:
             if token.text in BLOCK_ENDS:
-                self.open_blocks.append(_Block(token.text, k))
+                self.open_blocks.append(_ExplainedBlock(token.text, k))
             elif token.text in WORD_OF_END and self.open_blocks:
                 ending_blocks = (
                     item for item in self.open_blocks[::-1] if item.word == WORD_OF_END[token.text]
@@ -374,7 +382,7 @@ class _Explainer:
 
     def add_to_block_start(
         self,
-        block: _Block | None,
+        block: _ExplainedBlock | None,
         edit: Edit,
         last_line: tuple[int, int],
         new_tokens: Sequence[Lexeme],
@@ -395,7 +403,9 @@ class _Explainer:
         explanation.end_word = explanation.end_word or ends
         return explanation
 
-    def add_explanation(self, k: int, change: Change, code: Code, step: Step | None) -> Explanation:
+    def add_explanation(
+        self, k: int, change: InstructionChange, code: Code, step: Step | None
+    ) -> Explanation:
         is_end = code is codes.NEVER_ENDS
         if (
             spoken_signs_found := spoken_signs(self.program[slice(*change.span)])
@@ -418,7 +428,9 @@ class _Explainer:
         )
         return self.explanations[-1]
 
-    def describe_slip(self, k: int, change: Change, code: Code, step: Step | None) -> SlipDetails:
+    def describe_slip(
+        self, k: int, change: InstructionChange, code: Code, step: Step | None
+    ) -> SlipDetails:
         slip = slips.slip_of(change, code, step)
         if code is codes.BRACES and change.old_tokens and not change.new_tokens:
             return SlipDetails(slip, needless=slips.found_in(slip))
@@ -447,7 +459,7 @@ class _Explainer:
                 return SlipDetails(slip, right=", ".join(dict.fromkeys(names)))
         return SlipDetails(slip)
 
-    def describe_unended(self, k: int, change: Change) -> UnendedBlock:
+    def describe_unended(self, k: int, change: InstructionChange) -> UnendedBlock:
         """Return what is said of a block that lacks its end on the line where it begins."""
         new_texts, end_index = (
             texts(change.new_tokens),
@@ -479,7 +491,7 @@ class _Explainer:
         return unended
 
     def add_missing_end(
-        self, last_line: tuple[int, int], change: search.Change, end: str, text: str
+        self, last_line: tuple[int, int], change: search.LineChange, end: str, text: str
     ) -> None:
         """Tell of an end that is missing behind a line."""
         block = self.open_blocks.pop() if self.open_blocks else None
@@ -515,7 +527,7 @@ class _Explainer:
             )
         )
 
-    def earlier_end(self, block: _Block, last: int) -> search.Change | None:
+    def earlier_end(self, block: _ExplainedBlock, last: int) -> search.LineChange | None:
         """Return the line before an empty line in a block, or its first header.
 
         It may end there as well.
@@ -529,7 +541,7 @@ class _Explainer:
             change_above = change if words else change_above
         return None
 
-    def may_end_earlier(self, block: _Block, last_change: int) -> bool:
+    def may_end_earlier(self, block: _ExplainedBlock, last_change: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
 
         A sign or a stop behind others may as well come when a LOOP or a DEF is over.
@@ -548,11 +560,11 @@ class _Explainer:
         return is_sign_of_end or block.word not in ("LOOP", "DEF")
 
 
-def _first_line(change: search.Change) -> str:
+def _first_line(change: search.LineChange) -> str:
     return format_line(tokens_of(change.text.split("\n")[0]))
 
 
-def _words_of_numbers(change: Change) -> list[str]:
+def _words_of_numbers(change: InstructionChange) -> list[str]:
     """Return the words that a change writes in digits, nothing where it changes more."""
     if len(change.old_tokens) != len(change.new_tokens):
         return []

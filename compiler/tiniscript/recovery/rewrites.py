@@ -50,7 +50,7 @@ _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
 
-class Row(NamedTuple):
+class TokenRow(NamedTuple):
     """A row of the table of tokens. `is_first`: made before anything else is tried.
 
     `may_lose_numbers`: it is only shown, or says itself what becomes of them.
@@ -88,13 +88,13 @@ def cells(table: str) -> Iterator[list[str]]:
 
 
 @cache
-def token_rows() -> tuple[Row, ...]:
+def token_rows() -> tuple[TokenRow, ...]:
     compiled_rows = []
     for pattern, replacement, cost, code, modes, example in cells(rows.TOKENS):
         parts = tuple(_expand_parts(replacement, rows.PARTS).split())
         is_offered = "offered" in modes
         may_lose = is_offered or bool(_NUMBER_LABEL.search(f"{pattern} {replacement}"))
-        row = Row(compile_pattern(pattern, rows.PARTS), parts, float(cost), CODES[code],
+        row = TokenRow(compile_pattern(pattern, rows.PARTS), parts, float(cost), CODES[code],
                   "first" in modes, is_offered, may_lose, _example_texts(example))  # fmt: skip
         compiled_rows.append(row)
     return tuple(compiled_rows)
@@ -107,7 +107,7 @@ def _index_of(is_first: bool) -> RowIndex:
     )
 
 
-def rows_to_try(line: Encoded, is_first: bool) -> Iterator[Row]:
+def rows_to_try(line: Encoded, is_first: bool) -> Iterator[TokenRow]:
     """Give the rows that may match a line, in the order of the table."""
     return (token_rows()[k] for k in line.candidate_rows(_index_of(is_first)))
 
@@ -266,7 +266,7 @@ class Encoded:
         start, end = match.span(name)
         return (self.token_at_offset[start], self.token_at_offset[end]) if start >= 0 else (0, 0)
 
-    def apply_row(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
+    def apply_row(self, row: TokenRow, match: re.Match[str]) -> list[Lexeme] | None:
         """Return the line after a row, or None where it does not hold here."""
         new_tokens: list[Lexeme] = []
         for part in row.replacement:

@@ -17,7 +17,7 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
-from tiniscript.recovery.blocks import Edit, Line, Matching
+from tiniscript.recovery.blocks import Line, Matching, TokenEdit
 from tiniscript.recovery.lines import BRACES, SURE_MARGIN, Reading, Step, is_right
 from tiniscript.recovery.meanings import (
     NEAR,
@@ -59,7 +59,7 @@ _BLOCK_START_KINDS = ("count", "each", "every", "unless", "when", "end", "repeat
 Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
 
-class Change(NamedTuple):
+class LineChange(NamedTuple):
     """What lines `first_line` to `last_line`, from 0, become by their rewrites; most stay as is."""
 
     first_line: int
@@ -79,7 +79,7 @@ class Candidate(NamedTuple):
     text: str
     is_applied: bool
     is_whole: bool
-    changes: Sequence[Change]
+    changes: Sequence[LineChange]
     has_sure_blocks: bool = True
     move: MovedProgram | None = None
 
@@ -394,7 +394,7 @@ class Recovery:
         matching = Matching(lines_read)
         return matching if matching.run() else None
 
-    def make_changes(self, readings: Sequence[Reading], blocks: Matching) -> list[Change]:
+    def make_changes(self, readings: Sequence[Reading], blocks: Matching) -> list[LineChange]:
         changes = []
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
@@ -403,7 +403,7 @@ class Recovery:
                 text = _rewritten_line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.ends_below.get(k, [])))
             steps, is_sure = (*line.steps, *reading.steps), line.is_sure and reading.is_sure
-            changes.append(Change(line.first_line, line.last_line, text, steps, is_sure))
+            changes.append(LineChange(line.first_line, line.last_line, text, steps, is_sure))
         return changes
 
 
@@ -440,7 +440,7 @@ def _count_kept(reading: Reading) -> int:
 
 
 def _rewritten_line(
-    line: _TextLine, reading: Reading, edits: Sequence[Edit], tails: Sequence[str]
+    line: _TextLine, reading: Reading, edits: Sequence[TokenEdit], tails: Sequence[str]
 ) -> str:
     tokens = list(reading.tokens)
     for edit in sorted(edits, key=lambda edit: -edit.start):

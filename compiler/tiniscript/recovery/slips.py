@@ -67,7 +67,7 @@ _CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
 NAMES_OF_CODE = {code: names for names, its in _CODES_BY_NAMES.items() for code in its}
 
 
-class Change(NamedTuple):
+class InstructionChange(NamedTuple):
     """An instruction, or a line: `span` becomes `new_tokens` by these rewrites."""
 
     span: Span
@@ -104,7 +104,7 @@ def message_values(slip: Slip, code: Code) -> dict[str, str]:
     return {name: _VALUE_GAPS[name](slip) for name in NAMES_OF_CODE.get(code, ())}
 
 
-def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
+def slip_of(change: InstructionChange, code: Code, step: Step | None) -> Slip:
     """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
     has_own_step = step is not None and code is not codes.OTHER_NOTE
     old_tokens, new_tokens = (
@@ -155,7 +155,7 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
 # -- which code ---------------------------------------------------------------------------------
 
 
-def code_of(change: Change) -> tuple[Code, Step | None]:
+def code_of(change: InstructionChange) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
     _, _, steps, old_tokens, new_tokens = change
     lost_texts = Counter(texts(old_tokens)) - Counter(texts(new_tokens))
@@ -187,7 +187,7 @@ def _translated_word(step: Step) -> str:
     return new_word if new_word not in words and is_said else ""
 
 
-def _code_of_steps(change: Change) -> tuple[Code, Step]:
+def _code_of_steps(change: InstructionChange) -> tuple[Code, Step]:
     """Return the code of the rewrite that says most: rather another word than a sign."""
     _, _, steps, old_tokens, new_tokens = change
     old_texts, new_texts = {*texts(old_tokens)}, {*texts(new_tokens)}

@@ -72,7 +72,7 @@ _SHORTEST_WORD = 3  # letters: X is rather a variable
 _NEEDLESS_SIGNS = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
-class Row(NamedTuple):
+class SuggestionRow(NamedTuple):
     """A row: its code is None where it is told with that which was found, and `conditions` says
     where."""
 
@@ -113,7 +113,7 @@ class Suggestion(NamedTuple):
 
 
 @cache
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[SuggestionRow, ...]:
     compiled_rows = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
         named_values = dict(
@@ -123,7 +123,7 @@ def rows() -> tuple[Row, ...]:
         compiled_pattern = rewrites.compile_pattern(pattern, suggestion_rows.PARTS)
         code_number, *conditions = code.split()
         compiled_rows.append(
-            Row(
+            SuggestionRow(
                 compiled_pattern,
                 CODES.get(code_number),
                 conditions,
@@ -239,7 +239,7 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
         instructions_before = [*instructions_before, None if is_block else match[1].strip()]
 
 
-def matching_rows(subject: Subject) -> Iterator[tuple[Row, Gaps]]:
+def matching_rows(subject: Subject) -> Iterator[tuple[SuggestionRow, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
     encoded_line = rewrites.Encoded(
         [make_token(";"), *subject.row_tokens], subject.names, subject.labels()
@@ -289,7 +289,7 @@ class _TrailingWords(Trailing):
         return _condition_gaps(gaps)
 
 
-def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
+def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
     trailing, group_names, values = (
         gaps.trailing,
         row.pattern.label_pattern.groupindex,
@@ -362,7 +362,7 @@ class Gaps(dict[str, str]):
         assert isinstance(self.subject, Trailing)
         return self.subject
 
-    def fill(self, row: Row) -> None:
+    def fill(self, row: SuggestionRow) -> None:
         self.filled_values = self.subject.values()
         for name, template in row.values.items():
             if name == "*":

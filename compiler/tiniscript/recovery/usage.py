@@ -59,7 +59,7 @@ from tiniscript.recovery.meanings import (
     plain,
     words_of,
 )
-from tiniscript.recovery.suggestions import Gaps, Row, UnfillableGap, matching_rows
+from tiniscript.recovery.suggestions import Gaps, SuggestionRow, UnfillableGap, matching_rows
 from tiniscript.recovery.trailing_tokens import join_labels, token_width, words_set
 from tiniscript.recovery.worded import condition_values
 from tiniscript.recovery.writing import (
@@ -353,7 +353,7 @@ class Usage:
 
     # -- where it is told -------------------------------------------------------------------------
 
-    def diagnostic_of(self, row: Row, gaps: Gaps) -> Diagnostic:
+    def diagnostic_of(self, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled_values, gaps.filled_values.get("fix", "")
         span = next(

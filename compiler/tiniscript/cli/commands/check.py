@@ -6,7 +6,7 @@ import json
 import sys
 from argparse import Namespace
 
-from tiniscript.cli import compiling, inputs, outputs, program_files
+from tiniscript.cli import compilations, inputs, outputs, program_files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.texts import say, say_aside, text
@@ -32,8 +32,8 @@ def run(options: Namespace, language: str) -> int:
     if options.fix or options.diff:
         compilation, is_right = _repair(options, program_input, robot, language)
     else:
-        compilation = compiling.compile_input(program_input, robot, is_strict=False)
-        compilation = compiling.for_level(compilation, robot, options.text_level)
+        compilation = compilations.compile_input(program_input, robot, is_strict=False)
+        compilation = compilations.for_level(compilation, robot, options.text_level)
         is_right = compilation.is_right
     if options.json:
         messages = [
@@ -81,7 +81,7 @@ def _repair(
     if prints_text and not repaired.compilation.is_right:
         key = "not_repaired" if repaired.repair_count else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compilation = compiling.for_level(repaired.compilation, robot, options.text_level)
+    compilation = compilations.for_level(repaired.compilation, robot, options.text_level)
     return compilation, compilation.is_right
 
 

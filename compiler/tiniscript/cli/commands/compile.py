@@ -9,7 +9,7 @@ from pathlib import Path
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.limits import STACK_VALUES
-from tiniscript.cli import compiling, inputs, outputs, paths
+from tiniscript.cli import compilations, inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
     robot = inputs.robot_for(program_input, options, language)
-    compilation = compiling.compile_input(program_input, robot, is_strict=True)
+    compilation = compilations.compile_input(program_input, robot, is_strict=True)
     outputs.print_diagnostics(compilation, language)
     if not compilation.is_right:
         return 1
@@ -58,8 +58,10 @@ def _compile_line(options: Namespace, program_input: inputs.Input, language: str
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot_for(program_input, options, language)
-    compilation = fit_to_robot(compiling.compile_input(program_input, robot, is_strict=True), robot)
-    compilation = compiling.for_level(compilation, robot, options.text_level)
+    compilation = fit_to_robot(
+        compilations.compile_input(program_input, robot, is_strict=True), robot
+    )
+    compilation = compilations.for_level(compilation, robot, options.text_level)
     outputs.print_diagnostics(compilation, language)
     if not compilation.is_right:
         return 1

@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from tiniscript.base.source import LARGEST_SOURCE_BYTES
-from tiniscript.cli import compiling, inputs, outputs
+from tiniscript.cli import compilations, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
 from tiniscript.syntax.formatter import format_source
@@ -18,7 +18,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(
             2, "needs_text", file=inputs.printable_name(program_input.name), verb="fmt"
         )
-    compilation = compiling.parse_input(program_input, inputs.robot(options, language).kit)
+    compilation = compilations.parse_input(program_input, inputs.robot(options, language).kit)
     if not compilation.is_right:
         outputs.print_diagnostics(compilation, language)
         return 1

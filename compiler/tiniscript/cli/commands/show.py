@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from tiniscript.cli import compiling, images, inputs, outputs
+from tiniscript.cli import compilations, images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say
@@ -39,7 +39,7 @@ def _sketch(options: Namespace, program_input: inputs.Input, robot: Robot, langu
     if robot.board.chip not in BOARD_TITLES:
         boards_text = ", ".join(BOARD_TITLES)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=boards_text)
-    compilation = compiling.compile_input(program_input, robot, is_strict=False)
+    compilation = compilations.compile_input(program_input, robot, is_strict=False)
     outputs.print_diagnostics(compilation, language)
     if not compilation.is_right:
         return 1
