@@ -164,7 +164,7 @@ def test_each_header_is_read_once(path: Path) -> None:
 
 
 def names_in(mangled: str) -> list[str]:
-    """Return the names in a name of the linker: `8Receiver4keepEhj` has `Receiver` and `keep`."""
+    """Return the names in a name of the linker: `8Receiver5watchEh` has `Receiver` and `watch`."""
     found, at = [], 0
     while digits := re.match(r"\d+", mangled[at:]):
         at += len(digits[0]) + int(digits[0])

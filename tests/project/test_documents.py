@@ -215,7 +215,7 @@ def test_paths_in_sources_exist() -> None:
     assert not wrong, "\n".join(wrong)
 
 
-# `stop_run` and `end_run` (`firmware/run.cpp`), `Receiver::keep` in `link/receiver.cpp`
+# `stop_run` and `end_run` (`firmware/run.cpp`), `Link::turn` in `link/link.cpp`
 SPAN = r"`[^`]+`"
 IN_FILE = re.compile(
     rf"({SPAN}(?:(?:, | and |, and ){SPAN})*),?\s+(?:in|of|\()\s*`([\w/]+\.(?:cpp|h|py))`"

@@ -85,11 +85,12 @@ RECEIVERS = Twins(
         "disconnect": "(a transport makes a new receiver)",
         "is_active": "put",
         # the halves of `put`, between which an interrupt turns motors off
-        **dict.fromkeys(("stops", "keep", "keep_last_zero"), "put"),
-        **dict.fromkeys(("is_quiet", "last_ms", "take_whole"), "put"),
+        **dict.fromkeys(("count_zeros", "keep_and_find_stop", "keep_last_zero"), "put"),
+        **dict.fromkeys(
+            ("is_quiet", "keep_and_find_silence", "last_ms", "take_whole"), "put"),
         "zeros_at": "(of an AVR)",
         "last_ms_at": "(of an AVR)",
-        "state": "(an attribute)",
+        "mode": "(an attribute)",
         "line": "(an attribute)",
         # typed stops, which are `link/typed_stop.py` in Python
         **dict.fromkeys(

@@ -25,7 +25,7 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 LINE_ENDS = b"\r\n"
 
 
-class State(Enum):
+class Mode(Enum):
     TEXT = auto()  # in text: between lines or in one
     LOST = auto()  # in a line of text that found no place
     BEGIN = auto()  # after a 0x00: nothing has come yet
@@ -47,7 +47,7 @@ class Receiver:
         self.packet: Packet | None = None
         self.damaged = 0  # packets that were cut, too long, or ended by silence
         self.dropped = 0  # packets that arrived while one was waiting
-        self._state = State.TEXT
+        self._mode = Mode.TEXT
         self._zeros = StopSequence()
         self._keys = KeySequence()
         self._data = bytearray()  # of the open packet, as many as fit
@@ -75,7 +75,7 @@ class Receiver:
         self._last_ms = now_ms
         if byte == 0:
             self._put_zero()
-        elif self._state in (State.TEXT, State.LOST):
+        elif self._mode in (Mode.TEXT, Mode.LOST):
             self._put_text(byte)
         else:
             self._put_packet(byte)
@@ -84,18 +84,18 @@ class Receiver:
     def _end_silence(self) -> None:
         self._zeros.begin()
         self._keys.begin()
-        if self._state not in (State.TEXT, State.LOST):
+        if self._mode not in (Mode.TEXT, Mode.LOST):
             self._cut_packet()
-            self._state, self._is_cut = State.TEXT, False
+            self._mode, self._is_cut = Mode.TEXT, False
 
     def _put_zero(self) -> None:
-        if self._state is State.FRAME:
+        if self._mode is Mode.FRAME:
             self._end_packet(is_text=False)
             self._is_cut = False
         elif self._length:  # a line, which no 0x00 ends
             self._cut_packet()
             self._is_cut = True
-        self._state = State.BEGIN
+        self._mode = Mode.BEGIN
 
     def _put_text(self, byte: int) -> None:
         if byte in LINE_ENDS:
@@ -103,18 +103,18 @@ class Receiver:
         elif not self._keys.put(byte) and (self._length or not _is_skipped(byte)):
             if not self._length:
                 self._begin_packet()
-                self._state = State.LOST if self._is_dropping else State.TEXT
+                self._mode = Mode.LOST if self._is_dropping else Mode.TEXT
             self._add(byte)
 
     def _put_packet(self, byte: int) -> None:
-        if self._state is State.LINE and byte in LINE_ENDS:
+        if self._mode is Mode.LINE and byte in LINE_ENDS:
             self._end_line()
             return
-        if self._state is State.BEGIN:
+        if self._mode is Mode.BEGIN:
             self._begin_packet()
-            self._state = State.LINE
+            self._mode = Mode.LINE
         if not _is_printable(byte):
-            self._state = State.FRAME
+            self._mode = Mode.FRAME
         self._add(byte)
         if self._length > self._most_bytes() and not self._is_dropping:
             self._is_dropping = True
@@ -133,7 +133,7 @@ class Receiver:
     def _end_line(self) -> None:
         if self._length and not self._is_cut:
             self._end_packet(is_text=True)
-        self._state, self._length, self._is_cut = State.TEXT, 0, False
+        self._mode, self._length, self._is_cut = Mode.TEXT, 0, False
         self._keys.begin()
 
     def _end_packet(self, is_text: bool) -> None:

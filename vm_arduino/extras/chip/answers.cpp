@@ -52,7 +52,7 @@ void answer_verdicts(Request request, size_t end) {
     if (code.data == nullptr) return;
     const Verdict verdict = verify(code.data, code.length, sensors, actuators, needs);
     put_bytes(static_cast<uint8_t>(verdict.rule), 1);
-    put_bytes(verdict.offset, 2);
+    put_bytes(verdict.offset_or_needs, 2);
   }
 }
 

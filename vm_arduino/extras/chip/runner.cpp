@@ -107,7 +107,7 @@ tini_noinline bool accepts(const uint8_t* data, size_t length, Image* image) {
         verify(image->code, image->code_length, robot.sensor_count, robot.actuator_count, &devices,
                image->needs);
     if (verdict.rule != Rule::kNone) {
-      end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
+      end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset());
       return false;
     }
     refusal = check_devices(*image, devices);

@@ -234,8 +234,8 @@ uint32_t count_typed_stops() {
   uint32_t stops = 0;
   uint8_t text;
   for (const char byte : stream) {
-    const bool are_zeros = receiver.stops(static_cast<uint8_t>(byte), 0);
-    if (receiver.keep(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
+    const bool are_zeros = receiver.count_zeros(static_cast<uint8_t>(byte), 0);
+    if (receiver.keep_and_find_stop(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
     while (receiver.has_text() && receiver.take_text(&text)) {
     }
     if (!receiver.has_frame()) continue;
@@ -461,8 +461,8 @@ void judge_typed(uint64_t seed) {
     all.push_back({byte, pause_ms});
     if (pause_ms >= kSilenceMs) was_held = false;
     const bool waited = receiver.is_held();
-    const bool are_zeros = receiver.stops(byte, now_ms);
-    const bool is_stop = receiver.keep(byte, now_ms);
+    const bool are_zeros = receiver.count_zeros(byte, now_ms);
+    const bool is_stop = receiver.keep_and_find_stop(byte, now_ms);
     const Found found = finder.put(byte, now_ms);
     law = law_of(all, restart, is_running);
     if (law == Law::kStop && !is_stop) note("a typed stop is not seen");

@@ -66,7 +66,7 @@ void answer_all(Request request) {
     code[2] = static_cast<uint8_t>(rest & 0xff);
     const Verdict verdict = verify(code, 3, sensors, actuators);
     const bool is_accepted = verdict.rule == Rule::kNone;
-    const uint16_t offset = is_accepted ? 0 : verdict.offset;
+    const uint16_t offset = is_accepted ? 0 : verdict.offset();
     const uint8_t verdict_said[] = {static_cast<uint8_t>(verdict.rule),
                                     static_cast<uint8_t>(offset), 0};
     checksum = crc32(checksum, verdict_said, sizeof verdict_said);

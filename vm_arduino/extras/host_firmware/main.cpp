@@ -403,7 +403,7 @@ void board_release() {
       verify(reinterpret_cast<const uint8_t*>(table.code.data()), table.code.size(),
              readings_of(table.sensors), table.actuators, &devices, kNeeds);
   if (verdict.rule != Rule::kNone) {
-    say("UNVERIFIED", static_cast<int32_t>(verdict.rule), verdict.offset);
+    say("UNVERIFIED", static_cast<int32_t>(verdict.rule), verdict.offset());
   }
 }
 

@@ -171,8 +171,8 @@ void answer_packets(RequestReader* request, Writer* answer) {
     if (left > 0 && --left == 0) receiver.release();
     if (left == 0) take_lines(&line, &rows);
     const uint8_t byte = request->u8();
-    if (receiver.stops(byte, now_ms)) rows += "stop\n";
-    receiver.keep(byte, now_ms);
+    if (receiver.count_zeros(byte, now_ms)) rows += "stop\n";
+    receiver.keep_and_find_stop(byte, now_ms);
     if (left > 0) continue;
     if (held == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;

@@ -118,7 +118,7 @@ tini_exported("compare") uint32_t module_compare() {
 }
 
 // Where the code breaks the rule.
-tini_exported("refused_at") uint32_t module_refused_at() { return verdict.offset; }
+tini_exported("refused_at") uint32_t module_refused_at() { return verdict.offset(); }
 
 // Begins the program of the image, which is verified.
 tini_exported("start") void module_start(uint32_t sensors, uint32_t seed, uint32_t now_ms) {

@@ -81,7 +81,7 @@ void firmware_on_part(Transport transport);
 // interrupt: a run of zeros turns the motors off at once.
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
 
-// The same for a board that has looked for a stop in a byte of 0 itself, as `Receiver::stops` does.
+// The same for a board that has looked for a stop in a byte of 0 itself, as `Receiver::count_zeros` does.
 void firmware_take_rx_byte(uint8_t byte, uint16_t now_ms);
 
 // Whether there is a byte to send; the next one, or false if there is none. May be called from an

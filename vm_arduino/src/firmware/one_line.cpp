@@ -17,7 +17,7 @@ void begin_link(uint8_t epoch) { link.begin(&receiver, epoch); }
 
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   // Nothing is kept beside the call, so that no register must be saved before it.
-  if (near(&receiver)->stops(byte, time_ms)) {
+  if (near(&receiver)->count_zeros(byte, time_ms)) {
     board_stop();
     return near(&receiver)->keep_last_zero();
   }
@@ -25,7 +25,7 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
 }
 
 void firmware_take_rx_byte(uint8_t byte, uint16_t time_ms) {
-  if (near(&receiver)->keep(byte, time_ms)) board_stop();
+  if (near(&receiver)->keep_and_find_stop(byte, time_ms)) board_stop();
 }
 
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }

@@ -113,19 +113,21 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   if (verdict.rule == Rule::kNoSuchDevice && is_other_kit) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
-  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
+  if (!verdict.is_accepted()) {
+    return refuse(static_cast<Answer>(verdict.rule), verdict.offset());
+  }
   const uint8_t found = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
   if (found != kIsFine) return found;
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = verdict.offset != 0;  // as the compiler: 2.0 without
+  image[kIsaMinorAt] = verdict.needs() != 0;  // as the compiler: 2.0 without
   image[kStartAt] = start;
   image[kHeaderLengthAt] = kHeaderBytes;
   image[kDevicesAt] = static_cast<uint8_t>(devices);
   image[kDevicesAt + 1] = static_cast<uint8_t>(devices >> 8);
   image[kCodeLengthAt] = length;
   image[kCodeLengthAt + 1] = 0;
-  image[kNeedsAt] = static_cast<uint8_t>(verdict.offset);  // what it needs
+  image[kNeedsAt] = static_cast<uint8_t>(verdict.needs());
   copy_bytes(code, image + kHeaderBytes, length);
   return kIsFine;
 }

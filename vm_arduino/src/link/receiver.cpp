@@ -19,18 +19,18 @@ bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == k
 
 }  // namespace
 
-tini_noinline bool Receiver::keep(uint8_t byte, uint16_t now_ms) {
+tini_noinline bool Receiver::keep_and_find_stop(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
-  if (zeros_.keep(byte, now_ms)) end_silence();
+  if (zeros_.keep_and_find_silence(byte, now_ms)) end_silence();
   if (byte == 0) return put_zero();
-  return state_ < State::kBegin ? put_text(byte) : put_packet(byte);
+  return mode_ < Mode::kBegin ? put_text(byte) : put_packet(byte);
 }
 
 // A second without a byte: text comes again. A typed stop begins here whatever was before.
 inline void Receiver::end_silence() {
-  if (state_ >= State::kBegin) {
-    if (state_ > State::kBegin) count_damaged();
-    state_ = State::kText;
+  if (mode_ >= Mode::kBegin) {
+    if (mode_ > Mode::kBegin) count_damaged();
+    mode_ = Mode::kText;
     is_cut_ = false;
   }
   line_ = line_ >= Line::kSome ? Line::kPaused : Line::kNothing;
@@ -43,21 +43,21 @@ inline void Receiver::end_silence() {
 inline bool Receiver::put_zero() {
   bool is_stop = false;
   Line next = Line::kNothing;
-  if (state_ >= State::kFrame) {
-    is_stop = !end_packet(Waiting::kFrame) && state_ == State::kStopInFrame;
+  if (mode_ >= Mode::kFrame) {
+    is_stop = !end_packet(Waiting::kFrame) && mode_ == Mode::kStopInFrame;
     is_cut_ = false;
-  } else if (state_ == State::kLine || line_ >= Line::kSome) {
-    is_stop = is_printable_ && typed_.found() != TypedStop::kNone;
+  } else if (mode_ == Mode::kLine || line_ >= Line::kSome) {
+    is_stop = is_line_printable_ && typed_.found() != TypedStop::kNone;
     is_cut_ = true;
     if (!is_stop) cut_line();
-    if (is_stop && state_ == State::kLine && line_ != Line::kHeld) {
+    if (is_stop && mode_ == Mode::kLine && line_ != Line::kHeld) {
       next = Line::kHeld;
       is_stop = false;
     }
   }
   begin_line();
   line_ = next;
-  state_ = State::kBegin;
+  mode_ = Mode::kBegin;
   if (is_stop) stop();
   if (zeros_.take_whole()) due_stop_ = Cause::kSequence;
   return is_stop;
@@ -71,7 +71,7 @@ inline bool Receiver::put_text(uint8_t byte) {
     return false;
   }
   if (ends_line(byte)) {
-    if (line_ >= Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
+    if (line_ >= Line::kSome) return end_line(mode_ == Mode::kText && text_.put(kLineEnd));
     if (line_ != Line::kHeld) line_ = Line::kNothing;
     if (text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
     return false;
@@ -86,12 +86,12 @@ inline bool Receiver::put_text(uint8_t byte) {
       return false;
     }
     line_ = Line::kSome;
-    is_printable_ = true;
+    is_line_printable_ = true;
   }
-  if (!is_printable(byte)) is_printable_ = false;
-  if (state_ == State::kText && !text_.put(byte)) {
+  if (!is_printable(byte)) is_line_printable_ = false;
+  if (mode_ == Mode::kText && !text_.put(byte)) {
     count_damaged();
-    state_ = State::kLost;
+    mode_ = Mode::kLost;
   }
   return watch(byte);
 }
@@ -101,15 +101,15 @@ inline bool Receiver::watch(uint8_t byte) {
   typed_.put(byte);
   if (!typed_.is_urgent() || !is_running()) return false;
   typed_.begin();
-  return stop_at_mark(state_ == State::kText);
+  return stop_at_mark(mode_ == Mode::kText);
 }
 
 // A line has ended; `is_there`: all of it waits to be read. After a 0x00 only S and STOP stop at once.
 bool Receiver::end_line(bool is_there) {
   const TypedStop::Found found = typed_.found();
-  const bool was_text = state_ < State::kBegin;
+  const bool was_text = mode_ < Mode::kBegin;
   begin_line();
-  state_ = State::kText;
+  mode_ = Mode::kText;
   is_cut_ = false;
   if (found == TypedStop::kStrict || (found != TypedStop::kNone && was_text)) {
     return stop_at_mark(is_there);
@@ -122,41 +122,41 @@ bool Receiver::end_line(bool is_there) {
 // -- frames -----------------------------------------------------------------------------------------
 
 inline bool Receiver::put_packet(uint8_t byte) {
-  if (state_ == State::kBegin) {
+  if (mode_ == Mode::kBegin) {
     begin_packet();
-  } else if (state_ == State::kLine && ends_line(byte)) {
+  } else if (mode_ == Mode::kLine && ends_line(byte)) {
     return end_line(!is_cut_ && end_packet(Waiting::kText));
   }
   add(byte);
-  if (state_ == State::kLine && !is_printable(byte)) {
-    state_ = State::kFrame;
+  if (mode_ == Mode::kLine && !is_printable(byte)) {
+    mode_ = Mode::kFrame;
     line_ = Line::kNothing;
     may_be_line_ = false;
   }
-  return state_ == State::kLine ? watch(byte) : put_frame(byte);
+  return mode_ == Mode::kLine ? watch(byte) : put_frame(byte);
 }
 
 // Looks for a typed stop with a line of its own. It waits: the frame may be whole.
 inline bool Receiver::put_frame(uint8_t byte) {
   if (ends_line(byte)) {
     may_be_line_ = true;
-    if (typed_.found() == TypedStop::kStrict) state_ = State::kStopInFrame;
+    if (typed_.found() == TypedStop::kStrict) mode_ = Mode::kStopInFrame;
   }
   if (is_control(byte)) {
     typed_.begin();
   } else {
     typed_.put(byte);
   }
-  if (state_ != State::kStopInFrame || !is_dropping_) return false;
-  state_ = State::kFrame;  // what is dropped is never whole
+  if (mode_ != Mode::kStopInFrame || !is_dropping_) return false;
+  mode_ = Mode::kFrame;  // what is dropped is never whole
   stop();
   return true;
 }
 
 // Counts a packet that begins while all places are taken.
 void Receiver::begin_packet() {
-  state_ = State::kLine;
-  is_printable_ = true;
+  mode_ = Mode::kLine;
+  is_line_printable_ = true;
   may_be_line_ = true;
   is_dropping_ = waiting_[filled()] != Waiting::kNone;
   if (is_dropping_) {
@@ -184,7 +184,7 @@ bool Receiver::end_packet(Waiting as) {
   if (is_dropping_) return false;
   taken_ = 0;
   if (as == Waiting::kFrame || (text_.is_empty() && is_first())) {
-    may_stop_[filled()] = state_ == State::kStopInFrame;
+    may_stop_[filled()] = mode_ == Mode::kStopInFrame;
     waiting_[filled()] = as;
     if (as == Waiting::kFrame) fill_on();
     return true;

@@ -4,11 +4,11 @@
 // Everything is text until a 0x00. After it everything is frames, until a second passes without a
 // byte or the connection is lost; there CR or LF after nothing but printable ASCII ends a line of
 // text, because no whole frame looks so, and text goes on.
-// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
-// until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
-// on as it arrives. Finds the same packets as `receiver.py`, in the same states and in kStopInFrame, as
-// typed stops are a class of their own there. `put` may be called from an interrupt, everything
-// else from the main loop.
+// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Asks `port.h` only
+// whether a program runs, for what is typed in a hurry. Holds frames until they are released, kWindow
+// of them; a frame that finds no place is dropped. Text is passed on as it arrives. Finds the same
+// packets as `receiver.py`, in the same modes and in kStopInFrame, as typed stops are a class of their
+// own there. `put` may be called from an interrupt, everything else from the main loop.
 
 #pragma once
 
@@ -61,7 +61,7 @@ class PacketPlaces<1> {
 
 class Receiver : private PacketPlaces<kWindow> {
   // Where the next byte belongs. Below kBegin it is text; from kFrame on no line may end here.
-  enum class State : uint8_t {
+  enum class Mode : uint8_t {
     kText,   // between two lines of text, or in one
     kLost,   // in a line of text whose bytes have found no room
     kBegin,  // after a 0x00
@@ -79,19 +79,22 @@ class Receiver : private PacketPlaces<kWindow> {
   // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
   // framing error is 0.
   bool put(uint8_t byte, uint16_t now_ms) {
-    const bool is_stop = stops(byte, now_ms);
-    return keep(byte, now_ms) || is_stop;
+    const bool is_stop = count_zeros(byte, now_ms);
+    return keep_and_find_stop(byte, now_ms) || is_stop;
   }
 
-  // The halves of `put`: between them the caller turns the motors off.
-  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) { return zeros_.stops(byte, now_ms); }
-  bool keep(uint8_t byte, uint16_t now_ms);
+  // The halves of `put`, after each of which the caller turns the motors off: the first one returns
+  // whether the byte completes a stop sequence, the second one whether it completes a typed stop.
+  tini_always_inline bool count_zeros(uint8_t byte, uint16_t now_ms) {
+    return zeros_.count_zeros(byte, now_ms);
+  }
+  bool keep_and_find_stop(uint8_t byte, uint16_t now_ms);
 
-  // Where the count of zeros lies: an AVR's interrupt does `stops` in assembly (`receiver_avr.h`).
+  // Where the count of zeros lies: an AVR's interrupt does `count_zeros` in assembly (`receiver_avr.h`).
   struct Layout;
 
   // Keeps the byte that completes a stop.
-  void keep_last_zero() { keep(0, zeros_.last_ms()); }
+  void keep_last_zero() { keep_and_find_stop(0, zeros_.last_ms()); }
 
   // The connection is lost: what comes next is text, and what has not ended never will.
   void disconnect();
@@ -107,15 +110,15 @@ class Receiver : private PacketPlaces<kWindow> {
 
   // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all that
   // has come of a line: it stops when no byte has come for kHeldMs.
-  bool is_held() const { return state() == State::kStopInFrame || line() == Line::kHeld; }
+  bool is_held() const { return mode() == Mode::kStopInFrame || line() == Line::kHeld; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
-  bool is_at_stop() const { return state() < State::kFrame && typed_.found() != TypedStop::kNone; }
+  bool is_at_stop() const { return mode() < Mode::kFrame && typed_.found() != TypedStop::kNone; }
 
   // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
   // is in it.
   bool has_open_line() const {
-    return state() >= State::kLine && *const_cast<const volatile bool*>(&may_be_line_);
+    return mode() >= Mode::kLine && *const_cast<const volatile bool*>(&may_be_line_);
   }
 
   // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
@@ -178,7 +181,7 @@ class Receiver : private PacketPlaces<kWindow> {
 
  private:
   // Read where the interrupt may write.
-  State state() const { return *const_cast<const volatile State*>(&state_); }
+  Mode mode() const { return *const_cast<const volatile Mode*>(&mode_); }
   Line line() const { return *const_cast<const volatile Line*>(&line_); }
 
   void end_silence();
@@ -210,9 +213,9 @@ class Receiver : private PacketPlaces<kWindow> {
   volatile bool has_begun_;
   volatile Cause due_stop_;
   StopSequence zeros_;
-  State state_;
+  Mode mode_;
   Line line_;
-  bool is_printable_;  // all of the line is printable ASCII
+  bool is_line_printable_;  // all of the line is printable ASCII
   bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
   bool is_dropping_;  // the packet finds no place
   bool may_be_line_;  // the packet may be a person's

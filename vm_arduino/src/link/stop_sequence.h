@@ -14,9 +14,9 @@ namespace tiniscript {
 
 class StopSequence {
  public:
-  // Whether this byte completes one. Call it once for each byte, before `keep`; an AVR's interrupt
-  // does it in assembly, at `zeros_at` and `last_ms_at`.
-  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
+  // Counts a byte of 0, and returns whether it completes one. Call it once for each byte, before
+  // `keep_and_find_silence`; an AVR's interrupt does it in assembly, at `zeros_at` and `last_ms_at`.
+  tini_always_inline bool count_zeros(uint8_t byte, uint16_t now_ms) {
     if (byte != 0) return false;
     const uint8_t zeros = static_cast<uint8_t>(zeros_ + 1);
     zeros_ = zeros;
@@ -26,7 +26,7 @@ class StopSequence {
   }
 
   // Keeps what the same byte says. Returns whether a second of silence was before it.
-  tini_always_inline bool keep(uint8_t byte, uint16_t now_ms) {
+  tini_always_inline bool keep_and_find_silence(uint8_t byte, uint16_t now_ms) {
     const bool was_quiet = is_quiet(now_ms);
     last_ms_ = now_ms;
     if (was_quiet) zeros_ = 1;

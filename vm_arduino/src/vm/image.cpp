@@ -66,7 +66,7 @@ tini_noinline Admission admit(const uint8_t* data, uint8_t sensors, uint8_t actu
   uint16_t devices;
   const Verdict verdict =
       verify(image.code, image.code_length, sensors, actuators, &devices, image.needs);
-  if (verdict.rule != Rule::kNone) return {static_cast<uint8_t>(verdict.rule), verdict.offset};
+  if (!verdict.is_accepted()) return {static_cast<uint8_t>(verdict.rule), verdict.offset()};
   return {static_cast<uint8_t>(check_devices(image, devices)), 0};
 }
 

@@ -15,11 +15,15 @@
 
 namespace tiniscript {
 
-// The first violation of a rule and the offset of its instruction; kNone: accepted, and bits of
-// `needs`.
+// Of code that is refused: the first rule that it violates, and the offset of the instruction there.
+// Of code that is accepted: kNone, and bits of `needs`.
 struct Verdict {
   Rule rule;
-  uint16_t offset;
+  uint16_t offset_or_needs;
+
+  bool is_accepted() const { return rule == Rule::kNone; }
+  uint16_t offset() const { return offset_or_needs; }
+  uint16_t needs() const { return offset_or_needs; }
 };
 
 // Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Its image says

@@ -1,5 +1,5 @@
-// The UART of an AVR. A byte comes in at the end of this file, `uart_receive_vect`: that looks for a
-// stop (`tiniscript_on_zero`), and then `receive` gives the byte to the firmware (`take`).
+// The UART of an AVR. A byte comes in at `uart_receive_vect`, below `receive`: that looks for a stop
+// (`tiniscript_on_zero`), and then `receive` gives the byte to the firmware (`take`).
 
 #ifdef __AVR__
 
@@ -46,7 +46,7 @@ constexpr uint8_t kLowTurns = static_cast<uint8_t>(10000 / kBaud + 3);
 #ifdef tiniscript_has_quick_stop
 
 // A zero has arrived: turns the motors off if it completes a run of them that stops the robot, as
-// `Receiver::stops` finds it. Changes r24, r30 and r31 alone; for callers with interrupts off.
+// `Receiver::count_zeros` finds it. Changes r24, r30 and r31 alone; for callers with interrupts off.
 extern "C" void tiniscript_on_zero() __attribute__((naked, used, noinline, externally_visible));
 void tiniscript_on_zero() {
   asm volatile(

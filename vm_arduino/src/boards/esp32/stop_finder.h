@@ -1,7 +1,7 @@
 // Finds stops in the bytes of a client: typed ones and runs of four zeros.
 //
 // For whoever sees bytes that the receiver does not get: a radio's task and the broker's. Has the
-// receiver's states and laws (`../../link/receiver.h`), and nothing of its packets. Knows neither
+// receiver's modes and laws (`../../link/receiver.h`), and nothing of its packets. Knows neither
 // whether something runs nor whether a frame is whole.
 
 #pragma once
@@ -26,25 +26,25 @@ class StopFinder {
  public:
   // A connection begins. `is_framed`: with frames.
   void begin(bool is_framed = false) {
-    state_ = is_framed ? State::kBegin : State::kText;
+    mode_ = is_framed ? Mode::kBegin : Mode::kText;
     begin_line();
   }
 
   Found put(uint8_t byte, uint16_t now_ms) {
-    const bool are_zeros = zeros_.stops(byte, now_ms);
-    if (zeros_.keep(byte, now_ms)) end_silence();
+    const bool are_zeros = zeros_.count_zeros(byte, now_ms);
+    if (zeros_.keep_and_find_silence(byte, now_ms)) end_silence();
     zeros_.take_whole();
     if (byte == 0) return put_zero() || are_zeros ? Found::kStop : Found::kNothing;
-    return state_ == State::kText ? put_text(byte) : put_packet(byte);
+    return mode_ == Mode::kText ? put_text(byte) : put_packet(byte);
   }
 
   // Whether what has come of a line stops what runs, if silence follows.
   bool is_at_stop() const {
-    return line_ == Line::kHeld || (state_ != State::kFrame && is_typed());
+    return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed());
   }
 
  private:
-  enum class State : uint8_t { kText, kBegin, kLine, kFrame };
+  enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };
   enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome };
 
   bool is_typed() const { return typed_.found() != TypedStop::kNone; }
@@ -58,23 +58,23 @@ class StopFinder {
   }
 
   void end_silence() {
-    state_ = State::kText;
+    mode_ = Mode::kText;
     if (line_ != Line::kSome) line_ = Line::kNothing;
     typed_.begin();
   }
 
   // Whether it ends a line that is a typed stop.
   bool put_zero() {
-    const bool is_line = state_ == State::kLine || line_ == Line::kSome;
+    const bool is_line = mode_ == Mode::kLine || line_ == Line::kSome;
     const bool is_stop = is_line && is_printable_ && is_typed();
     begin_line();
-    state_ = State::kBegin;
+    mode_ = Mode::kBegin;
     return is_stop;
   }
 
   Found end_line(bool is_stop) {
     begin_line();
-    state_ = State::kText;
+    mode_ = Mode::kText;
     return is_stop ? Found::kStop : Found::kNothing;
   }
 
@@ -102,10 +102,10 @@ class StopFinder {
   }
 
   Found put_packet(uint8_t byte) {
-    if (state_ == State::kLine && ends_line(byte)) return end_line(is_typed());
-    if (state_ == State::kBegin) state_ = State::kLine;
-    if (!is_printable(byte)) state_ = State::kFrame;
-    return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
+    if (mode_ == Mode::kLine && ends_line(byte)) return end_line(is_typed());
+    if (mode_ == Mode::kBegin) mode_ = Mode::kLine;
+    if (!is_printable(byte)) mode_ = Mode::kFrame;
+    return mode_ == Mode::kLine ? watch(byte) : take_frame_byte(byte);
   }
 
   Found take_frame_byte(uint8_t byte) {
@@ -122,7 +122,7 @@ class StopFinder {
   static constexpr uint8_t kDelete = 0x7f;
 
   StopSequence zeros_;
-  State state_;
+  Mode mode_;
   Line line_;
   bool is_printable_;  // all of the line is printable ASCII
   TypedStop typed_;
