@@ -1,7 +1,8 @@
 """Code that is there in C++ and in Python has the same names.
 
 Who has read one of the two finds the way in the other: a method of one is a method of the other, or
-a table here says by which names the other has it, or why it has none.
+a table here says by which names the other has it, or why it has none. So has what both keep of a
+program one name.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ class Twins(NamedTuple):
     python: tuple[tuple[str, str], ...]
     in_cpp: dict[str, str]
     in_python: dict[str, str]
+    has_attributes: bool = False  # what a method of C++ returns may be an attribute of Python
 
 
 TASKS = Twins(
@@ -61,6 +63,38 @@ TASKS = Twins(
         "machine_of": "(one class has tasks or none)",
     },
 )
+MACHINES = Twins(
+    cpp=(("vm/machine.h", "Machine"), ("vm/drive.h", "Drive")),
+    python=(("vm/machine.py", "Machine"), ("vm/state.py", "Drive")),
+    in_cpp={
+        **dict.fromkeys(("start", "prepare", "start_prepared"), "(the constructor)"),
+        **dict.fromkeys(("comes_to_end", "end_in_fault", "execute", "is_due", "wake"), "tick"),
+        "left": "steps",
+        **dict.fromkeys(("late_ms", "next_check_ms"), "until"),
+        **dict.fromkeys(("go_on", "keep_move"), "drive, watch"),
+        **dict.fromkeys(("end_move", "set_motors_of_move"), "tick, until"),
+        "set_clock": "begin",
+        "set_motors": "motors",
+        **dict.fromkeys(("act", "go_ms", "sense"), "(in `actions.py`)"),
+        "check_layout": "(of an AVR)",
+        "has_tasks": "(a class has them or not)",
+        **dict.fromkeys(
+            ("is_trapped", "length", "place_of", "reach_instruction", "resume", "return_place",
+             "set_motors_again", "turn"), "(breakpoints)"),
+        **dict.fromkeys(("forget_way", "go_way", "is_on_the_way", "is_stuck"), "(no discs)"),
+        **dict.fromkeys(
+            ("blocks", "is_below", "leave_move", "run_round", "run_turn", "stand_still",
+             "take_motors"), "(tasks)"),
+    },
+    in_python={
+        "end": "(in `actions.cpp`)",
+        "go_back": "(of the class Scheduler)",
+        "now_ms": "(of the class Execution)",
+        "robot": "(`robot.h`)",
+        "steps": "left",
+    },
+    has_attributes=True,
+)  # fmt: skip
 RECEIVERS = Twins(
     cpp=(
         ("link/receiver.h", "Receiver"),
@@ -113,6 +147,21 @@ def methods_in_cpp(file: str, name: str) -> set[str]:
     return set(METHOD.findall(body)) - {name}
 
 
+def attributes_in_python(file: str, name: str) -> set[str]:
+    """Return the names of public attributes that a class sets."""
+    tree = ast.parse((PYTHON / file).read_text(encoding="utf-8"))
+    body = next(each for each in tree.body if isinstance(each, ast.ClassDef) and each.name == name)
+    return {
+        each.attr
+        for each in ast.walk(body)
+        if isinstance(each, ast.Attribute)
+        and isinstance(each.ctx, ast.Store)
+        and isinstance(each.value, ast.Name)
+        and each.value.id == "self"
+        and not each.attr.startswith("_")
+    }
+
+
 def methods_in_python(file: str, name: str) -> Iterator[str]:
     """Yield names of methods, or with no class those of functions that no handler is."""
     tree = ast.parse((PYTHON / file).read_text(encoding="utf-8"))
@@ -126,10 +175,12 @@ def methods_in_python(file: str, name: str) -> Iterator[str]:
                 yield stmt.name.removeprefix("_")
 
 
-@each_row("twins", [TASKS, RECEIVERS])
+@each_row("twins", [TASKS, MACHINES, RECEIVERS])
 def test_twins_have_the_same_names(twins: Twins) -> None:
     cpp = {each for row in twins.cpp for each in methods_in_cpp(*row)}
     python = {each for row in twins.python for each in methods_in_python(*row)}
+    if twins.has_attributes:
+        python = python.union(*(attributes_in_python(*row) for row in twins.python))
     assert len(cpp & python) > 5
     assert cpp - python == set(twins.in_cpp)
     assert python - cpp == set(twins.in_python)
@@ -138,3 +189,40 @@ def test_twins_have_the_same_names(twins: Twins) -> None:
             word.strip(" _") for each in said.values() if each[0] != "(" for word in each.split(",")
         }
         assert named <= there
+
+
+FIELD = re.compile(r"^  [\w<>]+[ *]+(\w+)(?:\[.*\])?;", re.M)
+
+
+def fields_in_cpp(text: str, opening: str) -> set[str]:
+    body = text[text.index(opening) :]
+    return set(FIELD.findall(body[: body.index("\n};")]))
+
+
+def test_what_both_keep_of_a_program_has_one_name() -> None:
+    """Fields of what a program without tasks is: a Task, and in C++ the record of the only task."""
+    text = code_of(CPP / "vm" / "state.h")
+    cpp = fields_in_cpp(text, "struct TaskOf<false>") | fields_in_cpp(text, "struct TaskRecord")
+    only_cpp = {
+        "check": "check_pc",
+        "code": "powers, wait, is_watching",
+        "power": "powers",
+        "state": "wait, is_watching",
+        "rest_ms": "move_ms",
+        "depth": "stack",
+        "framed": "counters, calls",
+        "frames": "counters, calls",
+        "is_late": "(numbers do not wrap around)",
+        "me": "(the task itself)",
+        "start": "(tasks)",
+        "set": "(tasks)",
+    }
+    python = attributes_in_python("vm/state.py", "Task")
+    assert python - cpp == {
+        "calls", "check_pc", "counters", "is_watching", "move_ms", "powers", "readings", "wait",
+        "wake_ms",
+    }  # fmt: skip
+    assert cpp - python == only_cpp.keys()
+    assert {"clock_ms", "pc", "random_state", "stack", "started_ms", "variables"} <= cpp & python
+    for said in only_cpp.values():
+        assert said.startswith("(") or {*said.split(", ")} <= python

@@ -5,8 +5,9 @@ byte. A frame ends with 0x00. In frames, CR or LF after one or more bytes that s
 are all 0x20 to 0x7e ends a line of text, and text goes on.
 
 Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
-until it is taken, or several frames; packets that find no place are dropped, a stop is not. The C++
-version, with the same names, is `vm_arduino/src/link/receiver.cpp`.
+until it is taken, or several frames; packets that find no place are dropped, a stop is not. In C++
+it is `vm_arduino/src/link/receiver.cpp`, where bytes come in an interrupt; what has the same name
+there does the same, and `tests/project/test_twins.py` lists the rest.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tiniscript.base.fixed_point import ONE, clamp, whole
 from tiniscript.bytecode.opcodes import time8_ms
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
-from tiniscript.vm.state import FOREVER, PAUSE, Execution, Powers
+from tiniscript.vm.state import FOREVER, PAUSE, Drive, Powers
 from tiniscript.vm.values import COMPARISONS, Compare
 
 
@@ -19,17 +19,17 @@ def _percent(power: int, least: int) -> int:
 
 
 @handles("SHOW")
-def _show(machine: Execution, next_pc: int) -> Step:
+def _show(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.show(machine.task.stack[-1], False, next_pc)
 
 
 @handles("SHOW_YES_NO")
-def _show_yes_no(machine: Execution, next_pc: int) -> Step:
+def _show_yes_no(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.show(1 if machine.task.stack[-1] else 0, True, next_pc)
 
 
 @handles("SET")
-def _set(machine: Execution, next_pc: int, actuator: int) -> Step:
+def _set(machine: Drive, next_pc: int, actuator: int) -> Step:
     def step() -> int:
         machine.robot.set(actuator, machine.task.stack.pop())
         return next_pc
@@ -43,39 +43,39 @@ def _add_move_handlers(direction: str, left: int, right: int) -> None:
     def powers(power: int) -> Powers:
         return left * power, right * power
 
-    def popped_powers(machine: Execution) -> Powers:
+    def popped_powers(machine: Drive) -> Powers:
         return powers(_percent(machine.task.stack.pop(), 0))
 
-    def move8(machine: Execution, next_pc: int, time8: int, power: int) -> Step:
+    def move8(machine: Drive, next_pc: int, time8: int, power: int) -> Step:
         return lambda: machine.drive(time8_ms(time8), powers(power), next_pc)
 
-    def move(machine: Execution, next_pc: int) -> Step:
+    def move(machine: Drive, next_pc: int) -> Step:
         def step() -> int:
             move_powers = popped_powers(machine)
             return machine.drive(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
-    def watch(machine: Execution, next_pc: int) -> Step:
+    def watch(machine: Drive, next_pc: int) -> Step:
         def step() -> int:
             move_powers = popped_powers(machine)
             return machine.watch(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
-    def watch_forever(machine: Execution, next_pc: int) -> Step:
+    def watch_forever(machine: Drive, next_pc: int) -> Step:
         return lambda: machine.watch(FOREVER, popped_powers(machine), next_pc)
 
-    def extent_move(machine: Execution) -> tuple[int, Powers]:
+    def extent_move(machine: Drive) -> tuple[int, Powers]:
         percent = _percent(machine.task.stack.pop(), 0)
         return machine.robot.go_ms(machine.task.stack.pop(), percent, left != right), powers(
             percent
         )
 
-    def go(machine: Execution, next_pc: int) -> Step:
+    def go(machine: Drive, next_pc: int) -> Step:
         return lambda: machine.drive(*extent_move(machine), next_pc)
 
-    def watch_go(machine: Execution, next_pc: int) -> Step:
+    def watch_go(machine: Drive, next_pc: int) -> Step:
         return lambda: machine.watch(*extent_move(machine), next_pc)
 
     HANDLERS[f"GO_{direction}"] = go
@@ -93,32 +93,32 @@ _add_move_handlers("R", 1, -1)
 
 
 @handles("WAIT")
-def _wait(machine: Execution, next_pc: int) -> Step:
+def _wait(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.wait(_duration(machine.task.stack.pop()), PAUSE, next_pc)
 
 
 @handles("WAIT8")
-def _wait8(machine: Execution, next_pc: int, time8: int) -> Step:
+def _wait8(machine: Drive, next_pc: int, time8: int) -> Step:
     return lambda: machine.wait(time8_ms(time8), PAUSE, next_pc)
 
 
 @handles("WATCH_WAIT")
-def _watch_wait(machine: Execution, next_pc: int) -> Step:
+def _watch_wait(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.watch(_duration(machine.task.stack.pop()), None, next_pc)
 
 
 @handles("WATCH_FOREVER_WAIT")
-def _watch_forever_wait(machine: Execution, next_pc: int) -> Step:
+def _watch_forever_wait(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.watch(FOREVER, None, next_pc)
 
 
 @handles("UNTIL")
-def _until(machine: Execution, next_pc: int) -> Step:
+def _until(machine: Drive, next_pc: int) -> Step:
     return lambda: machine.until(bool(machine.task.stack.pop()), next_pc)
 
 
 def _until_comparison_handler(compare: Compare) -> Handler:
-    def handler(machine: Execution, next_pc: int, number: int) -> Step:
+    def handler(machine: Drive, next_pc: int, number: int) -> Step:
         return lambda: machine.until(compare(machine.task.stack.pop(), number * ONE), next_pc)
 
     return handler
@@ -129,7 +129,7 @@ for _name, _compare in COMPARISONS.items():
 
 
 @handles("STOP")
-def _stop(machine: Execution, next_pc: int) -> Step:
+def _stop(machine: Drive, next_pc: int) -> Step:
     def step() -> int:
         machine.stop_motors()
         return next_pc
@@ -138,7 +138,7 @@ def _stop(machine: Execution, next_pc: int) -> Step:
 
 
 @handles("MOTORS")
-def _motors(machine: Execution, next_pc: int) -> Step:
+def _motors(machine: Drive, next_pc: int) -> Step:
     def step() -> int:
         right, left = machine.task.stack.pop(), machine.task.stack.pop()
         machine.motors(_percent(left, -100), _percent(right, -100))
@@ -148,7 +148,7 @@ def _motors(machine: Execution, next_pc: int) -> Step:
 
 
 @handles("MOTORS8")
-def _motors8(machine: Execution, next_pc: int, left: int, right: int) -> Step:
+def _motors8(machine: Drive, next_pc: int, left: int, right: int) -> Step:
     def step() -> int:
         machine.motors(left, right)
         return next_pc
@@ -157,7 +157,7 @@ def _motors8(machine: Execution, next_pc: int, left: int, right: int) -> Step:
 
 
 @handles("BEEP")
-def _beep(machine: Execution, next_pc: int) -> Step:
+def _beep(machine: Drive, next_pc: int) -> Step:
     def step() -> int:
         hertz, time_milli = machine.task.stack.pop(), machine.task.stack.pop()
         return _sound(machine, next_pc, whole(hertz), _duration(time_milli))
@@ -166,10 +166,10 @@ def _beep(machine: Execution, next_pc: int) -> Step:
 
 
 @handles("BEEP8")
-def _beep8(machine: Execution, next_pc: int, time8: int, hertz: int) -> Step:
+def _beep8(machine: Drive, next_pc: int, time8: int, hertz: int) -> Step:
     return lambda: _sound(machine, next_pc, hertz, time8_ms(time8))
 
 
-def _sound(machine: Execution, next_pc: int, hertz: int, duration_ms: int) -> int:
+def _sound(machine: Drive, next_pc: int, hertz: int, duration_ms: int) -> int:
     machine.robot.beep(clamp(hertz, 31, 20_000), duration_ms)
     return machine.wait(duration_ms, PAUSE, next_pc)

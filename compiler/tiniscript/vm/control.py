@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from tiniscript.base.fixed_point import ONE, whole
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
-from tiniscript.vm.state import Execution
+from tiniscript.vm.state import Drive
 from tiniscript.vm.values import COMPARISONS, Compare
 
 
 @handles("IF", "IF_FAR")
-def _if(machine: Execution, next_pc: int, target: int) -> Step:
+def _if(machine: Drive, next_pc: int, target: int) -> Step:
     pop = machine.task.stack.pop
     return lambda: next_pc if pop() else target
 
 
 @handles("IF_NOT", "IF_NOT_FAR")
-def _if_not(machine: Execution, next_pc: int, target: int) -> Step:
+def _if_not(machine: Drive, next_pc: int, target: int) -> Step:
     return _if(machine, target, next_pc)
 
 
 def _if_comparison_handler(compare: Compare) -> Handler:
-    def handler(machine: Execution, next_pc: int, number: int, target: int) -> Step:
+    def handler(machine: Drive, next_pc: int, number: int, target: int) -> Step:
         pop, constant = machine.task.stack.pop, number * ONE
         return lambda: next_pc if compare(pop(), constant) else target
 
@@ -28,7 +28,7 @@ def _if_comparison_handler(compare: Compare) -> Handler:
 
 
 def _if_var_comparison_handler(compare: Compare) -> Handler:
-    def handler(machine: Execution, next_pc: int, variable: int, number: int, target: int) -> Step:
+    def handler(machine: Drive, next_pc: int, variable: int, number: int, target: int) -> Step:
         variables, constant = machine.task.variables, number * ONE
         return lambda: next_pc if compare(variables[variable], constant) else target
 
@@ -43,22 +43,22 @@ for _name, _compare in COMPARISONS.items():
 
 
 @handles("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
-def jump(machine: Execution, next_pc: int, target: int) -> Step:
+def jump(machine: Drive, next_pc: int, target: int) -> Step:
     return lambda: target
 
 
 @handles("AGAIN", "AGAIN_FAR")
-def _again(machine: Execution, next_pc: int, target: int) -> Step:
+def _again(machine: Drive, next_pc: int, target: int) -> Step:
     return machine.go_back(target)
 
 
 @handles("FOREVER", "WHILE", "WHILE_FAR")
-def _do_nothing(machine: Execution, next_pc: int, target: int = 0) -> Step:
+def _do_nothing(machine: Drive, next_pc: int, target: int = 0) -> Step:
     return lambda: next_pc
 
 
 @handles("LOOP8")
-def _loop8(machine: Execution, next_pc: int, times: int) -> Step:
+def _loop8(machine: Drive, next_pc: int, times: int) -> Step:
     def step() -> int:
         machine.task.counters.append(times)
         return next_pc
@@ -67,7 +67,7 @@ def _loop8(machine: Execution, next_pc: int, times: int) -> Step:
 
 
 @handles("LOOP", "LOOP_FAR")
-def _loop(machine: Execution, next_pc: int, target: int) -> Step:
+def _loop(machine: Drive, next_pc: int, target: int) -> Step:
     def step() -> int:
         times = whole(machine.task.stack.pop())
         if times < 1:
@@ -79,7 +79,7 @@ def _loop(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("NEXT", "NEXT_FAR")
-def _next(machine: Execution, next_pc: int, target: int) -> Step:
+def _next(machine: Drive, next_pc: int, target: int) -> Step:
     counters, go_back = machine.task.counters, machine.go_back(target)
 
     def step() -> int:
@@ -94,7 +94,7 @@ def _next(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("BREAK_LOOP", "BREAK_LOOP_FAR")
-def _break_loop(machine: Execution, next_pc: int, target: int) -> Step:
+def _break_loop(machine: Drive, next_pc: int, target: int) -> Step:
     def step() -> int:
         machine.task.counters.pop()
         return target
@@ -103,7 +103,7 @@ def _break_loop(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("CALL", "CALL_FAR")
-def _call(machine: Execution, next_pc: int, target: int) -> Step:
+def _call(machine: Drive, next_pc: int, target: int) -> Step:
     calls = machine.task.calls
 
     def step() -> int:
@@ -114,10 +114,10 @@ def _call(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("RETURN")
-def _return(machine: Execution, next_pc: int) -> Step:
+def _return(machine: Drive, next_pc: int) -> Step:
     return machine.task.calls.pop
 
 
 @handles("END")
-def _end(machine: Execution, next_pc: int) -> Step:
+def _end(machine: Drive, next_pc: int) -> Step:
     return machine.end

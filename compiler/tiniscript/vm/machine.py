@@ -2,7 +2,8 @@
 
 Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is behind
 `state.Robot`. `tick` does a little and returns: nothing here waits. In C++ it is
-`vm_arduino/src/vm/machine.h`.
+`vm_arduino/src/vm/machine.h`, whose `tick` counts jumps back and calls instead of instructions;
+`tests/project/test_twins.py` lists what has another name there.
 
 `values`, `actions` and `control` have a handler for each row of the table in `bytecode`; importing
 this fails if one is missing. A short instruction shares the handler of its long form. Those of
@@ -15,7 +16,7 @@ from tiniscript.base.fixed_point import Fault
 from tiniscript.bytecode.opcodes import NEEDS_TASKS, OPS, Op, op_at, read_operands
 from tiniscript.vm import actions, control, values
 from tiniscript.vm.handlers import HANDLERS, STAY, Step, mark_stop
-from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task
+from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Drive, Robot, Task
 
 _FAMILIES = (values, actions, control)  # importing them fills the table
 
@@ -29,7 +30,7 @@ _ops_without_handler = [
 assert not _ops_without_handler, f"no handler for {_ops_without_handler}"
 
 
-def bind_steps(machine: Execution, code: bytes) -> list[Step]:
+def bind_steps(machine: Drive, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
     After the code stands END.
@@ -56,7 +57,7 @@ def instruction_at(code: bytes, offset: int) -> tuple[Op, int]:
     return op, offset + op.size
 
 
-class Machine(Execution):
+class Machine(Drive):
     """Runs the code of one image on one robot. It has no tasks."""
 
     def __init__(
@@ -70,8 +71,8 @@ class Machine(Execution):
         self._code = code
         self._steps = bind_steps(self, code)
 
-    def tick(self, now_ms: int, budget: int) -> str:
-        """Run at most `budget` instructions at the time `now_ms`; return the status."""
+    def tick(self, now_ms: int, most_steps: int) -> str:
+        """Run at most `most_steps` instructions at the time `now_ms`; return the status."""
         if self.status in (DONE, FAULT):
             return self.status
         self.now_ms = now_ms
@@ -85,9 +86,9 @@ class Machine(Execution):
         self.status = RUNNING
         steps = self._steps
         at, pc = self.at, task.pc
-        steps_left = budget
+        steps_left = most_steps
         try:
-            for steps_left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for after the loop
+            for steps_left in range(most_steps - 1, -1, -1):  # noqa: B007 - asked for after the loop
                 at = pc
                 pc = steps[at]()
                 if pc < 0:
@@ -98,5 +99,5 @@ class Machine(Execution):
             self.status, self.fault = FAULT, fault.name
             pc = instruction_at(self._code, at)[1]
         self.at, task.pc = at, pc
-        self.steps += budget - steps_left
+        self.steps += most_steps - steps_left
         return self.status

@@ -84,8 +84,12 @@ class Task:
         self.is_watching = False  # it has begun
 
 
-class Execution:
-    """A program that runs on a robot, as its instructions use it."""
+class Drive:
+    """A program that runs on a robot: its waits and moves, as its instructions use them.
+
+    In C++ it is `vm_arduino/src/vm/drive.h`, with the same names but for those that
+    `tests/project/test_twins.py` lists.
+    """
 
     def __init__(self, robot: Robot, task: Task, now_ms: int) -> None:
         self.robot = robot

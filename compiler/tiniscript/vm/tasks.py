@@ -124,13 +124,13 @@ class TaskMachine(Machine):
         due_times_ms = (task.clock_ms for task in self.tasks if self._waits_for_clock(task))
         return min(due_times_ms, default=self.now_ms + NEVER_MS)
 
-    def tick(self, now_ms: int, budget: int) -> str:
-        """Run at most `budget` instructions of one round of turns; return the status."""
+    def tick(self, now_ms: int, most_steps: int) -> str:
+        """Run at most `most_steps` instructions of one round of turns; return the status."""
         if self.status in (DONE, FAULT):
             return self.status
         self.now_ms = now_ms
         self.status = RUNNING
-        at, steps_left = self.at, budget
+        at, steps_left = self.at, most_steps
         try:
             while steps_left and self._finds_turn():
                 steps, pc = self._steps, self.current_task.pc
@@ -152,7 +152,7 @@ class TaskMachine(Machine):
             self.status, self.fault = FAULT, fault.name
             self.current_task.pc = instruction_at(self._code, at)[1]
         self.at = at
-        self.steps += budget - steps_left
+        self.steps += most_steps - steps_left
         return self.status
 
     def _finds_turn(self) -> bool:

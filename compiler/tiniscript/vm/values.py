@@ -10,7 +10,7 @@ from tiniscript.base.fixed_point import ONE, in_range, next_random, random_betwe
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.opcodes import PUSHED_NUMBERS
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, handles
-from tiniscript.vm.state import Execution
+from tiniscript.vm.state import Drive
 
 Compare = Callable[[int, int], bool]
 
@@ -18,7 +18,7 @@ Compare = Callable[[int, int], bool]
 
 
 @handles("PUSH_MILLI", "PUSH32")
-def _push(machine: Execution, next_pc: int, value: int) -> Step:
+def _push(machine: Drive, next_pc: int, value: int) -> Step:
     push = machine.task.stack.append
 
     def step() -> int:
@@ -29,12 +29,12 @@ def _push(machine: Execution, next_pc: int, value: int) -> Step:
 
 
 @handles("PUSH8", "PUSH16")
-def _push_whole(machine: Execution, next_pc: int, number: int) -> Step:
+def _push_whole(machine: Drive, next_pc: int, number: int) -> Step:
     return _push(machine, next_pc, number * ONE)
 
 
 @handles("PUSH_TENTHS")
-def _push_tenths(machine: Execution, next_pc: int, tenths: int) -> Step:
+def _push_tenths(machine: Drive, next_pc: int, tenths: int) -> Step:
     return _push(machine, next_pc, tenths * 100)
 
 
@@ -48,7 +48,7 @@ for _number in PUSHED_NUMBERS:
     HANDLERS[f"PUSH_NUM_{_number}"] = _push_handler(_number * ONE)
 
 
-def _push_element(machine: Execution, next_pc: int, values: list[int], number: int) -> Step:
+def _push_element(machine: Drive, next_pc: int, values: list[int], number: int) -> Step:
     push = machine.task.stack.append
 
     def step() -> int:
@@ -59,17 +59,17 @@ def _push_element(machine: Execution, next_pc: int, values: list[int], number: i
 
 
 @handles("PUSH_VAR")
-def _push_var(machine: Execution, next_pc: int, variable: int) -> Step:
+def _push_var(machine: Drive, next_pc: int, variable: int) -> Step:
     return _push_element(machine, next_pc, machine.task.variables, variable)
 
 
 @handles("PUSH_SENSOR")
-def _push_sensor(machine: Execution, next_pc: int, sensor: int) -> Step:
+def _push_sensor(machine: Drive, next_pc: int, sensor: int) -> Step:
     return _push_element(machine, next_pc, machine.task.readings, sensor)
 
 
 @handles("READ")
-def _read(machine: Execution, next_pc: int, sensor: int) -> Step:
+def _read(machine: Drive, next_pc: int, sensor: int) -> Step:
     readings = machine.task.readings
 
     def step() -> int:
@@ -83,7 +83,7 @@ def _read(machine: Execution, next_pc: int, sensor: int) -> Step:
 
 
 @handles("PUSH_READ")
-def _push_read(machine: Execution, next_pc: int, sensor: int) -> Step:
+def _push_read(machine: Drive, next_pc: int, sensor: int) -> Step:
     read, push = _read(machine, next_pc, sensor), _push_sensor(machine, next_pc, sensor)
 
     def step() -> int:
@@ -93,7 +93,7 @@ def _push_read(machine: Execution, next_pc: int, sensor: int) -> Step:
 
 
 @handles("TIME")
-def _time(machine: Execution, next_pc: int) -> Step:
+def _time(machine: Drive, next_pc: int) -> Step:
     task = machine.task
 
     def step() -> int:
@@ -104,7 +104,7 @@ def _time(machine: Execution, next_pc: int) -> Step:
 
 
 @handles("RANDOM")
-def _random(machine: Execution, next_pc: int) -> Step:
+def _random(machine: Drive, next_pc: int) -> Step:
     task = machine.task
 
     def step() -> int:
@@ -117,7 +117,7 @@ def _random(machine: Execution, next_pc: int) -> Step:
 
 
 def _binary_handler(calculate: Callable[[int, int], int]) -> Handler:
-    def handler(machine: Execution, next_pc: int) -> Step:
+    def handler(machine: Drive, next_pc: int) -> Step:
         stack = machine.task.stack
 
         def step() -> int:
@@ -131,7 +131,7 @@ def _binary_handler(calculate: Callable[[int, int], int]) -> Handler:
 
 
 def _comparison_handler(compare: Compare) -> Handler:
-    def handler(machine: Execution, next_pc: int) -> Step:
+    def handler(machine: Drive, next_pc: int) -> Step:
         stack = machine.task.stack
 
         def step() -> int:
@@ -145,7 +145,7 @@ def _comparison_handler(compare: Compare) -> Handler:
 
 
 def _unary_handler(calculate: Callable[[int], int]) -> Handler:
-    def handler(machine: Execution, next_pc: int) -> Step:
+    def handler(machine: Drive, next_pc: int) -> Step:
         stack = machine.task.stack
 
         def step() -> int:
@@ -173,7 +173,7 @@ HANDLERS["NOT"] = _unary_handler(lambda a: 0 if a else 1)
 
 
 @handles("AND_THEN", "AND_THEN_FAR")
-def _and_then(machine: Execution, next_pc: int, target: int) -> Step:
+def _and_then(machine: Drive, next_pc: int, target: int) -> Step:
     stack = machine.task.stack
 
     def step() -> int:
@@ -186,7 +186,7 @@ def _and_then(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("OR_ELSE", "OR_ELSE_FAR")
-def _or_else(machine: Execution, next_pc: int, target: int) -> Step:
+def _or_else(machine: Drive, next_pc: int, target: int) -> Step:
     stack = machine.task.stack
 
     def step() -> int:
@@ -202,7 +202,7 @@ def _or_else(machine: Execution, next_pc: int, target: int) -> Step:
 
 
 @handles("SET_VAR")
-def _set_var(machine: Execution, next_pc: int, variable: int) -> Step:
+def _set_var(machine: Drive, next_pc: int, variable: int) -> Step:
     variables, pop = machine.task.variables, machine.task.stack.pop
 
     def step() -> int:
@@ -213,7 +213,7 @@ def _set_var(machine: Execution, next_pc: int, variable: int) -> Step:
 
 
 @handles("SET_VAR8")
-def _set_var8(machine: Execution, next_pc: int, variable: int, number: int) -> Step:
+def _set_var8(machine: Drive, next_pc: int, variable: int, number: int) -> Step:
     variables, value = machine.task.variables, number * ONE
 
     def step() -> int:
@@ -224,7 +224,7 @@ def _set_var8(machine: Execution, next_pc: int, variable: int, number: int) -> S
 
 
 @handles("ADD_VAR8")
-def _add_var8(machine: Execution, next_pc: int, variable: int, number: int) -> Step:
+def _add_var8(machine: Drive, next_pc: int, variable: int, number: int) -> Step:
     variables, value = machine.task.variables, number * ONE
 
     def step() -> int:
@@ -235,17 +235,17 @@ def _add_var8(machine: Execution, next_pc: int, variable: int, number: int) -> S
 
 
 @handles("INC_VAR")
-def _inc_var(machine: Execution, next_pc: int, variable: int) -> Step:
+def _inc_var(machine: Drive, next_pc: int, variable: int) -> Step:
     return _add_var8(machine, next_pc, variable, 1)
 
 
 @handles("DEC_VAR")
-def _dec_var(machine: Execution, next_pc: int, variable: int) -> Step:
+def _dec_var(machine: Drive, next_pc: int, variable: int) -> Step:
     return _add_var8(machine, next_pc, variable, -1)
 
 
 @handles("ADD_VAR")
-def _add_var(machine: Execution, next_pc: int, variable: int, other_variable: int) -> Step:
+def _add_var(machine: Drive, next_pc: int, variable: int, other_variable: int) -> Step:
     variables = machine.task.variables
 
     def step() -> int:

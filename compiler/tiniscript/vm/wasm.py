@@ -27,7 +27,7 @@ _RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
 _HALF_CLOCK_MS = CLOCK_MS // 2
-_MOST_BUDGET = 65_535  # instructions, the most of one tick
+_MOST_STEPS = 65_535  # instructions, the most of one tick
 
 # Where numbers are in `Exchange` of `main.cpp`
 _NOW_MS, _LEFT, _WAKE_MS, _STATUS, _FIRST, _SECOND, _ANSWER, _IS_ANSWERED = range(8)
@@ -134,17 +134,17 @@ class WasmMachine:
         self.steps = 0  # instructions that have run
         self._image = image
 
-    def tick(self, now_ms: int, budget: int) -> str:
-        """Run at most `budget` instructions at the time `now_ms`; return the status."""
-        budget = min(budget, _MOST_BUDGET)
+    def tick(self, now_ms: int, most_steps: int) -> str:
+        """Run at most `most_steps` instructions at the time `now_ms`; return the status."""
+        most_steps = min(most_steps, _MOST_STEPS)
         numbers = self._image.exchange
         numbers[_NOW_MS] = (now_ms + _HALF_CLOCK_MS) % CLOCK_MS - _HALF_CLOCK_MS
-        numbers[_LEFT] = budget
+        numbers[_LEFT] = most_steps
         self._image.tick()
         self.wake_ms = now_ms + (
             (numbers[_WAKE_MS] - now_ms + _HALF_CLOCK_MS) % CLOCK_MS - _HALF_CLOCK_MS
         )
-        self.steps += budget - numbers[_LEFT]
+        self.steps += most_steps - numbers[_LEFT]
         self.status = _STATUSES[numbers[_STATUS]]
         return self.status
 

@@ -93,8 +93,8 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     return !task_.is_late || goes_on(Fault::kOverflow);
   }
   if (family == Family::kRandom) {
-    task_.random = next_random(task_.random);
-    return goes_on(random_between(top - 1, task_.random));
+    task_.random_state = next_random(task_.random_state);
+    return goes_on(random_between(top - 1, task_.random_state));
   }
   if (kHasTasks && family >= Family::kLook) {
     if (family == Family::kLook) return look(*top != 0);

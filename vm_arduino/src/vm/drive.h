@@ -2,7 +2,8 @@
 //
 // One of three files implements it, as `build.h` says: `drive.cpp` where a higher task may take the
 // motors, `tasks_avr.S` for an Uno, `drive_alone.cpp` where there are no tasks. Has the names of
-// `TaskMachine` in `tasks.py`; `tests/project/test_twins.py` lists what has another.
+// `TaskMachine` in `tasks.py` and, where there are no tasks, of `Drive` in `state.py`;
+// `tests/project/test_twins.py` lists what has another.
 
 #pragma once
 

@@ -24,7 +24,7 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   readings_ = readings;
   length_ = length;
   code_ = code;
-  task_.random = seed;
+  task_.random_state = seed;
   task_.started_ms = now_ms;
   if (kHasTasks) find_tasks();
   if (kHasDiscs) forget_way();

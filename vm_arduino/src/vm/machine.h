@@ -1,7 +1,8 @@
 // The machine.
 //
 // Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here blocks. In Python it is `machine.py`. What it has of a program is in
+// little and returns: nothing here blocks. In Python it is `machine.py`, whose `tick` counts instructions;
+// `tests/project/test_twins.py` lists what has another name there. What it has of a program is in
 // `state.h`, how it moves in `drive.h`, the turns of tasks in `scheduler.h`; `inner_loop.cpp` does
 // an instruction at a time, `actions.cpp` what an instruction asks of the robot.
 //

@@ -115,7 +115,7 @@ struct TaskOf<true> {
   uint16_t pc;
   uint8_t depth;   // values on `stack`
   uint8_t framed;  // of `frames`
-  uint32_t random;
+  uint32_t random_state;
   uint32_t started_ms;
   bool is_late;        // 2^31 ms have passed since the start: TIME can no longer express it
   uint8_t others;      // bits, see above
@@ -140,7 +140,7 @@ struct TaskOf<false> {
   uint16_t pc;
   uint8_t depth;
   uint8_t framed;
-  uint32_t random;
+  uint32_t random_state;
   uint32_t started_ms;
   bool is_late;
   TaskRecord me[1];
