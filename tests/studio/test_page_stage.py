@@ -7,7 +7,20 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import axe, checked, hears, in_phase, shown, speak, turn, write
+from tests.studio.test_page_blocks import PROGRAM, becomes, block, box_of
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    axe,
+    checked,
+    finger,
+    hears,
+    in_phase,
+    shown,
+    speak,
+    turn,
+    write,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -120,6 +133,69 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     assert page.evaluate(AREA) <= small and page.locator("#lesson_page").is_visible()
     page.click("#side_virtual")
     turn(page, "program")
+
+
+@pytest.mark.sampled("size")
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
+def test_a_run_that_is_judged_is_as_large_until_it_is_told(
+    page: Page, size: tuple[int, int]
+) -> None:
+    page.reload()  # whoever has chosen a camera keeps it
+    checked(page)
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    turn(page, "program")
+    write(page, FOREVER)
+    turn(page, "robot")
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    page.select_option("#lesson", "3")
+    page.locator("#lesson_page[data-lesson='3']").wait_for()
+    page.locator("#lesson_steps button").last.click()
+    large = size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
+    for is_still in (False, True):
+        page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
+        page.click("#lesson_check")
+        if not is_still:
+            in_phase(page, "running")
+            hears(page, lambda: page.evaluate(AREA) >= large, "a large part of the page")
+            hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+            page.click("#lesson_end")  # which leads to what is said of it
+        page.locator("#lesson_said[data-verdict]").wait_for()
+        assert page.locator("html[data-big]").count() == 0
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) < large
+    page.emulate_media(reduced_motion="no-preference")
+    page.click("#side_virtual")
+    turn(page, "program")
+
+
+def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> None:
+    """The program gets its room back once the finger has gone: a group would come under it, which
+    takes blocks away."""
+    page = pages.open(viewport={"width": 1024, "height": 768}, has_touch=True)
+    page.select_option("#world", "free")
+    write(page, "SI|F(0.1, 60);\nBEEP(0.1, 440);\n")
+    page.click("#view_blocks")
+    shown(page)
+    page.tap("#run")
+    in_phase(page, "ended")
+    narrow = page.evaluate("blocks.clientWidth")
+    box = box_of(block(page, "beep"))
+    x, y = box["x"] + 8, box["y"] + 12
+    finger(page, [(x + 5 * k, y + 20 * k) for k in range(9)])
+    hears(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
+    becomes(page, "SI|F(0.1, 60)\n\n/// BEEP(0.1, 440)\n")
+    page.tap("#run")
+    in_phase(page, "ended")
+    field = page.locator(f"{PROGRAM} .blocklyNumberField", has_text="60")
+    at = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
+    page.touchscreen.tap(at["x"] + at["width"] / 2, at["y"] + at["height"] / 2)
+    hears(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
+    editor = page.locator(".blocklyWidgetDiv input")
+    editor.wait_for()
+    page.evaluate(SETTLED)
+    over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+    own = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
+    assert over["left"] <= own["left"] + 1 and over["right"] >= own["right"] - 1
 
 
 # Of the blocks that run, those that are cut off by the edges of the program.

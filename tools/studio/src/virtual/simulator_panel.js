@@ -227,9 +227,9 @@ export class SimulatorPanel {
    * @param {import('../lesson/lessons.js').JudgedRun} run
    */
   async play(run) {
-    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    await this.#start(false, run, isStill ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
+    await this.#start(false, run, isStill() ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
     if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
+    this.#stage.showWhole(); // what is said of it is read
   }
 
   /**
@@ -506,7 +506,7 @@ export class SimulatorPanel {
     this.#timeLine.begin(run);
     const breakpoints = judgedRun || replay || partProgram ? [] : this.#stops.offsets;
     const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, breakpoints, isPaused, leastSpeed, replay !== null);
-    if (!partProgram && !judgedRun) this.#stage.enlarge(); // it sees nothing of the run before
+    if (!partProgram && !(judgedRun && isStill())) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
 
@@ -771,6 +771,11 @@ function partingText({ what: key, agreed, line, robot, virtual, sensor, began_ms
   const rowText = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
   const placeText = line ? text('line', { line }) : text('record_end');
   return text(textKey(`record_${key}`), { count: agreed, line, place: placeText, robot: rowText(robot), virtual: rowText(virtual), sensor });
+}
+
+/** Whether nothing is to move that need not: a run that was judged is seen at its end. */
+function isStill() {
+  return matchMedia('(prefers-reduced-motion: reduce)').matches;
 }
 
 /** How long the program has run. @param {import('../python.js').RobotState} state */

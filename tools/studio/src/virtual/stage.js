@@ -49,8 +49,22 @@ export class Stage {
       this.#setFull(false); // by Escape, of which the page hears nothing else
       page.stop();
     });
-    // Whoever goes on writing has the room for it again.
-    for (const kind of ['pointerenter', 'focusin']) element('writing', HTMLElement).addEventListener(kind, () => this.#shrink());
+    // Whoever goes on writing has the room for it again; a finger once it has left what would go from under it.
+    const writing = element('writing', HTMLElement);
+    let isHeld = false;
+    writing.addEventListener('pointerenter', ({ pointerType, buttons }) => {
+      if (pointerType !== 'touch' && !buttons) this.#shrink();
+    });
+    writing.addEventListener('pointerdown', () => {
+      isHeld = true;
+    }, { capture: true });
+    writing.addEventListener('focusin', () => {
+      if (!isHeld) this.#shrink();
+    });
+    for (const kind of ['pointerup', 'pointercancel']) addEventListener(kind, () => {
+      if (isHeld) setTimeout(() => this.#shrink()); // after what it did to a block
+      isHeld = false;
+    }, { capture: true });
     // Whoever is at a lesson reads on: once a button has been pressed, which else would go from under the finger.
     const lessons = element('lessons', HTMLElement);
     lessons.addEventListener('click', () => this.#shrink(true));
