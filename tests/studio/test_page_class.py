@@ -52,6 +52,18 @@ NOTES = """() => { window.noted = '';
   const all = {childList: true, subtree: true, characterData: true};
   new MutationObserver(() => { window.noted += wall.textContent; }).observe(wall, all); }"""
 
+# How many lines the bar has, if each of its pictures is as wide as it is high.
+IN_ONE_LINE = """() => {
+  const pictures = [...document.querySelectorAll('#bar button > svg')].filter((each) => each.checkVisibility());
+  if (pictures.some((each) => each.clientWidth < each.clientHeight)) return 0;
+  const tops = (each) => {
+    const range = document.createRange();
+    range.selectNodeContents(each.querySelector('span') ?? each);
+    return new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size;
+  };
+  return Math.max(...[...document.querySelectorAll('#bar button:not(:has(> svg:only-child))')].map(tops));
+}"""  # noqa: E501
+
 # A hand goes up in a page that looks no more by itself.
 UP_AT_ONCE = """() => { for (let k = setTimeout(() => {}); k > 0; k--) clearTimeout(k);
   class_hand.click(); }"""
@@ -242,6 +254,10 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
     page.click("#side_real" if size[0] > size[1] else "#other")
     page.click("#side_real")
     said(page, "Estás en la clase, Eva")
+    if size[0] < size[1]:
+        for _ in range(2):
+            assert page.evaluate(IN_ONE_LINE) == 1  # with the hand, too
+            page.click("#other")
     page.close()
     only_ana(taught)
 

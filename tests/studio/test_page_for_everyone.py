@@ -143,6 +143,19 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page.click("#start_write")
 
 
+@pytest.mark.sampled("language")
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, language: str) -> None:
+    speak(page, language)
+    for width in (1000, 1024, 1366):
+        page.set_viewport_size({"width": width, "height": 600})
+        for robot in page.locator("#robot option").evaluate_all("all => all.map((e) => e.value)"):
+            page.select_option("#robot", robot)
+            assert page.evaluate("document.querySelector('header').clientHeight") < 60, robot
+        assert page.evaluate(CUT) == []
+    speak(page, "en")
+
+
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
     """With no less contrast; what somebody has chosen counts more, and is kept."""
 

@@ -208,7 +208,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
 
 
 # How high a page of a step is at least, by the size of the screen.
-PAGES = {(1366, 768): 500, (1024, 600): 140, (390, 844): 200, (844, 390): 150}
+PAGES = {(1366, 768): 500, (1024, 600): 280, (390, 844): 200, (844, 390): 150}
 
 
 @pytest.mark.long
@@ -229,6 +229,11 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
             )
             assert seen >= min(PAGES[size], whole), (number, button.inner_text())
             assert size[0] != 1366 or seen == whole
+            if page.locator("#lesson_hint").is_visible() and size == (1024, 600):
+                page.click("#lesson_hint summary")
+                seen = page.evaluate("document.querySelector('#lesson_page').clientHeight")
+                assert seen >= 100, "what is to be done, beside a hint"
+                page.click("#lesson_hint summary")
     for number in (1, 7):  # its name is whole, beside its number or over the step
         page.select_option("#lesson", str(number))
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
@@ -426,6 +431,8 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
     noted(page, "It is in the program now. Your own program is in My programs")
+    page.locator("#lesson_steps button").last.click()
+    assert not page.locator("#note").is_visible()  # the step before said so
     page.click("#side_virtual")
     write(page, of_lesson)
     page.click("#side_lessons")
