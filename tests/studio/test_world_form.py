@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.support.texts import LANGUAGES
+from tiniscript import compile
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import vary
 from tiniscript.studio import worker
@@ -137,6 +138,16 @@ def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
     for language, said in (("en", "starts outside the floor"), ("es", "empieza fuera del piso")):
         answer = json.loads(worker.answer(json.dumps({**request, "language": language})))
         assert set(answer) == {"refused"} and said in answer["refused"][0]
+
+
+def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
+    world = opened(GOOD)["world"]
+    start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
+    image = compile("SI|S").image
+    at = (world["start"]["x_cm"], world["start"]["y_cm"], world["start"]["heading"])
+    for pose, found in ((None, at), ((40, 35, 90), (40, 35, 90)), ((1, 1, 0), at)):
+        answer = json.loads(worker.answer(json.dumps({**start, "pose": pose}), image))
+        assert tuple(answer["pose"]) == pytest.approx(found), pose
 
 
 def test_the_limits_are_those_of_the_reader() -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
 from tiniscript.robots import decode_profile
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import describe
 from tiniscript.studio import checking, playing, recordings
@@ -38,11 +40,19 @@ def _world(description: Any) -> World:
     return recordings.stored_form(world)[0]
 
 
+def _begin(fields: Json, world: World, image: bytes, marks: Marks) -> Simulation:
+    if pose := fields.get("pose"):
+        with suppress(WorldRefused):  # something stands there, or it has crashed
+            return Simulation(fields["robot"], world._replace(start=Pose(*pose)), image, marks)
+    return Simulation(fields["robot"], world, image, marks)
+
+
 def _power_on(fields: Json, data: bytes) -> Json:
     """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
     With `is_held` it stands in front of the program's first part. A world of a lesson with an
-    `until_ms` brings the run that was judged there, up to then.
+    `until_ms` brings the run that was judged there, up to then. With a `pose` it begins there, if
+    it has room there, and not at the start.
     """
     global _simulation
     if _simulation is not None:
@@ -65,7 +75,7 @@ def _power_on(fields: Json, data: bytes) -> Json:
             )
             _simulation = _lessons().JudgedRun(*run_arguments, data, marks)
         else:
-            _simulation = Simulation(fields["robot"], _world(description), data, marks)
+            _simulation = _begin(fields, _world(description), data, marks)
     except WorldRefused as refused:
         return {"refused": describe(refused, fields["language"])}
     assert _simulation is not None

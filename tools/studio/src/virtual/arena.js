@@ -37,6 +37,8 @@ export class Arena {
   #robot = ROBOTS[0];
   /** @type {Goal[]} */
   #goals = [];
+  /** Where it stands until it says so. @type {RobotState['pose'] | null} */
+  #pose = null;
   /** What its pen has drawn, the newest run last. @type {[number, number][][]} */
   #tracks = [[]];
   /** How far each wheel has turned, in cm. @type {[number, number]} */
@@ -80,11 +82,13 @@ export class Arena {
    * @param {World} world
    * @param {string} robotName
    * @param {Goal[]} goals where a task leads
+   * @param {RobotState['pose'] | null} pose where it stands, if not at the start
    */
-  begin(world, robotName, goals) {
+  begin(world, robotName, goals, pose = null) {
     if (world !== this.#world || robotName !== this.#robot?.name) this.#tracks = [];
     this.#world = world;
     this.#goals = goals;
+    this.#pose = pose;
     this.#robot = robotOf(robotName) ?? ROBOTS[0];
     this.#tracks = [...this.#tracks.filter((track) => track.length > 1), []].slice(-1 - MOST_OLD_TRACKS);
     this.#rolled_cm = [0, 0];
@@ -169,7 +173,7 @@ export class Arena {
     if (!world) return;
     const { width, height } = this.#canvas;
     const { start } = world;
-    const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
+    const [x, y, heading] = state?.pose ?? this.#pose ?? [start.x_cm, start.y_cm, start.heading];
     this.#placeCamera(world, x, y, heading);
     const takenFlags = state?.score?.taken ?? 0;
     if (takenFlags !== this.#takenFlags) this.#isFloorDrawn = false;

@@ -55,8 +55,9 @@ export class Simulator {
    * @param {boolean} isPaused in front of its first part
    * @param {number} leastSpeed times as quick as the robot, whatever `speed` is
    * @param {boolean} isReplay the recorded run that was opened last
+   * @param {RobotState['pose'] | null} pose where it begins, if it has room there
    */
-  async begin(program, robotName, worldRequest, breakpoints = [], isPaused = false, leastSpeed = 0, isReplay = false) {
+  async begin(program, robotName, worldRequest, breakpoints = [], isPaused = false, leastSpeed = 0, isReplay = false, pose = null) {
     if (this.#isAsking) return;
     this.#leastSpeed = leastSpeed;
     const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
@@ -68,7 +69,7 @@ export class Simulator {
     this.phase = isPaused ? 'paused' : 'running';
     this.#unasked_ms = 0;
     this.#lastFrame_ms = performance.now();
-    const request = { do: 'power_on', robot: robotName, world: worldRequest, language: currentLanguage(), parts: partOffsets, breakpoints, variables: variableCount, is_held: isPaused, plays: isReplay };
+    const request = { do: 'power_on', robot: robotName, world: worldRequest, language: currentLanguage(), parts: partOffsets, breakpoints, variables: variableCount, is_held: isPaused, plays: isReplay, pose };
     await this.#ask(request, new Uint8Array(bytes));
     if (this.phase === 'running') this.#requestFrame();
   }

@@ -491,7 +491,9 @@ export class SimulatorPanel {
     this.#wasStopped = false;
     this.#bumpCount = 0;
     this.#canEarnStars = !judgedRun && !replay && !partProgram;
-    this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals);
+    const before = this.#simulator.state;
+    const pose = partProgram && before && !before.touches ? before.pose : null; // a part goes on where the robot has room
+    this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals, pose);
     this.#plot.begin();
     this.#shownValues.clear();
     this.#program = program;
@@ -505,7 +507,7 @@ export class SimulatorPanel {
     run.isJudged = judgedRun !== null;
     this.#timeLine.begin(run);
     const breakpoints = judgedRun || replay || partProgram ? [] : this.#stops.offsets;
-    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, breakpoints, isPaused, leastSpeed, replay !== null);
+    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, breakpoints, isPaused, leastSpeed, replay !== null, pose);
     if (!partProgram && !(judgedRun && isStill())) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
