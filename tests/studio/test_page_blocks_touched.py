@@ -147,6 +147,37 @@ def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) ->
     assert [each.split()[0] for each in did(page) if "BEEP" in each] == ["BEEP"]
 
 
+def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
+    """Until it touches something; the program begins at the start."""
+    start(page, "SI|F(0.5, 60);\n")
+    page.select_option("#world", "obstacles")
+    in_phase(page, "off")
+
+    def measured() -> float:
+        in_phase(page, "ended")
+        row = page.locator("#values div", has_text="distance").inner_text()
+        return float(row.replace("distance sensor", "").split()[0])
+
+    def tried() -> None:
+        touch(page, "forward")
+        page.locator(f"{PROGRAM} .alone").wait_for(state="attached")
+        page.locator(f"{PROGRAM} .alone").wait_for(state="detached")
+
+    found = []
+    for _ in range(3):
+        tried()
+        found.append(measured())
+    assert found[0] > found[1] + 4 > found[2] + 8
+    page.click("#run")
+    in_phase(page, "running")
+    assert measured() == found[0]
+    start(page, "SI|F(5, 60);\n")
+    page.hover("#blocks")
+    for bumps in ("1", "1"):  # it is not pushed through what it touches
+        tried()
+        assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == bumps
+
+
 # -- what a block shows ----------------------------------------------------------------------------
 
 
@@ -238,8 +269,8 @@ def test_the_keys_are_those_of_a_piano() -> None:
         assert step["to"] == (nearest if nearest is not None else ends[0]), step
 
 
-def pitch(page: Page) -> Locator:
-    field = page.locator(f"{PROGRAM} .blocklyNumberField", has_text="440")
+def pitch(page: Page, hertz: str = "440") -> Locator:
+    field = page.locator(f"{PROGRAM} .blocklyNumberField", has_text=hertz)
     field.first.wait_for()
     return field
 
@@ -262,6 +293,10 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
         assert axe(page, within=".blocklyDropDownDiv") == []
         piano.get_by_text(name, exact=True).click()
         becomes(page, "SI|BEEP(0.5, 330);\nF(5, 80);\n")
+        assert pitch(page, "330").text_content() == "330"  # as it is typed
+        page.keyboard.press("Enter")
+        pitch(page, f"{name} 330").first.click()
+        piano.wait_for()
         piano.locator("button").last.click()  # higher
         piano.locator(".white").first.click()
         becomes(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
@@ -301,6 +336,7 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     page.keyboard.type("1234")  # what is no tone of a piano stays
     page.keyboard.press("Enter")
     becomes(page, "SI|BEEP(0.5, 1234);\nS;\n")
+    assert pitch(page, "1234").text_content() == "1234"
 
 
 # -- what somebody looks for -----------------------------------------------------------------------

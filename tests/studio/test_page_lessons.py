@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.sampling import some_of
 from tests.support.studio import (
+    SETTLED,
     Pages,
     axe,
     checked,
@@ -420,6 +421,30 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     names = page.locator("#versions strong").all_inner_texts()
     page.click("#programs_close")
     assert lesson.title("en").replace(":", "") in names
+
+
+@drawn
+def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
+    """Nobody is told on the start page, and whoever reads on in another language reads why."""
+    choose(page, 7)
+    write(page, SLOW)
+    page.click("#lesson_check")
+    page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
+    speak(page, "es")
+    page.locator("#lesson_said", has_text="No hay resultado").wait_for()
+    speak(page, "en")
+    choose(page, 1)
+    right, _ = catalogue.answers(FOLDERS[0])
+    write(page, right[0].program)
+    page.select_option("#speed", "1")
+    page.click("#lesson_check")
+    in_phase(page, "running")
+    page.click("#home")
+    page.locator("html[data-screen=start]").wait_for(state="attached")
+    page.evaluate(SETTLED)
+    assert page.locator("#lesson_said[data-verdict]").count() == 0
+    assert page.locator(".confetti").count() == 0
+    page.click("#start_write")
 
 
 @drawn

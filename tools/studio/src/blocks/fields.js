@@ -3,7 +3,8 @@
 import * as Blockly from 'blockly/core';
 import { Piano } from './piano.js';
 import { rangeAt } from './places.js';
-import { hertzOfKey, nextKeyFrom } from './tones.js';
+import { hertzOfKey, keyName, keyOfHertz, nextKeyFrom } from './tones.js';
+import { text } from '../page/texts.js';
 import { blockLabel } from '../page/words.js';
 
 export const WAY_UNIT = 'way'; // not for so long, but so far
@@ -88,6 +89,19 @@ export class NumberField extends Blockly.FieldNumber {
     event.preventDefault();
     event.stopPropagation();
     this.choosePitch(hertzOfKey(nextKeyFrom(Number(this.getValue()), direction)));
+  }
+
+  /** With the name of its tone, where a piano has it, unless it is typed. @returns {string | null} */
+  getText_() {
+    const typed = super.getText_(), value = Number(this.getValue());
+    if (typed !== null || !this.isPitch || hertzOfKey(keyOfHertz(value)) !== value) return typed;
+    return `${keyName(keyOfHertz(value), text('notes').split(' '))} ${this.getValue()}`;
+  }
+
+  /** What hangs in another block may be a tone, or no longer be one. */
+  getSize() {
+    if (!this.isBeingEdited_ && this.textContent_ && this.textContent_.nodeValue !== this.getDisplayText_()) this.isDirty_ = true;
+    return super.getSize();
   }
 
   /** Without an exponent, which the language does not know. @returns {string} */

@@ -162,7 +162,8 @@ export class Lessons {
 
   /** Fetches the names of the lessons and the page of the one that is chosen. */
   async #fetchLessons() {
-    const requestNumber = ++this.#requestCount;
+    const requestNumber = ++this.#requestCount, wasChecking = !this.#endButton.hidden;
+    if (wasChecking) this.#page.simulatorPanel.stop();
     this.#verdictElement.textContent = text('lessons_coming');
     const language = currentLanguage();
     try {
@@ -173,6 +174,7 @@ export class Lessons {
       if (!this.#steps.length) this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => !loadDoneLessons().has(name)));
       this.#listLessons();
       await this.#chooseLesson(this.#lessonNumber);
+      if (wasChecking) this.#verdictElement.textContent = text('lesson_ended');
     } catch (error) {
       this.#isShown = false;
       this.#setReady(false);
@@ -324,8 +326,9 @@ export class Lessons {
     return { text: programText, robot: lesson.robot, name: this.#lessonProgramName };
   }
 
-  /** The lesson is over: this person's own program comes back, unless another one has been opened since. */
+  /** The lesson is over, and its check: this person's own program comes back, unless another one has been opened since. */
   leave() {
+    if (!this.#endButton.hidden) this.#forgetCheck();
     const ownProgram = this.#isOfLesson ? this.#ownProgram : null;
     this.#ownProgram = null;
     if (!ownProgram || pageState.groupName.value) return;
