@@ -376,6 +376,8 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
         if begin == "light":
             assert "39,50,75" in set(page.evaluate(COLORS))
             assert "255,253,246" not in set(page.evaluate(COLORS))
+        if begin == "square":  # a camera that follows shows that it drives
+            assert "230,220,196" in set(page.evaluate(COLORS))
         page.click("#stop")
         in_phase(page, "ended")
 
