@@ -22,7 +22,7 @@ from tests.studio.test_page_blocks import (
 )
 from tests.studio.test_page_runs import kept
 from tests.support.node import in_node
-from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, speak
+from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, speak, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -245,6 +245,31 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         tail = page.locator("#blocks .blocklyBubbleTail")
         begin = tail.evaluate("e => e.getBoundingClientRect().left")
         assert begin > own["right"] - 14 and tail.is_visible()
+
+
+@drawn
+def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None:
+    """Whoever builds has many of them for a while: no block moves for them."""
+    for size in ((1366, 768), (390, 844)):
+        page = pages.open(viewport={"width": size[0], "height": size[1]})
+        start(page, "SI|S;\n")
+        high = page.evaluate("blocks.clientHeight")
+        page.click("#view_text")
+        write(page, "SI|LOOP(FOREVER);\nEND_LOOP;\n")
+        page.click("#view_blocks")
+        shown(page)
+        list_of_all = page.locator("#messages li")
+        assert list_of_all.count() and not list_of_all.first.is_visible()
+        assert page.evaluate("blocks.clientHeight") == high
+        assert page.locator(f"{PROGRAM} .blocklyIconGroup").is_visible()
+        page.click("#sheet")
+        assert list_of_all.first.is_visible()
+        page.click("#sheet")
+        assert not list_of_all.first.is_visible()
+        start(page, "SI|S;\n")
+        start(page, "SI|F(-2);\n")  # a mistake is told at once
+        assert list_of_all.first.is_visible()
+        assert axe(page) == []
 
 
 # -- a piano ---------------------------------------------------------------------------------------

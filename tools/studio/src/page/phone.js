@@ -1,5 +1,6 @@
 // On a phone the program and the robot are a screen each, over one bar with what both need: the other
-// screen, Run and STOP. What the compiler says is a sheet over the blocks, which can be put away.
+// screen, Run and STOP. What the compiler says is a sheet over the blocks, which can be put away; warnings alone, which
+// come and go while somebody builds with blocks, wait at their blocks until somebody asks for them, on every screen.
 
 import { element } from './elements.js';
 import { showSide } from './sides.js';
@@ -15,7 +16,8 @@ export class Phone {
   #runButton = element('run', HTMLButtonElement);
   #stopButton = element('stop', HTMLButtonElement);
   #sheetButton = element('sheet', HTMLButtonElement);
-  #isSheetAway = false; // the sheet, until the program is right again or somebody asks for it
+  /** What somebody wants of the sheet, until the program is right again. @type {boolean | null} */
+  #isAwayWanted = null;
 
   #runRealRobot;
 
@@ -41,8 +43,11 @@ export class Phone {
     this.#sheetButton.addEventListener('click', () => this.#setSheetAway(!this.#isSheetAway));
     pageState.language.subscribe(() => this.#labelOtherButton());
     pageState.checkResult.subscribe((answer) => {
-      if (answer) this.#showFindingCount(answer.findings.length);
+      if (!answer) return;
+      this.#sheetButton.hidden = !answer.findings.length;
+      this.#setSheetAway(answer.findings.length ? this.#isAwayWanted : null);
     });
+    pageState.view.subscribe(() => this.#setSheetAway(this.#isAwayWanted));
     this.show('program');
     this.#layOut();
   }
@@ -57,17 +62,15 @@ export class Phone {
     element('other_name', HTMLElement).textContent = text(dataset['half'] === 'robot' ? 'editor' : 'half_robot');
   }
 
-  /** @param {number} count of what the compiler says of the newest program */
-  #showFindingCount(count) {
-    this.#sheetButton.hidden = !count;
-    this.#setSheetAway(count > 0 && this.#isSheetAway);
+  get #isSheetAway() {
+    return this.#isAwayWanted ?? (pageState.view.value === 'blocks' && Boolean(pageState.checkResult.value?.image));
   }
 
-  /** @param {boolean} isAway */
+  /** @param {boolean | null} isAway */
   #setSheetAway(isAway) {
-    this.#isSheetAway = isAway;
-    this.#sheetButton.setAttribute('aria-expanded', String(!isAway));
-    element('writing', HTMLElement).dataset['sheet'] = isAway ? 'away' : 'up';
+    this.#isAwayWanted = isAway;
+    this.#sheetButton.setAttribute('aria-expanded', String(!this.#isSheetAway));
+    element('writing', HTMLElement).dataset['sheet'] = this.#isSheetAway ? 'away' : 'up';
   }
 
   /** Run and STOP are where a thumb reaches them. */

@@ -68,7 +68,7 @@ function drawTheme(pen, world) {
     }
   }
   if (!theme) { // beside a robot that is followed, nothing else would move
-    for (let x = TILE_CM; x < width; x += TILE_CM) for (let y = TILE_CM; y < height; y += TILE_CM) dot(pen, x, y, 0.9, '#e6dcc4');
+    for (let x = TILE_CM; x < width; x += TILE_CM) for (let y = TILE_CM; y < height; y += TILE_CM) drawDot(pen, x, y, 0.9, '#e6dcc4');
   }
   if (theme === 'city') drawStreets(pen, world);
   if (theme === 'ring') for (const { points } of world.lines) drawPath(pen, points, 'transparent', 0, '#f6e3bd');
