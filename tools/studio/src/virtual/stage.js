@@ -74,7 +74,7 @@ export class Stage {
     pageState.screen.subscribe((screen) => {
       if (screen !== 'start') return;
       this.#setFull(false);
-      this.#shrink();
+      this.#shrink(true); // whoever leaves a run ends it
     });
     let shownSideId = pageState.sideId.value;
     pageState.sideId.subscribe((sideId) => {
