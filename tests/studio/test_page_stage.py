@@ -361,6 +361,17 @@ def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
     choose(page, "whole")
 
 
+def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) -> None:
+    write(page, "SI|S;\n")
+    for world, raised in (("obstacles", "156,115,70"), ("maze", "138,101,68")):
+        page.select_option("#world", world)
+        in_phase(page, "off")
+        for camera in ("whole", "above", "behind"):
+            choose(page, camera)
+            assert (raised in page.evaluate(COLORS)) == (camera == "behind"), (world, camera)
+    choose(page, "whole")
+
+
 def test_each_start_picture_leads_to_its_world(page: Page) -> None:
     """A dance floor has tiles that light, and lamps shine in the dark."""
     for begin, world in (

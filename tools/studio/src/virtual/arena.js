@@ -6,7 +6,7 @@ import { COLOURS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { drawDot, drawPath } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
-import { drawWorld, lightTile } from '../world/floor.js';
+import { drawWorld, lightTile, raiseWorld } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @import { World, Point } from '../world/parts.js' */
@@ -188,9 +188,18 @@ export class Arena {
     pen.setTransform(this.#floorToCanvas);
     pen.lineCap = pen.lineJoin = 'round';
     lightTile(pen, world, x, y);
+    if (this.#isFromBehind) {
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      raiseWorld(pen, world, this.#floorToCanvas, this.#scale);
+      pen.setTransform(this.#floorToCanvas);
+    }
     world.rivals.forEach((rival, index) => drawRival(pen, rival, state?.rivals[index] ?? [rival.x_cm, rival.y_cm, rival.heading]));
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
+  }
+
+  get #isFromBehind() {
+    return this.#camera === 'behind' && !this.#floorMark;
   }
 
   /**

@@ -12,6 +12,7 @@ import { cornersOf } from './parts.js';
 const GRID_CM = 10; // while a world is changed
 const TILE_CM = 25;
 const LAWN_CM = 7; // around a house
+const WALL_CM = 2, WALL_HIGH_CM = 7, BOX_HIGH_CM = 12;
 const DASH_CM = 6; // of the white line in the middle of a street
 const NIGHT_PERCENT = 5; // of light, at most, where it is night
 const PAPER_COLOR = '#fffdf6', NIGHT_COLOR = '#27324b';
@@ -40,12 +41,42 @@ export function drawWorld(pen, world, goals, takenFlags, isEdited) {
     drawDot(pen, x, y, 3, '#e08a1e');
   }
   for (const box of world.boxes) drawPath(pen, cornersOf(box), '#6b4a2f', 1, '#c79a6b');
-  for (const wall of world.walls) drawPath(pen, wall.points, '#6b4a2f', 2);
+  for (const wall of world.walls) drawPath(pen, wall.points, '#6b4a2f', WALL_CM);
   if (world.has_border) {
     pen.strokeStyle = '#6b4a2f';
-    pen.lineWidth = 2;
+    pen.lineWidth = WALL_CM;
     pen.strokeRect(0, 0, world.width_cm, world.height_cm);
   }
+}
+
+/**
+ * Raises what stands on a floor that is seen from behind a robot: above the middle of the picture is far away.
+ * @param {Pen} pen of the picture, in its pixels
+ * @param {World} world
+ * @param {DOMMatrix} place from the floor, in centimetres, to the picture
+ * @param {number} scale pixels of a centimetre
+ */
+export function raiseWorld(pen, world, place, scale) {
+  const { width_cm: x, height_cm: y } = world;
+  const rows = [...world.walls.map(({ points }) => points), ...world.has_border ? [[[0, 0], [x, 0], [x, y], [0, y], [0, 0]]] : []];
+  const walls = rows.flatMap((points) => points.slice(1).map((to, k) => ({ corners: plank(points[k] ?? to, to), high_cm: WALL_HIGH_CM, top: '#8a6544', side: '#6b4a2f' })));
+  const boxes = world.boxes.map((box) => ({ corners: cornersOf(box), high_cm: BOX_HIGH_CM, top: '#c79a6b', side: '#9c7346' }));
+  const things = [...walls, ...boxes].map((each) => ({ ...each, base: each.corners.map(([at_x = 0, at_y = 0]) => place.transformPoint({ x: at_x, y: at_y })) }));
+  const lowest = (/** @type {{y: number}[]} */ base) => Math.max(...base.map((each) => each.y));
+  for (const { base, high_cm, top, side } of things.sort((a, b) => lowest(a.base) - lowest(b.base))) {
+    const high = high_cm * scale, edges = base.map((from, k) => /** @type {const} */ ([from, base[(k + 1) % base.length] ?? from]));
+    for (const [from, to] of edges.sort(([a, b], [c, d]) => a.y + b.y - c.y - d.y)) {
+      drawPath(pen, [[from.x, from.y], [to.x, to.y], [to.x, to.y - high], [from.x, from.y - high]], '#5a3d26', 1, side);
+    }
+    drawPath(pen, base.map((each) => [each.x, each.y - high]), '#5a3d26', 1, top);
+  }
+}
+
+/** The corners of a wall as thick as it is drawn. @param {number[]} from @param {number[]} to */
+function plank([from_x = 0, from_y = 0], [to_x = 0, to_y = 0]) {
+  const long = Math.hypot(to_x - from_x, to_y - from_y) || 1;
+  const x = (from_y - to_y) / long * WALL_CM / 2, y = (to_x - from_x) / long * WALL_CM / 2;
+  return [[from_x + x, from_y + y], [to_x + x, to_y + y], [to_x - x, to_y - y], [from_x - x, from_y - y]];
 }
 
 /** @param {World} world */
