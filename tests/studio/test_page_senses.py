@@ -130,6 +130,20 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     assert seen_runs(page) == runs
 
 
+def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: PtyRobot) -> None:
+    """And nothing of what it does not read."""
+    watch(page)
+    senses(page, robot, 3, 4, 5)
+    write(page, "LOOP(FOREVER);X = DISTANCE;W(0.1);END_LOOP")
+    upload_until_it_runs(page)
+    does(page, "own")
+    for distance in (12, 345):
+        robot.ask(lambda made, now=distance: made.sense(3000, 4000, 1000 * now))
+        page.locator("#gauges dd").last.filter(has_text=re.compile(rf"^{distance}\b")).wait_for()
+    assert page.locator("#senses:not(.past)").count() == 1
+    assert page.locator("#gauges dd").first.inner_text() == ""
+
+
 @drawn
 def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
     watch(page)

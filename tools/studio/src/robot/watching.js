@@ -1,4 +1,4 @@
-// What a real robot senses while it runs no program: as gauges, and as curves.
+// What a real robot senses: as gauges, and as curves. While a program runs, these are the readings that it takes.
 //
 // No message of the link asks for readings, so a line runs on the robot that shows them again and again. It has no
 // motor in it. It begins where nothing runs and nothing waits for the robot's button, which stops a line instead of
@@ -31,6 +31,8 @@ const LOAD_DIVISOR = 3; // a third of what the line can carry, at most
 const LEAST_INTERVAL_MS = 200; // between two readings: nobody reads more often
 const PAUSE_MS = 1000; // after a program, before it begins again
 const EMPTY_LINE = 'W(0)'; // a line that ends at once, in the place of the other one
+/** What the program before reads no more after. */
+const ENDS = ['STARTED', 'DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST'];
 /** What does not end by itself what runs, and needs the robot for itself. */
 const INTERRUPTING_REQUESTS = ['identify', 'name', 'trim', 'claim'];
 
@@ -51,6 +53,8 @@ export class SensorWatch {
   #lines = new Map();
   /** By the name of the sensor, as the robot has told them. @type {Map<string, string>} */
   #readings = new Map();
+  /** Sensors that the program which runs has read. @type {Set<string>} */
+  #read = new Set();
   #began_ms = 0;
   #plot = new Plot(element('senses_plot', HTMLCanvasElement));
   #watchButton = element('link_watch', HTMLButtonElement);
@@ -73,6 +77,7 @@ export class SensorWatch {
     this.#isWanted = loadText(STORAGE_KEY) !== '' && robotInfo?.owner !== 'other';
     this.#isProgramWaiting = this.#isOwnLine = false;
     this.#readings.clear();
+    this.#read.clear();
     this.#plot.begin();
     this.#began_ms = performance.now();
     this.#stopWatching();
@@ -105,7 +110,9 @@ export class SensorWatch {
   }
 
   /** @param {RobotEvent} event @param {boolean} isTyped it tells of a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
-  onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause }, isTyped) {
+  onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause, rows = [] }, isTyped) {
+    if (event === 'READING') this.#takeRead(rows);
+    else if (ENDS.includes(event)) this.#read.clear();
     const isOwn = this.#lines.has(checksum);
     if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
@@ -229,8 +236,29 @@ export class SensorWatch {
     const show = line && showAt(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);
-    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOfShown(this.#readings.get(device.text)) })));
+    this.#drawReadings();
+  }
+
+  /** @param {[number, string][]} rows what a program has read, for who has watched the sensors before */
+  #takeRead(rows) {
+    if (!this.#readings.size) return;
+    for (const [, what] of rows) {
+      const [kind, name = '', value = ''] = what.split(' ');
+      if (kind !== 'READ') continue;
+      this.#read.add(name);
+      this.#readings.set(name, value);
+    }
+    if (this.#read.size) this.#drawReadings();
+  }
+
+  #drawReadings() {
+    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOfShown(this.#valueOf(device.text)) })));
     this.#frameRequest ||= requestAnimationFrame(() => this.#show());
+  }
+
+  /** What is known now: of a program that runs, what it reads. @param {string} name */
+  #valueOf(name) {
+    return !this.#read.size || this.#read.has(name) ? this.#readings.get(name) : undefined;
   }
 
   #show() {
@@ -241,10 +269,10 @@ export class SensorWatch {
     setHidden(this.#watchButton, !this.#sensors.length);
     setHidden(container, !this.#readings.size);
     this.#watchButton.setAttribute('aria-pressed', String(this.#isOn || this.#isBeginning));
-    container.classList.toggle('past', !this.#isOn);
+    container.classList.toggle('past', !this.#isOn && !this.#read.size);
     if (container.hidden) return;
     showRows(element('gauges', HTMLElement), this.#sensors.map((device) => {
-      const reading = this.#readings.get(device.text) ?? '';
+      const reading = this.#valueOf(device.text) ?? '';
       return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOfShown(reading))];
     }));
     this.#plot.draw();
