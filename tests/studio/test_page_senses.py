@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -21,6 +22,8 @@ from tiniscript.studio import serving
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
+
+    from tests.machines.host_firmware import HostFirmware
 
 pytestmark = pytest.mark.usefixtures("unhurried")
 drawn = pytest.mark.sampled(of="details of the senses", keep=2)
@@ -90,6 +93,10 @@ def senses(page: Page, robot: PtyRobot, *values: int) -> None:
         said.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
 
 
+def sense(distance: int, made: HostFirmware) -> None:
+    made.sense(3000, 4000, 1000 * distance)
+
+
 def watch(page: Page) -> None:
     page.click("#link_watch")
     page.locator("#link_watch[aria-pressed=true]").wait_for()
@@ -138,7 +145,7 @@ def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: Pt
     upload_until_it_runs(page)
     does(page, "own")
     for distance in (12, 345):
-        robot.ask(lambda made, now=distance: made.sense(3000, 4000, 1000 * now))
+        robot.ask(partial(sense, distance))
         page.locator("#gauges dd").last.filter(has_text=re.compile(rf"^{distance}\b")).wait_for()
     assert page.locator("#senses:not(.past)").count() == 1
     assert page.locator("#gauges dd").first.inner_text() == ""
