@@ -173,9 +173,11 @@ class Pip:
         self.root = root
         self.has: tuple[str, set[str]] = ("", set())  # of which state of pyproject.toml, and what
         self.end = "works"
+        self.asked_count = 0
 
     def __call__(self, words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
         if "install" in words:
+            self.asked_count += 1
             state = (self.root / "pyproject.toml").read_text()
             if self.end != "works":
                 self.has = ("a part", set())
@@ -192,17 +194,21 @@ class Pip:
 def test_what_is_there_is_what_is_asked_for(
     seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After any history of states of the repository, of extras, and of ends of pip."""
+    """After any history of states of the repository, of extras, and of ends of pip. What is there
+    asks for no network."""
     rng, pip = random.Random(seed), Pip(folder)
     monkeypatch.setattr(subprocess, "run", pip)
     for _ in range(12):
         state, extras = rng.choice(("one", "two")), rng.choice(("", "[test]", "[firmware]"))
         pip.end = rng.choice(("works", "works", "works", "fails", "is cut off"))
         (folder / "pyproject.toml").write_text(state)
+        is_there, asked_count = pip.has[0] == state and extras in pip.has[1], pip.asked_count
         try:
             environment.make(extras, folder)
         except (SystemExit, KeyboardInterrupt):
             continue
+        finally:
+            assert (pip.asked_count == asked_count) == is_there
         assert pip.has[0] == state and extras in pip.has[1]
 
 
@@ -230,6 +236,27 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     python = {"../.venv/bin/python": 'case "$*" in *environment*) echo "$*";; esac'}
     completed = script(tmp_path, python)
     assert completed.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", completed.stderr
+
+
+PYTHONS = ("python3", "python3.13", "python3.12", "python3.11", "python3.10", "python")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_shell_takes_a_python_that_is_new_enough(seed: int, tmp_path: Path) -> None:
+    """Whatever others there are, and in which order they are found."""
+    rng = random.Random(seed)
+    minors = {name: rng.randint(7, 14) for name in PYTHONS if rng.random() < 0.5}
+    programs = {
+        name: f"""case "$*" in
+*environment.py*) echo {name} ;;
+*version_info*) exec {sys.executable} -c "import sys; sys.version_info = (3, {minor}); $2" ;;
+esac"""
+        for name, minor in minors.items()
+    }
+    completed = script(tmp_path, programs)
+    new_enough = [name for name in PYTHONS if minors.get(name, 0) >= 10]
+    assert completed.stdout == "".join(f"{name}\n" for name in new_enough[:1]), minors
+    assert completed.returncode == (0 if new_enough else 2)
 
 
 @pytest.mark.parametrize(("has_apt", "code"), [(True, 0), (False, 2)])

@@ -99,27 +99,41 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     subprocess.run(build, check=True)
 
     home = tmp_path / "Ana María"
+    tsc = home / "tsc" / "bin" / "tsc"
     is_cut_off = not subprocess.run([*CUT_OFF, "true"], capture_output=True).returncode
-    command = ["sh", str(stick / "start.sh"), str(home)]
+    command = [*(CUT_OFF if is_cut_off else []), "sh", str(stick / "start.sh"), str(home)]
     variables = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin", "LC_ALL": "es_PE.UTF-8",
                  "HOME": str(tmp_path)}  # fmt: skip
-    completed = subprocess.run(
-        [*(CUT_OFF if is_cut_off else []), *command], env=variables, capture_output=True, text=True
-    )
-    assert completed.returncode == 0, completed.stdout + completed.stderr
-    assert "Listo." in completed.stdout
-    assert "no funciona" not in completed.stdout
-    assert (home / "pages" / "index.es.html").is_file()
-    assert (home / "pages" / "index.pt.html").is_file()
-    tsc = home / "tsc" / "bin" / "tsc"
-    ran = subprocess.run(
-        [tsc, "run", "--machine", "cpp", "-e", "SI|F(2, 80)"], env=variables, cwd=tmp_path,
-        capture_output=True, text=True,
-    )  # fmt: skip
-    assert ran.returncode == 0, ran.stderr
-    assert "2000 MOTORS 0 0" in ran.stdout
-    shown = subprocess.run([tsc, "check", "-e", "F(2 80)"], env=variables, capture_output=True)
-    assert shown.returncode == 1
+    for _ in range(2):
+        completed = subprocess.run(command, env=variables, capture_output=True, text=True)
+        assert completed.returncode == 0, completed.stdout + completed.stderr
+        assert "Listo." in completed.stdout
+        assert "no funciona" not in completed.stdout
+        assert (home / "pages" / "index.es.html").is_file()
+        assert (home / "pages" / "index.pt.html").is_file()
+        ran = subprocess.run(
+            [tsc, "run", "--machine", "cpp", "-e", "SI|F(2, 80)"], env=variables, cwd=tmp_path,
+            capture_output=True, text=True,
+        )  # fmt: skip
+        assert ran.returncode == 0, ran.stderr
+        assert "2000 MOTORS 0 0" in ran.stdout
+        shown = subprocess.run([tsc, "check", "-e", "F(2 80)"], env=variables, capture_output=True)
+        assert shown.returncode == 1
+        make_older(home)
+
+
+def make_older(home: Path) -> None:
+    """Make what is installed an older version, which does not work."""
+    facts = next(home.rglob("tiniscript-*.dist-info"))
+    older = facts.with_name("tiniscript-0.0.1.dist-info")
+    version = facts.name.split("-")[1].removesuffix(".dist")
+    for name, word in (("METADATA", f"Version: {version}"), ("RECORD", facts.name)):
+        text = (facts / name).read_text("utf-8")
+        assert word in text
+        text = text.replace(word, "Version: 0.0.1" if name == "METADATA" else older.name)
+        (facts / name).write_text(text, "utf-8")
+    facts.rename(older)
+    (facts.parent / "tiniscript" / "__init__.py").write_text("raise SystemExit('older')\n")
 
 
 @pytest.mark.sampled(of="sticks that pip reads")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pytest
 
+from tools.release import __main__ as release
 from tools.release.parts import PARTS, Clone, chosen_parts
 
 
@@ -25,3 +27,34 @@ def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(
     assert found["PYTHONHASHSEED"] == "2"
     assert found["PYTHONPATH"].startswith(str(tmp_path))
     assert "PYTHONSTARTUP" not in found
+
+
+@pytest.mark.parametrize(
+    ("has_complaint", "differs", "goes_on", "tags"), [*product((False, True), repeat=4)]
+)
+def test_a_commit_is_released_and_tagged_if_nothing_is_wrong(
+    has_complaint: bool,
+    differs: bool,
+    goes_on: bool,
+    tags: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clones = [Clone(tmp_path, tmp_path / f"parts{k}", "1", "", 0, k, False) for k in (1, 2)]
+    tagged_versions: list[str] = []
+
+    def make(clone: Clone, _parts: object) -> dict[str, list[Path]]:
+        clone.parts.mkdir()
+        file = clone.parts / "site.zip"
+        file.write_text(str(clone.seed) if differs else "the same")
+        return {"site": [file]}
+
+    monkeypatch.setattr(release, "find_missing_tool", lambda parts: "")
+    monkeypatch.setattr(release, "_clones", lambda *_: clones)
+    monkeypatch.setattr(release, "_make", make)
+    monkeypatch.setattr(release.facts, "complaints", lambda root: ["wrong"] * has_complaint)
+    monkeypatch.setattr(release, "tag", lambda root, version: tagged_versions.append(version))
+    options = ["--as-is"] * goes_on + ["--tag"] * tags
+    code = release.main([str(tmp_path / "made"), *options])
+    assert code == (2 if has_complaint and not goes_on else int(has_complaint or differs))
+    assert bool(tagged_versions) == (tags and code == 0)

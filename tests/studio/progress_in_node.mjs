@@ -2,7 +2,7 @@
 
 import { mock } from 'node:test';
 
-const { watchPromise, watchedFetch } = await import(`${process.argv[2]}/page/progress.js`);
+const { Progress, watchPromise, watchedFetch } = await import(`${process.argv[2]}/page/progress.js`);
 
 mock.timers.enable({ apis: ['setTimeout'] });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
@@ -61,4 +61,10 @@ told.push(`${await never} ${waits}`);
 const cancelSignal = AbortSignal.abort();
 told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((why) => why.name));
 told.push(await watchPromise(Promise.resolve('there'), {}));
+const over = new Progress({ onWait: () => { waits += 1; } });
+waits = 0;
+over.end();
+over.advance(); // of somebody who does not know that it is over
+await passes(25_000);
+told.push(`${waits} ${over.signal.aborted}`);
 console.log(JSON.stringify(told));

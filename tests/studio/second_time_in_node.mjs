@@ -102,9 +102,21 @@ const PARTS = {
       simulator.speed = chance.of([0.1, 0.5, 1, 4]);
       simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3);
       await passes(50);
+      const setPoints = () => {
+        const breakpoints = [chance.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
+        const before = notes.length;
+        simulator.setBreakpoints(breakpoints);
+        if (isUnderWay) told = async () => {
+          for (let k = 0; k < 50 && !simulator.failure && !notes.slice(before).some((note) => note.do === 'breakpoints'); k += 1) await passes(20);
+          if (!simulator.failure && `${notes.slice(before).findLast((note) => note.do === 'breakpoints')?.breakpoints}` !== `${breakpoints}`) throw new Error('breakpoints of a run that is under way are not set');
+        };
+      };
+      let told = async () => {};
       for (let k = chance.below(8); k > 0; k -= 1) {
-        chance.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), () => {}])();
+        chance.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
         await passes(chance.below(400));
+        await told();
+        told = async () => {};
       }
       const end = chance.of(['stop', 'leave', 'wait']);
       await passes(end === 'wait' ? 4000 : 0);
@@ -909,7 +921,7 @@ const PARTS = {
       let stop = ''; // pressed, or done, since the newest start
       const acts = {
         tells() {
-          const event = chance.of(EVENTS);
+          const event = chance.of([...EVENTS, EVENTS[0], EVENTS[0], EVENTS[5], EVENTS[5]]); // a run that starts after a stop, and stops
           notes.length = 0;
           if (event.event === 'STOPPED' && stop === '') page.byId('link_said').textContent = '';
           ways[0]?.tell(event);
@@ -966,6 +978,67 @@ const PARTS = {
       if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
       if (!isGood && wasMet && isUnsaid && !said().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${said()}`);
       return { ends: [end], seen: [all, [...notes]] };
+    };
+  },
+
+  // Sensors of a real robot that are watched, and then another robot: what is seen is what it has told itself.
+  async watching() {
+    const page = freshPage({ Plot: class { begin() {} add() {} draw() {} } });
+    playsNavigator({});
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { SensorWatch } = await page.load('robot/watching.js');
+    const { devicesOf } = await page.load('page/words.js');
+    pageState.sideId.set('side_real');
+    let late = () => 5;
+    let wasWanted = false; // which the page keeps
+    let robot = null, line = '', told = new Map();
+    const python = {
+      async ask({ robot: name }, bytes) {
+        const text = new TextDecoder().decode(bytes);
+        await later(late());
+        const shows = [...text.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
+        return { image: text, program: `${name} ${text}`, places: shows.map(([offset]) => [offset]), shows };
+      },
+    };
+    const watch = new SensorWatch({
+      python,
+      async ask({ image, robot: name }) {
+        await later(late());
+        if (name !== robot) return null;
+        line = `${name} ${image}`;
+        return { ok: true };
+      },
+      say() {},
+      tell() {},
+    });
+    const seen = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(200));
+      robot = chance.of(['tinibot', 'liner']);
+      told = new Map();
+      line = '';
+      watch.meet({ robot, owner: 'free', is_idle: true, is_running: false });
+      if (!wasWanted) page.byId('link_watch').click();
+      wasWanted = true;
+      const all = [seen()];
+      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
+        await passes(chance.below(400));
+        const sensors = devicesOf(robot, 'sensor').map(({ text }) => text), at = chance.below(sensors.length);
+        if (line.includes('SHOW')) {
+          watch.onEvent({ event: 'SHOW', program: line, at, value: String(k) }, false);
+          told.set(sensors[at], String(k));
+        }
+        await passes(50);
+        all.push(seen());
+        const shown = page.byId('senses').hidden ? 0 : page.byId('gauges').children.filter((row) => row.children[1].textContent).length;
+        if (shown !== told.size) throw new Error(`${shown} sensors are seen, and ${told.size} were told`);
+      }
+      const end = told.size ? 'told' : 'silent';
+      robot = null;
+      watch.meet(null);
+      await passes(500);
+      return { ends: [end], seen: [all, line] };
     };
   },
 

@@ -109,7 +109,7 @@ def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -
 def test_what_is_fetched_goes_on_while_something_comes_and_ends_when_nothing_does() -> None:
     assert json.loads(in_node(SCRIPT)[0]) == [
         "slow 1", "quick 0", "TimeoutError 1", "AbortError 0",
-        "TimeoutError 1", "AbortError", "there",
+        "TimeoutError 1", "AbortError", "there", "0 false",
     ]  # fmt: skip
 
 

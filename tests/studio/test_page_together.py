@@ -388,6 +388,11 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     types(ana, "\nW(8)\n")
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert "W(8)" not in "".join(lines(luz))
+    luz.reload()  # nobody is in a group again unasked
+    luz.click("#side_real")
+    luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
+    assert luz.locator("html[data-group=in]").count() == 0
+    assert "W(8)" not in "".join(lines(luz))
     luz.locator("#class_group button", has_text="Red (Ana)").click()
     has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
 

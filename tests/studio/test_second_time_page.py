@@ -52,6 +52,7 @@ ENDS = {
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
     "presses": {"run", "step", "stop", "edits"},
+    "watching": {"told", "silent"},
 }
 
 
