@@ -54,6 +54,12 @@ constexpr uint8_t kNeedsTasks = 1;
 constexpr uint8_t kNeedsWays = 2;
 constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;
 
+// The minor version that an instruction came with, beside what its `needs` says. An
+// image has the newest of its instructions.
+constexpr uint8_t minor_of_op(uint8_t) { return 0; }
+constexpr bool kOpsHaveMinors = false;
+constexpr uint8_t minor_of_needs(uint8_t needs) { return needs != 0 ? 1 : 0; }
+
 enum class Op : uint8_t {
   kEnd = 0x00,  // --
   kPush8 = 0x01,  // -- n
