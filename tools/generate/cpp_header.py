@@ -22,11 +22,11 @@ OPERAND_BYTE_KINDS = ("any", "power", "percent", "variable", "count", "sensor", 
 FAR_BIT, BACK_BIT = 0x08, 0x10
 
 # The families of which the machine asks the table: what its inner loop cannot do alone, and what
-# the verifier distinguishes. All others share rows. From WATCH_WAIT on the motors stay as they are.
+# the verifier distinguishes. All others share rows.
+ACTS = tuple(op for op in opcodes.UNO_OPS if op.is_act)
 ASKED_FAMILIES = (
-    "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", "SET", "STOP", "MOTORS", "MOTORS8",
-    "MOVE", "MOVE8", "WATCH", "WATCH_FOREVER",
-    "WATCH_WAIT", "WATCH_FOREVER_WAIT", "WAIT", "WAIT8", "BEEP", "BEEP8", "LOOK", "END_WHEN",
+    "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", *dict.fromkeys(op.family for op in ACTS),
+    "LOOK", "END_WHEN",
 )  # fmt: skip
 FIRST_FOUR = 0x80  # from here on four codes in a row have the same form,
 FIRST_SIX = 0xC8  # and from here on six of eight; the other two are no opcodes
@@ -74,6 +74,9 @@ def header(command: str) -> str:
                 ("ESCAPE", opcodes.ESCAPE, "a second byte says which instruction it is"),
             ],
         ),
+        "// The instructions that are left to Machine::act.\n#define tini_each_act \\\n  "
+        + " : \\\n  ".join(f"case Op::k{camel(op.name)}" for op in ACTS)
+        + "\n",
         way_constants(),
         "// Why bytes are no image for this machine.\n"
         + enumeration("Refusal", [("NONE", 0, "It is one."), *refusals]),

@@ -80,9 +80,18 @@ class Op(NamedTuple):
         base, _, last = self.name.rpartition("_")
         return base if last in _VARIANTS or last.isdigit() else self.name
 
+    @property
+    def is_act(self) -> bool:
+        """Whether the robot does something at it: no loop over instructions does it alone."""
+        return self.control_role in ("plain", "watch") and self.family not in _OWN_FAMILIES
+
 
 # What stands after the name of a family, but for numbers.
 _VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
+
+# The instructions between others that ask nothing of the robot, or are done again if they fail.
+_OWN_FAMILIES = ("SET_VAR", "SET_VAR8", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR",
+                 "SHOW", "SHOW_YES_NO")  # fmt: skip
 
 # fmt: off
 OPERAND_KINDS = {kind.name: kind for kind in (
