@@ -9,7 +9,7 @@ import pytest
 
 from tests.semantics.test_lint import ADVISED
 from tests.support.casefile import all_cases
-from tests.support.new_word import CHIRP, TOOT
+from tests.support.new_word import CHEEP, TOOT
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.languages import FOLDER
@@ -34,7 +34,7 @@ TONES = ("440", "440-660", "20", "1.000", "X", "1000")
 
 @pytest.fixture(autouse=True)
 def _has_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    for word in (TOOT, CHIRP):
+    for word in (TOOT, CHEEP):
         monkeypatch.setitem(WORDS, word.text, word)
 
 
@@ -73,15 +73,15 @@ def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
 @each_row(
     "text, codes",
     [
-        ("CHIRP(0, 440)", {"TS803"}),
-        ("CHIRP(0.2, 440-660)", {"TS841"}),
-        ("CHIRP(440, 1000)", {"TS811"}),
-        ("LOOP(FOREVER);CHIRP(1, 440);END_LOOP", set()),
-        ("M(50, 50);CHIRP(1, 440)", {"TS826"}),  # BEEP would wait
+        ("CHEEP(0, 440)", {"TS803"}),
+        ("CHEEP(0.2, 440-660)", {"TS841"}),
+        ("CHEEP(440, 1000)", {"TS811"}),
+        ("LOOP(FOREVER);CHEEP(1, 440);END_LOOP", set()),
+        ("M(50, 50);CHEEP(1, 440)", {"TS826"}),  # BEEP would wait
         ("M(50, 50);BEEP(1, 440)", set()),
-        ("CHIRP(6, 440);WHILE(TIME < 5);F(1, 60);END_WHILE", set()),
+        ("CHEEP(6, 440);WHILE(TIME < 5);F(1, 60);END_WHILE", set()),
         ("BEEP(6, 440);WHILE(TIME < 5);F(1, 60);END_WHILE", {"TS827"}),
-        ("WHEN(DISTANCE < 10);S;CHIRP(1, 440);END_WHEN;LOOP(FOREVER);F(2, 60);END_LOOP",
+        ("WHEN(DISTANCE < 10);S;CHEEP(1, 440);END_WHEN;LOOP(FOREVER);F(2, 60);END_LOOP",
          {"TS834"}),
     ],
 )  # fmt: skip

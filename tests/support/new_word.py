@@ -1,6 +1,6 @@
 """Words that the language could have: they stand for instructions, three of them with values.
 
-LAMP stands for none and has a role of its own, and so do TOOT, which is like BEEP, and CHIRP, which
+LAMP stands for none and has a role of its own, and so do TOOT, which is like BEEP, and CHEEP, which
 goes on at once.
 """
 
@@ -24,7 +24,7 @@ SHAKE = Word(
 DANCE = Word("DANCE", ROLES["fixed"], (SECONDS, TIMES), "BEEP(SECONDS, 440);HORN;WIGGLE(N)")
 LAMP = Word("LAMP", Role("lamp", is_instruction=True), (POWER._replace(sample="50"),))
 TOOT = Word("TOOT", Role("toot", is_instruction=True, takes_time=True), (SECONDS, HERTZ))
-CHIRP = Word("CHIRP", Role("chirp", is_instruction=True), (SECONDS, HERTZ))
+CHEEP = Word("CHEEP", Role("cheep", is_instruction=True), (SECONDS, HERTZ))
 
 
 def with_texts(folder: Path) -> Path:
