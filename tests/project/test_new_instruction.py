@@ -69,6 +69,12 @@ def tables(monkeypatch: pytest.MonkeyPatch) -> list[ModuleType]:
     return [words, opcodes, helpers, actions, oracle]
 
 
+def sketch(text: str) -> str:
+    compiled = compile_text(text, ROBOT.kit)
+    assert compiled.program is not None
+    return sketch_of(compiled.source, compiled.program, ROBOT, "en")
+
+
 def test_few_tables_make_a_word(tables: list[ModuleType]) -> None:
     compiled = compile_text(PROGRAM, ROBOT.kit)
     assert not compiled.diagnostics and compiled.program is not None
@@ -77,8 +83,9 @@ def test_few_tables_make_a_word(tables: list[ModuleType]) -> None:
     *events, _ = map(str, run(compiled.code, ROBOT.kit, lambda _: 0))
     assert events[:3] == ["0 BEEP 440 250", "0 BEEP 20000 0", "0 MOTORS 50 50"]
     assert events == run_by_reference(PROGRAM).splitlines()
-    sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
-    assert "cheep(0.25, 440);" in sketch and "limited(" in sketch and "struct Number" in sketch
+    assert "cheep(0.25, 440);" in sketch(PROGRAM) and "limited(" in sketch(PROGRAM)
+    assert "struct Number" in sketch("CHEEP(DISTANCE, 440)")  # else it would be rounded
+    assert "struct Number" not in sketch("CHEEP(0.5, 440)")
 
 
 def test_the_tables_of_the_machine_in_c_have_its_instruction(
