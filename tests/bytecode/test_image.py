@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 
 from tests.oracle import image as second_reader
+from tests.support.casefile import all_cases
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.image import (
     HEADER_BYTES,
     REFUSALS,
@@ -22,7 +24,7 @@ from tiniscript.bytecode.image import (
     unpack,
     with_checksum,
 )
-from tiniscript.bytecode.opcodes import FAULTS, ISA_MINOR
+from tiniscript.bytecode.opcodes import BY_CODE, FAULTS, ISA_MAJOR, ISA_MINOR, OPS
 from tiniscript.bytecode.verify import RULES, Refused, check, load_image
 
 KIT = robots.load("tinibot").kit
@@ -68,7 +70,7 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
             expected = {"DAMAGED"}
             if offset < 2:
                 expected = {"NOT_AN_IMAGE"}
-            elif offset < 4 and (offset, data[3]) != (3, ISA_MINOR):
+            elif offset == 2 or (offset == 3 and data[3] > ISA_MINOR):
                 expected = {"OTHER_VERSION"}
             elif offset in (5, 8, 9):
                 expected = {"BAD_HEADER", "TRUNCATED", "TRAILING"}
@@ -99,7 +101,32 @@ def test_an_image_of_version_1_says_which_it_is() -> None:
         with pytest.raises(ImageRefused) as refused:
             unpack(data)
         assert refused.value.name == "OTHER_VERSION"
-        assert refused.value.values == {"theirs": "1.0", "ours": "2.1"}
+        assert refused.value.values == {"theirs": "1.0", "ours": f"{ISA_MAJOR}.{ISA_MINOR}"}
+
+
+def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
+    texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
+    found = set()
+    for compiled in (compile_text(text, KIT) for text in texts):
+        if compiled.verdict is not None:
+            version = second_reader.version(compiled.code, compiled.verdict.needs)
+            assert (*compiled.image[2:4],) == version
+            found.add(version)
+    assert found == {*second_reader.VERSIONS}
+
+
+def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whichever is the newest, and wherever it stands."""
+    for op in (op for op in OPS if not op.needs):
+        others = b"".join(
+            other.opcode + bytes(other.size - 1) for other in OPS if not other.needs | other.since
+        )
+        code = others + op.opcode + bytes(op.size - 1) + others
+        assert pack("SI", 0, code)[3] == op.since
+        with monkeypatch.context() as patch:
+            later = [op._replace(since=9) if each == op else each for each in BY_CODE]
+            patch.setattr(opcodes, "BY_CODE", later)
+            assert pack("SI", 0, code)[3] == 9
 
 
 # -- devices ------------------------------------------------------------------------------------

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+from tests.support.casefile import ROOT
 from tiniscript import compile_text, robots
 from tiniscript.base.limits import VARIABLES
 from tiniscript.base.words import COMPARATORS
@@ -14,6 +17,8 @@ from tiniscript.bytecode.opcodes import (
     BY_NAME,
     ESCAPE,
     ESCAPED_OPS,
+    ISA_MAJOR,
+    ISA_MINOR,
     NEEDS_GO,
     NEEDS_TASKS,
     OPS,
@@ -28,8 +33,17 @@ from tiniscript.bytecode.opcodes import (
 from tiniscript.bytecode.verify import RULES
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.tasks import TaskMachine
+from tools.generate import cpp_header
 
 SLOW = robots.load("tinibot").kit._replace(speed=1, turn=1)
+
+
+# The codes of each minor version that has been released: another one needs a later `since`.
+RELEASED = {
+    0: "00-0c 10-19 20-28 2a-2d 30-35 38-3b 40-54 56 58-5b 60-65 68-75 78-7c 80-c3"
+    " c8-cd d0-d5 d8-dd e0-e5 e8-ed f0-f5",
+    1: "55 76-77 7d-7e ff40-ff43 ff48-ff4b",
+}
 
 
 class Nothing:
@@ -222,3 +236,39 @@ def test_a_disassembly_names_the_devices_that_the_kit_has() -> None:
 def test_what_is_no_disassembly_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no line of a disassembly"):
         assemble(text)
+
+
+def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None:
+    """Else a machine that lacks it would take an image for one that it can run."""
+    for minor, ranges in RELEASED.items():
+        codes: set[int] = set()
+        for first, _, last in (part.partition("-") for part in ranges.split()):
+            codes.update(range(int(first, 16), int(last or first, 16) + 1))
+        found = {op.code for op in OPS if op.since == minor}
+        more = [op.name for op in OPS if op.code in found - codes]
+        assert not more, f"give {more} since={max(RELEASED) + 1}: {minor} has been released"
+        assert found == codes, "a code is a promise"
+
+
+def test_a_version_that_is_not_released_is_in_the_changelog() -> None:
+    """After a release its codes are in RELEASED."""
+    unreleased = (ROOT / "CHANGELOG.md").read_text("utf-8").partition("\n## ")[2]
+    for minor in {op.since for op in OPS} - {*RELEASED}:
+        assert f"bytecode {ISA_MAJOR}.{minor}" in unreleased.partition("\n## ")[0], minor
+    assert max(RELEASED) <= ISA_MINOR <= max(RELEASED) + 1
+
+
+def test_a_robot_makes_the_version_of_the_same_instructions(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    later = [op._replace(since=9) if op.name == "BEEP" else op for op in OPS]
+    monkeypatch.setattr(opcodes, "OPS", later)
+    code = BY_NAME["BEEP"].code
+    assert re.search(
+        rf"minor_of_op\(uint8_t code\) {{ return .*code == 0x{code:02x} \? 9 : 0; }}",
+        cpp_header.header("a test"),
+    )
+    escaped = [op._replace(since=9) if op.name == "MOVE_F" else op for op in OPS]
+    monkeypatch.setattr(opcodes, "OPS", escaped)
+    with pytest.raises(AssertionError, match="after an escape"):
+        cpp_header.header("a test")

@@ -26,7 +26,7 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
-from tiniscript.bytecode.opcodes import OPS
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR, OPS
 from tiniscript.bytecode.verify import load_image
 from tiniscript.conformance import kit as kit_files
 from tiniscript.conformance import machine_process
@@ -106,7 +106,7 @@ def test_the_machine_from_the_specification_passes_all(
     assert done.out == (
         f"{needing} cases with TASK, WHEN, CM or DEG were skipped: "
         "this machine does not support them.\n"
-        f"{count} of {count} cases pass. Kit 5, bytecode 2.1.\n"
+        f"{count} of {count} cases pass. Kit 5, bytecode {ISA_MAJOR}.{ISA_MINOR}.\n"
     )
     tasks = "--only", "tasks: "
     assert json.loads(conform(tsc, FROM_SPEC, "--json", *tasks).out)["left_out"]
@@ -144,7 +144,7 @@ BREAKS = [
      "UNTIL ends a move"),
     ("machine", 'case "BREAK_LOOP":\n                self.counters.pop()', 'case "BREAK_LOOP":',
      "blocks: "),
-    ("machine", "31, 20_000)", "0, 10**9)", "moves: "),
+    ("words", "(31_000, 20_000_000)", "(0, 10**12)", "moves: "),
     ("machine", "self.counters.append(times)", "self.counters[14:] = [times]",
      "Sixteen counted loops"),
     ("machine", "self.begin()\n            move.has_begun", "move.has_begun",
@@ -178,7 +178,8 @@ BREAKS = [
 def changed(name: str, was: str, becomes: str) -> ModuleType:
     """Return a module of `tests/oracle` that says something else in one place."""
     module = ModuleType(f"tests.oracle.{name}")
-    source = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
+    path = ROOT / "tests" / "oracle" / f"{name}.py"
+    source, module.__file__ = path.read_text(encoding="utf-8"), str(path)
     assert was in source
     exec(compile(source.replace(was, becomes), name, "exec"), vars(module))
     return module
@@ -424,10 +425,16 @@ def test_the_page_shows_a_run_as_it_is_asked_for_and_answered() -> None:
 
 
 def test_the_page_says_how_many(tsc: Tsc) -> None:
+    """About: a new case or two leave the page as true as it was."""
     count = len(machine_cases())
     needing = sum(bool(case.needs) for case in machine_cases())
+    counts = {
+        r"about (\d+) runs": count,
+        r"about (\d+) checks": len(all_checks(link_test_suite())),
+        r"(\d+) cases with TASK, WHEN, CM or DEG": needing,
+        r" of (\d+) cases pass": count - needing,
+    }
     text = PAGE.read_text(encoding="utf-8")
-    assert f"about {round(count, -1)} runs" in text
-    assert f"about {round(len(all_checks(link_test_suite())), -1)} checks" in text
-    assert f"{needing} cases with TASK, WHEN, CM or DEG" in text
-    assert f"{count - needing - 1} of {count - needing} cases pass." in text
+    for pattern, true_count in counts.items():
+        said = re.search(pattern, text)
+        assert said and int(said[1]) == pytest.approx(true_count, rel=0.05), (pattern, true_count)

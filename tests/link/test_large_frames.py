@@ -14,7 +14,7 @@ from tests.machines.esp32 import Esp32Robot
 from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT, packets_of
 from tiniscript import robots
-from tiniscript.bytecode.image import HEADER_BYTES, isa_for_needs, pack, unpack
+from tiniscript.bytecode.image import HEADER_BYTES, LEAST_ISA, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, checksum, decode_frame, encode_frame
@@ -59,7 +59,7 @@ def open_link(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
     """Return a robot in a session."""
     robot = cpp_link(is_large)
     robot.begin(room=8192, kit=KIT, epoch=epoch)
-    payload = struct.pack("<BBBBHI", MAJOR, MINOR, *isa_for_needs(0), KIT, 7)
+    payload = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 7)
     frames = [decode_frame(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
     (reply,) = [frame for frame in frames if frame]
     found = decode_payload(BY_NAME["HELLO"].reply, reply.payload[1:])
@@ -145,7 +145,7 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
         and pending_request.outcome.status == OK
         and robot.held() == pack("SI", 0, CODE)
     )
-    hello = struct.pack("<BBBBHI", MAJOR, MINOR, *isa_for_needs(0), KIT, 8)
+    hello = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 8)
     answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
     whole = len(pack("SI", 0, CODE))

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tests.oracle.author_values import LONG, SMALL, WIDE, Tokens, ValueAuthor, plain
-from tests.oracle.words import MAX_CALLS, MAX_DEFS, MAX_NESTING, MAX_STACK, MAX_VARIABLES
+from tests.oracle.words import (
+    ACTS,
+    MAX_CALLS,
+    MAX_DEFS,
+    MAX_NESTING,
+    MAX_STACK,
+    MAX_VARIABLES,
+    RANGES,
+    TIME,
+)
 
 
 class Author(ValueAuthor):
@@ -39,15 +48,12 @@ class Author(ValueAuthor):
         return [*way, self.rng.choice(words)]
 
     def simple(self) -> None:
-        word = self.rng.choice(("M", "M", "S", "STOP", "W", "BEEP", "BEEP", "START"))
-        if word == "M":
-            self.say("M", "(", *self.within(-100, 100), ",", *self.within(-100, 100), ")")
-        elif word == "W":
-            self.say("W", "(", *self.seconds(), ")")
-        elif word == "BEEP":
-            self.say("BEEP", "(", *self.seconds(), ",", *self.within(31, 20_000), ")")
-        else:
-            self.say(word)
+        word = self.rng.choice(("M", "M", "S", "STOP", "W", *ACTS, *ACTS, "START"))
+        values: Tokens = []
+        for limits in RANGES.get(word, ()):
+            value = self.seconds() if limits == TIME else self.within(*(n // 1000 for n in limits))
+            values += [",", *value] if values else value
+        self.say(word, *(["(", *values, ")"] if values else []))
 
     def show(self) -> None:
         value = self.yes_no() if self.chance(0.25) else self.number(3)

@@ -1,7 +1,8 @@
 """A second reader of images, written from the words of `bytecode_spec.md` alone.
 
 It shares nothing with the package. Where it gives another reason, the page is unclear, or one of
-them is wrong. Asks for nothing of the code, nor for the devices of a robot.
+them is wrong. Of the code it asks only for the names of its instructions, and of a robot for
+nothing.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import zlib
 
 from construct import Bytes, Int8ul, Int16ul, Int32ul, Struct, this
+
+from tests.oracle import spec_tables
 
 HEADER = Struct(
     "magic" / Bytes(2),
@@ -26,7 +29,23 @@ IMAGE = Struct(
     "later" / Bytes(this.header_length - HEADER.sizeof()),
     "code" / Bytes(this.code_length),
 )
-MAJOR, MINOR, NEEDS, STARTS, PING, MOST_BYTES = 2, 1, 3, 3, 2, 32767
+NEEDS, STARTS, PING, MOST_BYTES = 3, 3, 2, 32767
+VERSIONS = spec_tables.versions()
+MAJOR, MINOR = max(VERSIONS)
+
+
+def version(code: bytes, needs: int) -> tuple[int, int]:
+    """Return the lowest version that has all of verified code, and of what it needs."""
+    at, names = 0, set()
+    while at < len(code):
+        name, at = spec_tables.instruction_at(code, at).name, spec_tables.decoded(code, at)[2]
+        names.add(name)
+    added = (
+        number
+        for number, (its_names, bits) in VERSIONS.items()
+        if names & its_names or any(needs & bit for bit in bits)
+    )
+    return max((min(VERSIONS), *added))
 
 
 def refusal(data: bytes) -> str:

@@ -26,7 +26,7 @@ from tests.oracle.arithmetic import (
     within,
 )
 from tests.oracle.spec_tables import Instruction, decoded
-from tests.oracle.words import Device, Kit
+from tests.oracle.words import ACTS, TIME, Device, Kit
 
 TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
 
@@ -205,11 +205,14 @@ class Run:
             case "MOTORS" | "MOTORS8":
                 left, right = operands or (within(whole(each), -100, 100) for each in taken)
                 self.motors((left, right))
-            case "BEEP" | "BEEP8":
-                time = max(taken[0], 0) if taken else time8(operands[0])
-                hertz = within(whole(taken[1]) if taken else operands[1], 31, 20_000)
-                self.note(f"BEEP {hertz} {time}")
-                self.wait(time, "PAUSE")
+            case _ if name.removesuffix("8") in ACTS:
+                act = ACTS[name.removesuffix("8")]
+                said = zip(operands, act.ranges, strict=not taken)
+                values = [time8(each) if of == TIME else 1000 * each for each, of in said]
+                told = act.values(taken or values)
+                self.note(act.note.format(*told))
+                if act.waits:
+                    self.wait(told[0], "PAUSE")
             case _:
                 self.control(name, taken, operands, to)
 

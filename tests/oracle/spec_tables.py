@@ -138,6 +138,16 @@ def _halves(word: str) -> tuple[str, str]:
     return label, kind
 
 
+def versions() -> dict[tuple[int, int], tuple[set[str], tuple[int, ...]]]:
+    """Return what each version adds: names of instructions, and bits of `needs`."""
+    found = {}
+    for number, names, bits in rows("versions"):
+        major, minor = map(int, number.split("."))
+        values = () if bits == "none" else tuple(map(int, bits.split(", ")))
+        found[major, minor] = set(re.findall(r"[A-Z_0-9]+", names)), values
+    return found
+
+
 @lru_cache(maxsize=1)
 def rule_numbers() -> dict[str, int]:
     """Return the number of each rule of the verifier."""

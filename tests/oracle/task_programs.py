@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 
+from tests.oracle.words import ACTS, RANGES, TIME
+
 TIMES = ("0", "0.001", "0.005", "0.01", "0.02", "0.03", "0.04", "0.05", "0.1", "0.12", "0.3")
 WAYS = ("0", "0.001", "0.3", "0.45", "1", "2", "3.6", "-1 + N")
 POWERS = ("0", "10", "20", "50", "60", "100")
@@ -71,7 +73,14 @@ class TaskAuthor:
         elif kind < 0.62:
             self.lines.append(f"M({rng.choice(SIDES)}, {rng.choice(SIDES)})")
         elif kind < 0.66:
-            self.lines.append(f"BEEP({rng.choice(TIMES)}, {rng.randint(31, 900)})")
+            word = list(ACTS)[int((kind - 0.62) / 0.04 * len(ACTS))]
+            values = [
+                rng.choice(TIMES)
+                if limits == TIME
+                else rng.randint(limits[0] // 1000, min(limits[1] // 1000, 900))
+                for limits in RANGES[word]
+            ]
+            self.lines.append(f"{word}({', '.join(map(str, values))})")
         elif kind < 0.74:
             self.lines.append(f"SHOW({self.number()})")
         elif kind < 0.80:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from tests.oracle.arithmetic import whole, within
 from tests.oracle.ast import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.robot import Break, Ending, Robot
-from tests.oracle.words import MOVES
+from tests.oracle.words import ACTS, MOVES
 
 Turns = Generator[None, None, None]  # it gives its place away with `yield`
 Powers = tuple[int, int]
@@ -293,17 +293,18 @@ class TaskRobot(Robot):
             return
         if word == "READ":
             yield from self.reading((statement.name,))
-        elif word in (*MOVES, "W", "BEEP", "M", "S"):
+        elif word in (*MOVES, "W", *ACTS, "M", "S"):
             values = self.values(statement)
             if word in MOVES:
                 yield from self.moving(statement, values)
             elif word == "W":
                 yield from self.waiting(statement, values[0])
-            elif word == "BEEP":
-                duration = max(0, values[0] or 0)
-                self.note(f"BEEP {within(whole(values[1] or 0), 31, 20_000)} {duration}")
-                self.begin()
-                yield from self.until_clock(duration)
+            elif word in ACTS:
+                told = ACTS[word].values(value or 0 for value in values)
+                self.note(ACTS[word].note.format(*told))
+                if ACTS[word].waits:
+                    self.begin()
+                    yield from self.until_clock(told[0])
             elif word == "M":
                 left, right = (within(whole(value or 0), -100, 100) for value in values)
                 me.m, me.insists = (left, right), me.is_when

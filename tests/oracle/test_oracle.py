@@ -10,6 +10,7 @@ from tests.oracle.ast import Do, Statement
 from tests.oracle.interpreter import PAPER_KIT, run
 from tests.oracle.programs import WIDE_KIT, program, senses
 from tests.oracle.tasks import TaskRobot, Turns
+from tests.oracle.words import RANGES
 
 
 def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -35,7 +36,7 @@ def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
         text = program(rng, kit)
         trace = run(text, kit, senses(rng, kit), 20_000, 20_000, rng.randint(1, 2**32 - 1))
         seen.add(trace.splitlines()[-1].split(" ", 1)[1])
-    words = {"F", "B", "L", "R", "W", "M", "S", "BEEP", "SHOW", "=", "READ", "SET", "CALL", "BREAK"}
+    words = {*RANGES, "S", "SHOW", "=", "READ", "SET", "CALL", "BREAK"}
     untils = {f"{word} UNTIL" for word in "FBLRW"}
     blocks_and_ends = {"IF", "LOOP", "WHILE", "DONE", "LIMIT", "FAULT OVERFLOW"}
     assert seen == words | untils | blocks_and_ends | {"FAULT DIVIDE_BY_ZERO"}

@@ -237,7 +237,7 @@ class Parser(ExpressionParser):
         return Loop(count, body) if condition is None else While(condition, body)
 
     def action(self, word: str) -> Do:
-        """F B L R M W BEEP, with the UNTIL that all but M and BEEP may have."""
+        """A word with values, and the UNTIL that moves and W may have."""
         ranges = RANGES[word]
         may_until = word in (*MOVES, "W")
         arguments = self.arguments(len(ranges), may_until, UNITS.get(word, ""))

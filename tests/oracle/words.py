@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
+
+from tests.oracle.arithmetic import whole, within
 
 
 class Device(NamedTuple):
@@ -92,18 +95,41 @@ TASK_WORDS = ("TASK", "WHEN")
 LATER_WORDS = ("SEND",)
 UNITS = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}  # of a way in the place of a time
 
-# Instructions with arguments in parentheses, and the range of each argument.
-_TIME = (0, HIGHEST)
+TIME = (0, HIGHEST)
 _POWER = (0, 100_000)
 _SIDE = (-100_000, 100_000)
+
+
+class Act(NamedTuple):
+    """An instruction that is over as soon as the robot has been told of it, or after its time.
+
+    `note` is its row of a trace, with the values by their places.
+    """
+
+    ranges: tuple[tuple[int, int], ...]
+    note: str
+    waits: bool
+
+    def values(self, given: Iterable[int]) -> list[int]:
+        """Return what the robot is told: milliseconds of a time, and whole numbers in range."""
+        return [
+            max(0, value) if limits == TIME else within(whole(value), *(n // 1000 for n in limits))
+            for limits, value in zip(self.ranges, given, strict=True)
+        ]
+
+
+# The references say what each does: `docs/en/language.md`, and of its bytes `bytecode_spec.md`.
+ACTS = {"BEEP": Act((TIME, (31_000, 20_000_000)), "BEEP {1} {0}", waits=True)}
+
+# Instructions with arguments in parentheses, and the range of each argument.
 RANGES: dict[str, tuple[tuple[int, int], ...]] = {
-    "F": (_TIME, _POWER),
-    "B": (_TIME, _POWER),
-    "L": (_TIME, _POWER),
-    "R": (_TIME, _POWER),
+    "F": (TIME, _POWER),
+    "B": (TIME, _POWER),
+    "L": (TIME, _POWER),
+    "R": (TIME, _POWER),
     "M": (_SIDE, _SIDE),
-    "W": (_TIME,),
-    "BEEP": (_TIME, (31_000, 20_000_000)),
+    "W": (TIME,),
+    **{word: act.ranges for word, act in ACTS.items()},
 }
 
 # Words that stand for instructions, and these with the names of values in them, as the reference
@@ -120,7 +146,7 @@ RESERVED = frozenset(
     (
         *SETUPS, *MOVES, *FUNCTIONS, *ALIASES, *BLOCK_WORDS, *TASK_WORDS, *LATER_WORDS,
         *UNITS.values(),
-        "M", "S", "STOP", "W", "UNTIL", "FOREVER", "BEEP", "SHOW", "IF", "LOOP", "WHILE",
+        "M", "S", "STOP", "W", "UNTIL", "FOREVER", *ACTS, "SHOW", "IF", "LOOP", "WHILE",
         "BREAK", "DEF", "START", "TRUE", "FALSE", "AND", "OR", "NOT", "TIME",
     )
 )  # fmt: skip

@@ -21,9 +21,11 @@ from tests.text.test_line import check_line
 from tiniscript import compile_text, robots
 from tiniscript.base import languages
 from tiniscript.base.source import Source
-from tiniscript.base.words import WORDS
+from tiniscript.base.words import ROLES, WORDS, Role
+from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen import lower
 from tiniscript.codegen.sketch import statements
+from tiniscript.codegen.sketch.helpers import HELPERS
 from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
@@ -31,6 +33,7 @@ from tiniscript.library.text_fitting import find_misfits
 from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.semantics import ir
+from tiniscript.semantics.checker import _STATEMENT_MAKERS
 from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.description import description
@@ -260,7 +263,18 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     assert "// LAMP" in packed and "// LAMP" not in rows
     assert found["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
     assert found["says"] == SAID["es"]
-    assert f"\n- Otras instrucciones: `LAMP(POWER)` {SAID['es']}\n" in found["reference"]
+    others = re.search(r"(?m)^- Otras instrucciones: .*$", found["reference"])
+    assert others and f"`LAMP(POWER)` {SAID['es']}" in others[0]
+
+
+@each_row("role", [role for role in ROLES.values() if role.is_instruction and not role.lasts])
+def test_each_role_that_is_no_statement_of_its_own_has_an_instruction_and_a_helper(
+    role: Role,
+) -> None:
+    if role.name in _STATEMENT_MAKERS or role.name == "fixed":
+        return
+    assert role.name.upper() in BY_NAME, "bytecode/opcodes.py"
+    assert role.name in HELPERS, "codegen/sketch/helpers.py"
 
 
 @each_row("stage", [lower, statements])

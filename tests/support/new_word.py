@@ -1,6 +1,7 @@
 """Words that the language could have: they stand for instructions, three of them with values.
 
-One, LAMP, stands for none and has a role of its own.
+LAMP stands for none and has a role of its own, and so do TOOT, which is like BEEP, and CHEEP, which
+goes on at once.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import shutil
 from pathlib import Path
 
 from tiniscript.base.languages import FOLDER
-from tiniscript.base.words import POWER, ROLES, SECONDS, Argument, Role, Word
+from tiniscript.base.words import HERTZ, POWER, ROLES, SECONDS, Argument, Role, Word
 
 HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
@@ -22,6 +23,8 @@ SHAKE = Word(
 )  # fmt: skip
 DANCE = Word("DANCE", ROLES["fixed"], (SECONDS, TIMES), "BEEP(SECONDS, 440);HORN;WIGGLE(N)")
 LAMP = Word("LAMP", Role("lamp", is_instruction=True), (POWER._replace(sample="50"),))
+TOOT = Word("TOOT", Role("toot", is_instruction=True, takes_time=True), (SECONDS, HERTZ))
+CHEEP = Word("CHEEP", Role("cheep", is_instruction=True), (SECONDS, HERTZ))
 
 
 def with_texts(folder: Path) -> Path:

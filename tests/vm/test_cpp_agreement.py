@@ -54,7 +54,7 @@ from tiniscript.bytecode.image import (
     pack,
     with_checksum,
 )
-from tiniscript.bytecode.opcodes import BY_NAME, NEEDS_GO, OPS
+from tiniscript.bytecode.opcodes import BY_NAME, ISA_MINOR, NEEDS_GO, OPS
 from tiniscript.bytecode.verify import RULES, load_image
 from tiniscript.vm.tasks import machine_of
 
@@ -295,14 +295,14 @@ def test_needs_count_and_not_the_minor_version() -> None:
     for text, bit in (("TASK;END_TASK;SHOW(1)", TASKS), ("F(2 CM, 100);SHOW(1)", GO)):
         whole = compile_text(text, KIT).image
         assert (whole[2:4], whole[14]) == (b"\2\1", bit)
-        for minor in range(3):
+        for minor in range(ISA_MINOR + 2):
             for needs in (bit, 0):
                 changed = bytearray(whole)
                 changed[3], changed[14] = minor, needs
                 image = with_checksum(bytes(changed))
                 ours = cpp_checks.refusal_of(partial(load_image, image, KIT))
                 theirs = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
-                want = "OTHER_VERSION" if minor > 1 else "" if needs else "UNKNOWN_OPCODE"
+                want = "OTHER_VERSION" if minor > ISA_MINOR else "" if needs else "UNKNOWN_OPCODE"
                 assert ours == theirs and want in ours and bool(want) == bool(ours), (text, minor)
 
 

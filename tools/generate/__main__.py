@@ -106,6 +106,15 @@ def image_table() -> str:
     return table(("offset", "bytes", "field", "meaning"), rows)
 
 
+def version_table() -> str:
+    rows = [(f"{opcodes.ISA_MAJOR}.0", "all other instructions", "none")]
+    for minor in range(1, opcodes.ISA_MINOR + 1):
+        names = [f"`{op.name}`" for op in opcodes.OPS if op.since == minor]
+        bits = [str(need) for need, since in opcodes.SINCE_OF_NEED.items() if since == minor]
+        rows.append((f"{opcodes.ISA_MAJOR}.{minor}", ", ".join(names), ", ".join(bits) or "none"))
+    return table(("version", "instructions", "bits of `needs`, by their value"), rows)
+
+
 def instruction_table() -> str:
     rows = []
     for op in opcodes.OPS:
@@ -214,6 +223,7 @@ def robot_header(path: Path) -> str:
 SPEC_FILE = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
+    "versions": version_table,
     "refusals": partial(numbered_table, ("number", "reason", "when"), image.REFUSALS),
     "instructions": instruction_table,
     "operands": operand_table,

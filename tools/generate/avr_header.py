@@ -35,6 +35,7 @@ def header(command: str) -> str:
             *(f"#define tini_{name} {number}\n" for name, number in numbers),
             "\n// What a machine without tasks does about theirs.\n",
             f"#ifndef tiniscript_has_tasks\n{without_tasks()}#endif\n",
+            *acts(),
             "\n// The low bits of an instruction that compares are its comparator.\n",
             f"#define tini_comparator_bits {comparator_bits()}\n",
             "\n.macro jumps count, target\n",
@@ -70,6 +71,24 @@ def handler(code: int) -> str:
 def without_tasks() -> str:
     labels = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
     return "".join(f"#define {label} op_none\n" for label in labels)
+
+
+def acts() -> Iterator[str]:
+    """Yield a macro for each size of instruction: the labels of those that are left to C++."""
+    labels = {size: dict.fromkeys(map(handler, codes)) for size, codes in acts_by_size().items()}
+    assert {*labels} == {1, 2, 3, 4}, "execute_statements_avr.S has a place for each size"
+    for size, names in sorted(labels.items()):
+        yield f"\n// What C++ does of instructions of so many bytes.\n.macro acts_of_{size}\n"
+        yield from (f"{name}:\n" for name in names)
+        yield ".endm\n"
+
+
+def acts_by_size() -> dict[int, list[int]]:
+    codes: dict[int, list[int]] = {}
+    for op in opcodes.UNO_OPS:
+        if op.is_act:
+            codes.setdefault(op.size, []).append(op.code)
+    return codes
 
 
 def rows() -> Iterator[str]:

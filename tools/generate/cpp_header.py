@@ -22,11 +22,11 @@ OPERAND_BYTE_KINDS = ("any", "power", "percent", "variable", "count", "sensor", 
 FAR_BIT, BACK_BIT = 0x08, 0x10
 
 # The families of which the machine asks the table: what its inner loop cannot do alone, and what
-# the verifier distinguishes. All others share rows. From WATCH_WAIT on the motors stay as they are.
+# the verifier distinguishes. All others share rows.
+ACTS = tuple(op for op in opcodes.UNO_OPS if op.is_act)
 ASKED_FAMILIES = (
-    "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", "SET", "STOP", "MOTORS", "MOTORS8",
-    "MOVE", "MOVE8", "WATCH", "WATCH_FOREVER",
-    "WATCH_WAIT", "WATCH_FOREVER_WAIT", "WAIT", "WAIT8", "BEEP", "BEEP8", "LOOK", "END_WHEN",
+    "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", *dict.fromkeys(op.family for op in ACTS),
+    "LOOK", "END_WHEN",
 )  # fmt: skip
 FIRST_FOUR = 0x80  # from here on four codes in a row have the same form,
 FIRST_SIX = 0xC8  # and from here on six of eight; the other two are no opcodes
@@ -66,6 +66,7 @@ def header(command: str) -> str:
         "// Bits of what an image needs, and what this machine has of it.\n"
         + constants(("kNeedsTasks", image.TASKS), ("kNeedsWays", image.GO))
         + "constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;\n",
+        minor_functions(),
         enumeration(
             "Op",
             [
@@ -73,6 +74,9 @@ def header(command: str) -> str:
                 ("ESCAPE", opcodes.ESCAPE, "a second byte says which instruction it is"),
             ],
         ),
+        "// The instructions that are left to Machine::act.\n#define tini_each_act \\\n  "
+        + " : \\\n  ".join(f"case Op::k{camel(op.name)}" for op in ACTS)
+        + "\n",
         way_constants(),
         "// Why bytes are no image for this machine.\n"
         + enumeration("Refusal", [("NONE", 0, "It is one."), *refusals]),
@@ -148,6 +152,31 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
         comment = f"  // {comment_text}" if comment_text else ""
         lines.append(f"  k{camel(label)} = {number},{comment}".rstrip() + "\n")
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
+
+
+def minor_functions() -> str:
+    """Return what makes the minor version of an image of its instructions and of its `needs`."""
+    since_of_code = {
+        op.code: op.since for op in opcodes.OPS if op.since > opcodes.SINCE_OF_NEED.get(op.needs, 0)
+    }
+    assert not {*since_of_code} & {*opcodes.ESCAPED_OPS} and all(
+        code <= 0xFF for code in since_of_code
+    ), "the byte after an escape would have to be told from an instruction of one byte"
+    by_code = "".join(f"code == 0x{code:02x} ? {since} : " for code, since in since_of_code.items())
+    needs_by_since: dict[int, int] = {}
+    for need, since in opcodes.SINCE_OF_NEED.items():
+        needs_by_since[since] = needs_by_since.get(since, 0) | need
+    *later, first = sorted(needs_by_since.items(), reverse=True)
+    by_need = "".join(f"(needs & 0x{needs:02x}) != 0 ? {since} : " for since, needs in later)
+    by_need += f"needs != 0 ? {first[0]} : "
+    return (
+        "// The minor version that an instruction came with, beside what its `needs` says. An\n"
+        "// image has the newest of its instructions.\n"
+        f"constexpr uint8_t minor_of_op(uint8_t{' code' if by_code else ''})"
+        f" {{ return {by_code}0; }}\n"
+        f"constexpr bool kOpsHaveMinors = {str(bool(by_code)).lower()};\n"
+        f"constexpr uint8_t minor_of_needs(uint8_t needs) {{ return {by_need}0; }}\n"
+    )
 
 
 def way_constants() -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import HIGHEST, LOWEST
+from tiniscript.base.fixed_point import HIGHEST, LOWEST, ONE
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, read_table
 
 
@@ -23,6 +23,13 @@ class Argument(NamedTuple):
     high: int = HIGHEST
     sample: str = "1"
 
+    @property
+    def whole_limits(self) -> tuple[int, int] | None:
+        """The whole numbers to which a robot rounds and limits it; None: it does not."""
+        if self.low == LOWEST or self.high == HIGHEST:
+            return None
+        return self.low // ONE, self.high // ONE
+
 
 class Role(NamedTuple):
     """What a word is for. Stages ask for these, or have a table by name of what they do with it."""
@@ -31,6 +38,7 @@ class Role(NamedTuple):
     is_instruction: bool = False  # a robot does something at it
     lasts: bool = False  # for a time, or until something is so
     is_move: bool = False  # with a power, and a time or a way
+    takes_time: bool = False  # the next instruction comes after the time among its values
     belongs_to_blocks: bool = False
     belongs_to_values: bool = False
     begins: bool = True  # something in a line
@@ -48,6 +56,11 @@ class Word(NamedTuple):
     role: Role
     arguments: tuple[Argument, ...] = ()
     stands_for: str = ""
+
+    @property
+    def has_tone(self) -> bool:
+        """Whether it has a time and a frequency, in this order."""
+        return self.arguments == (SECONDS, HERTZ)
 
     @property
     def is_call(self) -> bool:
@@ -69,9 +82,10 @@ class Word(NamedTuple):
 
 # fmt: off
 ROLES = {role.name: role for role in (
-    Role("move", is_instruction=True, lasts=True, is_move=True),
-    Role("wait", is_instruction=True, lasts=True),
-    *(Role(name, is_instruction=True) for name in ("motors", "beep", "show", "stop", "fixed")),
+    Role("move", is_instruction=True, lasts=True, is_move=True, takes_time=True),
+    Role("wait", is_instruction=True, lasts=True, takes_time=True),
+    Role("beep", is_instruction=True, takes_time=True),
+    *(Role(name, is_instruction=True) for name in ("motors", "show", "stop", "fixed")),
     *(Role(name, belongs_to_blocks=True) for name in ("block", "arm", "end")),
     *(Role(name, belongs_to_values=True, begins=False) for name in ("value", "operator", "function")),
     *(Role(name, is_offered=False) for name in ("alias", "later")),

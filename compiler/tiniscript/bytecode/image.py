@@ -2,7 +2,7 @@
 
 FIELDS is the one declaration of the header.
 Knows nothing of what the code does: `verify` does. What code needs is told to `pack`: an image says
-the smallest minor version that has it.
+the smallest minor version that has this and its instructions.
 """
 
 from __future__ import annotations
@@ -13,7 +13,14 @@ from struct import unpack as struct_unpack
 from typing import NamedTuple
 
 from tiniscript.base.limits import CODE_BYTES
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR, NEEDS_GO, NEEDS_TASKS
+from tiniscript.bytecode.opcodes import (
+    ISA_MAJOR,
+    ISA_MINOR,
+    NEEDS_GO,
+    NEEDS_TASKS,
+    SINCE_OF_NEED,
+    ops_in,
+)
 
 
 class Field(NamedTuple):
@@ -29,6 +36,7 @@ MAGIC = b"TS"
 # What code may need, and a machine may lack.
 TASKS, GO = NEEDS_TASKS, NEEDS_GO
 ALL_NEEDS = TASKS | GO
+LEAST_ISA = ISA_MAJOR, 0  # of code whose instructions all machines have
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -102,14 +110,19 @@ def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int =
     its verdict says.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later),
+    values = (MAGIC, *isa_of(code, needs), STARTS.index(start), HEADER_BYTES + len(later),
               devices, len(code), 0, needs)  # fmt: skip
     return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
 
 
-def isa_for_needs(needs: int) -> tuple[int, int]:
-    """Return the smallest version of the instruction set that has what code needs."""
-    return ISA_MAJOR, 1 if needs else 0
+def isa_of(code: bytes, needs: int) -> tuple[int, int]:
+    """Return the smallest version of the instruction set that has what code has and needs.
+
+    Instructions that need more than `needs` do not count: whoever finds them refuses them.
+    """
+    needed_since = (since for need, since in SINCE_OF_NEED.items() if needs & need)
+    had_since = (op.since for op in ops_in(code) if not op.needs & ~needs)
+    return ISA_MAJOR, max((0, *needed_since, *had_since))
 
 
 def with_checksum(image: bytes) -> bytes:

@@ -12,13 +12,13 @@ Knows numbers, operands, stack effects and faults. Does not know what anything d
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
+from collections.abc import Iterator
 from struct import Struct
 from typing import NamedTuple
 
 from tiniscript.base.words import COMPARATORS
 
-ISA_MAJOR = 2  # a machine runs images of its own major version,
-ISA_MINOR = 1  # and of its own minor version or an earlier one
+ISA_MAJOR = 2  # a machine runs images of its own major version
 ESCAPE = 0xFF  # the first byte of the codes that have two
 # Bits of an image's `needs`: what a machine may lack.
 NEEDS_TASKS, NEEDS_GO = 0x01, 0x02
@@ -65,6 +65,7 @@ class Op(NamedTuple):
     pushes: int
     implied: Implied | None = None
     needs: int = 0  # the bit of `needs` without which no code has it
+    since: int = 0  # the minor version that it came with: a new one, once that has been released
 
     @property
     def opcode(self) -> bytes:
@@ -79,9 +80,18 @@ class Op(NamedTuple):
         base, _, last = self.name.rpartition("_")
         return base if last in _VARIANTS or last.isdigit() else self.name
 
+    @property
+    def is_act(self) -> bool:
+        """Whether the robot does something at it: no loop over instructions does it alone."""
+        return self.control_role in ("plain", "watch") and self.family not in _OWN_FAMILIES
+
 
 # What stands after the name of a family, but for numbers.
 _VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
+
+# The instructions between others that ask nothing of the robot, or are done again if they fail.
+_OWN_FAMILIES = ("SET_VAR", "SET_VAR8", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR",
+                 "SHOW", "SHOW_YES_NO")  # fmt: skip
 
 # fmt: off
 OPERAND_KINDS = {kind.name: kind for kind in (
@@ -260,7 +270,7 @@ OPS = (
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
     # tasks
-    *(op._replace(needs=NEEDS_TASKS) for op in (
+    *(op._replace(needs=NEEDS_TASKS, since=1) for op in (
         _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Go on if `yes`; else look again after 20 ms."),
         _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
         _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
@@ -269,9 +279,9 @@ OPS = (
     )),
     # centimetres and degrees
     *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {direction_word} by `way`, then turn the motors off.")
-      ._replace(needs=NEEDS_GO) for i, (d, direction_word) in enumerate(_MOVES)),
+      ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
     *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {direction_word} by `way`, or until a check is TRUE.")
-      ._replace(needs=NEEDS_GO) for i, (d, direction_word) in enumerate(_MOVES)),
+      ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
     # in one byte
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
@@ -314,6 +324,11 @@ FAULTING_OPS = {
 }
 # fmt: on
 
+ISA_MINOR = max(op.since for op in OPS)  # a machine runs images of its own and of earlier ones
+# The minor version that each bit of `needs` came with.
+SINCE_OF_NEED = {
+    need: min(op.since for op in OPS if op.needs == need) for need in (NEEDS_TASKS, NEEDS_GO)
+}
 UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has what every machine has
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
@@ -334,6 +349,16 @@ def op_at(code: bytes, offset: int) -> Op | None:
     if code[offset] != ESCAPE:
         return BY_CODE[code[offset]]
     return ESCAPED_OPS.get(code[offset + 1]) if offset + 1 < len(code) else None
+
+
+def ops_in(code: bytes) -> Iterator[Op]:
+    """Yield the instructions of `code`, verified or not; a byte that is none is passed over."""
+    offset = 0
+    while offset < len(code):
+        op = op_at(code, offset)
+        if op is not None:
+            yield op
+        offset += 1 if op is None else op.size
 
 
 def time8_ms(time: int) -> int:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import clamp, whole
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Span
-from tiniscript.bytecode.opcodes import time8
+from tiniscript.bytecode.opcodes import BY_NAME, time8
 from tiniscript.codegen.lower_expression import (
     Emitter,
     Item,
@@ -157,15 +157,36 @@ class _Lowering:
         self.add_readings(until.reads)
         emit_until(emitter, until.condition)
 
-    def beep(self, beep: ir.Beep) -> None:
-        time_ms, hertz = self.constant_of(self.clamp_time(beep.time)), self.constant_of(beep.hertz)
-        time_byte = None if time_ms is None else time8(time_ms)
-        if time_byte is not None and hertz is not None:
-            self.emitter.add("BEEP8", time_byte, clamp(whole(hertz), 31, 20_000))
+    def act(self, act: ir.Act) -> None:
+        """Add BEEP, or BEEP8 where all values are operands: by the name of the word's role."""
+        name = act.word.role.name.upper()
+        short = BY_NAME.get(f"{name}8")
+        operands = (
+            []
+            if short is None
+            else [
+                self.operand_of(value, argument.whole_limits, operand.kind.name)
+                for operand, (argument, value) in zip(short.operands, act.arguments, strict=True)
+            ]
+        )
+        whole_operands = [operand for operand in operands if operand is not None]
+        if short is not None and len(whole_operands) == len(operands):
+            self.emitter.add(short.name, *whole_operands)
             return
-        add_value(self.emitter, beep.time)
-        add_value(self.emitter, beep.hertz)
-        self.emitter.add("BEEP")
+        for value in act.values:
+            add_value(self.emitter, value)
+        self.emitter.add(name)
+
+    def operand_of(
+        self, expression: ir.Expression, limits: tuple[int, int] | None, kind: str
+    ) -> int | None:
+        """Return the operand that says a value, if the text says it and an operand can hold it."""
+        value = self.constant_of(expression)
+        if value is None:
+            return None
+        if kind == "time8":
+            return time8(max(0, value))
+        return whole(value) if limits is None else clamp(whole(value), *limits)
 
     def motors(self, motors: ir.Motors) -> None:
         left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
@@ -305,7 +326,7 @@ _STATEMENTS: dict[type, Callable[..., None]] = {
     ir.Move: _Lowering.move,
     ir.Motors: _Lowering.motors,
     ir.Stop: _Lowering.stop,
-    ir.Beep: _Lowering.beep,
+    ir.Act: _Lowering.act,
     ir.Show: _Lowering.show,
     ir.Set: _Lowering.set,
     ir.Assign: _Lowering.assign,

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiniscript.bytecode.image import isa_for_needs
+from tiniscript.bytecode.image import LEAST_ISA
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, encode_payload
@@ -60,7 +60,7 @@ class WireRobot(Robot):
         self.received = self.sent = b""
         self._seq = 0
         self._epoch = 0
-        isa = isa_for_needs(0)
+        isa = LEAST_ISA
         hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0], "isa_minor": isa[1],
                  "kit": kit, "nonce": nonce}  # fmt: skip
         # without a value the robot tells the trim that it has

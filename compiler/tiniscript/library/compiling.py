@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, decode
-from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_for_needs, pack
+from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
@@ -256,8 +256,9 @@ def image_of(compilation: Compilation, robot: Robot) -> Image:
         robot.kit.hash_of_used(compilation.verdict.uses),
         compilation.verdict.needs,
     )
+    isa = isa_of(compilation.code, needs)
     return Image(compilation.program.start, devices_hash, compilation.code,
-                 checksum(compilation.image), isa_for_needs(needs), needs=needs)  # fmt: skip
+                 checksum(compilation.image), isa, needs=needs)  # fmt: skip
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:

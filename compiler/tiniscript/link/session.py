@@ -16,7 +16,7 @@ from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import isa_for_needs
+from tiniscript.bytecode.image import LEAST_ISA
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame
@@ -167,7 +167,7 @@ class Session(Requester):
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
-        isa: tuple[int, int] = isa_for_needs(0),
+        isa: tuple[int, int] = LEAST_ISA,
         keys: KeyRing | None = None,
         place: str = "",
     ) -> None:

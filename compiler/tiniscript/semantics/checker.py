@@ -224,7 +224,8 @@ class _Checker(Scope):
             unit = "" if unit_part is None else unit_part.op
             output.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.is_instruction:  # START does nothing
-            output.append(_STATEMENT_MAKERS[word.role.name](values, span))
+            make = _STATEMENT_MAKERS.get(word.role.name)
+            output.append(make(values, span) if make else ir.Act(word, tuple(terms), span))
 
     def add_expansion(
         self, word: Word, arguments: Sequence[ast.Argument], span: Span, output: list[Statement]
@@ -551,10 +552,9 @@ def _relocate(node: Any, span: Span, argument_of: Mapping[str, ast.Argument]) ->
     return node
 
 
-# What the instructions that take no time of their own become, by the role of their words.
+# What those instructions become, by the role of their words, that are no `ir.Act`.
 _STATEMENT_MAKERS: dict[str, Callable[[Sequence[Value], Span], Statement]] = {
     "motors": lambda values, span: ir.Motors(values[0].terms, values[1].terms, span),
-    "beep": lambda values, span: ir.Beep(values[0].terms, values[1].terms, span),
     "show": lambda values, span: ir.Show(values[0].terms, values[0].type == "yes_no", span),
     "stop": lambda values, span: ir.Stop(span),
 }

@@ -1,7 +1,7 @@
 """How long a program runs, if this can be known in advance.
 
-Knows the checked program. Only moves, waits and beeps count; readings and other instructions take
-no time.
+Knows the checked program. Only moves, waits and what else takes time by the row of its word count;
+readings and other instructions take none.
 """
 
 from __future__ import annotations
@@ -90,8 +90,8 @@ class _Durations:
                 self.duration_of_extent(statement) if statement.unit else _time(statement.time)
             )
             return move_duration if statement.until is None else Duration(0, move_duration.most_ms)
-        if isinstance(statement, ir.Beep):
-            return _time(statement.time)
+        if isinstance(statement, ir.Act):
+            return _time(statement.time) if ir.takes_time(statement) else _NONE
         if isinstance(statement, ir.Call):
             return self.def_durations[statement.procedure]
         if isinstance(statement, ir.If):

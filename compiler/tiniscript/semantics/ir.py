@@ -6,11 +6,12 @@ TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
+from tiniscript.base.words import Argument, Word
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
 # VARIABLE, SENSOR, TIME, AND_LEFT, OR_LEFT, AND, OR or the name of a value instruction that
@@ -61,10 +62,25 @@ class Stop(NamedTuple):
     span: Span
 
 
-class Beep(NamedTuple):
-    time: Expression
-    hertz: Expression
+class Act(NamedTuple):
+    """What a robot does with values, but not with its motors: a sound.
+
+    What is known of it the row of its word says. It becomes the instruction, and in a sketch the
+    helper, that is named as the role of the word.
+    """
+
+    word: Word
+    values: tuple[Expression, ...]
     span: Span
+
+    @property
+    def arguments(self) -> tuple[tuple[Argument, Expression], ...]:
+        return tuple(zip(self.word.arguments, self.values, strict=True))
+
+    @property
+    def time(self) -> Expression | None:
+        """How long it lasts, if it has a time."""
+        return next((value for argument, value in self.arguments if argument.unit == "s"), None)
 
 
 class Show(NamedTuple):
@@ -126,7 +142,7 @@ class Call(NamedTuple):
 
 
 Statement = (
-    Read | Move | Motors | Stop | Beep | Show | Set | Assign | If | Loop | While | Break | Call
+    Read | Move | Motors | Stop | Act | Show | Set | Assign | If | Loop | While | Break | Call
 )
 Body = tuple[Statement, ...]
 
@@ -243,17 +259,39 @@ def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
 
 
 # The fields of statements that are expressions: whoever adds a statement names them so.
-_VALUE_FIELDS = frozenset(
-    ("time", "power", "left", "right", "hertz", "value", "times", "condition")
-)
+_VALUE_FIELDS = frozenset(("time", "power", "left", "right", "value", "times", "condition"))
 
 
 def values_of(statement: Statement) -> dict[str, Expression]:
-    """Return the fields of a statement that are expressions, by their names, in their order."""
+    """Return the expressions of a statement, by their names, in their order."""
+    if isinstance(statement, Act):
+        return {argument.name: value for argument, value in statement.arguments}
     fields: dict[str, Any] = statement._asdict()
     return {
         name: value for name, value in fields.items() if name in _VALUE_FIELDS and value is not None
     }
+
+
+def changed_values(
+    statement: Statement, change: Callable[[Expression], Expression]
+) -> dict[str, Any]:
+    """Return the fields of a statement that hold its expressions, each changed."""
+    changed = {name: change(value) for name, value in values_of(statement).items()}
+    return {"values": (*changed.values(),)} if isinstance(statement, Act) else changed
+
+
+def takes_time(statement: Statement) -> bool:
+    """Whether what follows comes after a time: that of a move, a wait or a sound."""
+    return isinstance(statement, Move) or (
+        isinstance(statement, Act) and statement.word.role.takes_time
+    )
+
+
+def time_of(statement: Statement) -> Expression | None:
+    """Return the time after which what follows comes, where it is one; a way is none."""
+    if isinstance(statement, (Move, Act)) and takes_time(statement):
+        return None if isinstance(statement, Move) and statement.unit else statement.time
+    return None
 
 
 def expressions(statement: Statement | Task) -> Iterator[Expression]:

@@ -7,7 +7,6 @@ or a fault: what would fault is left to fault, and readings stay where they are.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from tiniscript.base import fixed_point
 from tiniscript.base.fixed_point import Fault, whole
@@ -180,9 +179,7 @@ def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
         return _loop(statement)
     if isinstance(statement, ir.While):
         return _while(statement)
-    folded_values: dict[str, Any] = {
-        name: fold(value) for name, value in ir.values_of(statement).items()
-    }
+    folded_values = ir.changed_values(statement, fold)
     if isinstance(statement, ir.Move) and statement.until is not None:
         folded_values["until"] = statement.until._replace(condition=fold(statement.until.condition))
     return (statement._replace(**folded_values) if folded_values else statement,)

@@ -8,7 +8,7 @@ both tasks and such a DEF load this.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.base.limits import DEFS, VARIABLES
 from tiniscript.semantics import ir
@@ -130,10 +130,9 @@ def _body(body: ir.Body, numbers: _Numbers) -> ir.Body:
 
 
 def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
-    new_fields: dict[str, Any] = {
-        name: _expression(value, numbers.copy_of_variable)
-        for name, value in ir.values_of(statement).items()
-    }
+    new_fields = ir.changed_values(
+        statement, lambda value: _expression(value, numbers.copy_of_variable)
+    )
     if isinstance(statement, ir.Call):
         new_fields["procedure"] = numbers.copy_of_def[statement.procedure]
     elif isinstance(statement, ir.Assign):

@@ -21,7 +21,6 @@ from tiniscript.base.words import (
     TIME,
     UNIT_OF,
     VALUE,
-    WORDS,
     Argument,
     Word,
 )
@@ -48,10 +47,10 @@ if TYPE_CHECKING:
 
 _MOVE_WITH_UNIT = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 # How an instruction is ended by a condition, by the role of its word.
+_REPEATED = "WHILE(NOT ({c}));{call};END_WHILE"
 _ENDED_MOVE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
-          **dict.fromkeys(("show", "beep", "def"),
-                          "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
+          **dict.fromkeys(("show", "def"), _REPEATED)}  # fmt: skip
 _LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 _LOWEST_HERTZ = 30
 _HIGHEST_POWER = 100
@@ -117,7 +116,8 @@ class WrongCalls:
         call = source[Span(node.span.start, start)].rstrip()
         own_name = self.scope.names.get(node.word)
         role = word.role.name if word else own_name.kind if own_name else "def"
-        template = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
+        is_act = word is not None and word.is_call and not word.stands_for
+        template = _ENDED_MOVE.get(role, _REPEATED if is_act else "F(5, 60) UNTIL({c})")
         example = template.format(call=call, c=source[until.span])
         until_span = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, until_span, word=node.word, example=example)
@@ -400,13 +400,13 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
         return values
     first_text, second_text = texts
     is_short = first_text.replace(".", "", 1).isdecimal() and float(first_text) < _LONG_TIME_S
-    if word.role.name == "beep":
+    if word.has_tone:
         if re.fullmatch(r"\d+\.\d{3}", second_text):  # `BEEP(1, 1.000)`
             values["fix"] = f"{word.text}({first_text}, {second_text.replace('.', '')})"
         elif _whole_number(first_text) > _LOWEST_HERTZ:
             values |= {"fix": f"{word.text}({second_text}, {first_text})", "usage": word.usage}
         elif is_short:
-            values["tone"] = f"{word.text}({first_text}, {WORDS['BEEP'].arguments[1].sample})"
+            values["tone"] = f"{word.text}({first_text}, {word.arguments[1].sample})"
     elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
             values_text = ", ".join(text.lstrip("- ") for text in texts)
@@ -438,7 +438,7 @@ def _count_values(
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     values = {"power": "", "spare": "", "kept": ""}
-    if word.role.name == "beep" and len(texts) == 1 and texts[0] in _FEW_TIMES:
+    if word.has_tone and len(texts) == 1 and texts[0] in _FEW_TIMES:
         values["number"] = texts[0]
         values["often"] = f"LOOP({texts[0]});{word.example};W(0.5);END_LOOP"
         values["long"] = _call_text(word, [texts[0], word.arguments[1].sample])
@@ -450,7 +450,7 @@ def _count_values(
             )
         values["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
-        is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
+        is_sound = word.has_tone and numbers[1] > _LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
             values["spare"] = _call_text(word, texts[: len(word.arguments)])
         if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _HIGHEST_POWER:

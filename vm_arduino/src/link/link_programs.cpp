@@ -120,14 +120,14 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   if (found != kIsFine) return found;
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = verdict.needs() != 0;  // as the compiler: 2.0 without
+  image[kIsaMinorAt] = verdict.minor();
   image[kStartAt] = start;
   image[kHeaderLengthAt] = kHeaderBytes;
   image[kDevicesAt] = static_cast<uint8_t>(devices);
   image[kDevicesAt + 1] = static_cast<uint8_t>(devices >> 8);
   image[kCodeLengthAt] = length;
   image[kCodeLengthAt + 1] = 0;
-  image[kNeedsAt] = static_cast<uint8_t>(verdict.needs());
+  image[kNeedsAt] = verdict.needs();
   copy_bytes(code, image + kHeaderBytes, length);
   return kIsFine;
 }

@@ -147,13 +147,21 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kWait:
     case Family::kWait8:
       return drive(time_ms);
-    default:  // kEnd or kEndTask: the others are in the inner loop
-      stay();  // after the last END lies nothing
-      if (has_tasks() && !end_task()) return false;
-      robot_off();
-      status_ = Status::kDone;
-      return false;
+    case Family::kNone:  // these are done before, or in the inner loop
+    case Family::kPushRead:
+    case Family::kPushReadShort:
+    case Family::kTime:
+    case Family::kRandom:
+    case Family::kLook:
+    case Family::kEndWhen:
+      break;
   }
+  // kEnd or kEndTask, which have no family
+  stay();  // after the last END lies nothing
+  if (has_tasks() && !end_task()) return false;
+  robot_off();
+  status_ = Status::kDone;
+  return false;
 }
 
 }  // namespace tiniscript

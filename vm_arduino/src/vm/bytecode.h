@@ -54,6 +54,12 @@ constexpr uint8_t kNeedsTasks = 1;
 constexpr uint8_t kNeedsWays = 2;
 constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;
 
+// The minor version that an instruction came with, beside what its `needs` says. An
+// image has the newest of its instructions.
+constexpr uint8_t minor_of_op(uint8_t) { return 0; }
+constexpr bool kOpsHaveMinors = false;
+constexpr uint8_t minor_of_needs(uint8_t needs) { return needs != 0 ? 1 : 0; }
+
 enum class Op : uint8_t {
   kEnd = 0x00,  // --
   kPush8 = 0x01,  // -- n
@@ -264,6 +270,43 @@ enum class Op : uint8_t {
   kEscape = 0xff,  // a second byte says which instruction it is
 };
 
+// The instructions that are left to Machine::act.
+#define tini_each_act \
+  case Op::kSet : \
+  case Op::kMoveF : \
+  case Op::kMoveB : \
+  case Op::kMoveL : \
+  case Op::kMoveR : \
+  case Op::kMove8F : \
+  case Op::kMove8B : \
+  case Op::kMove8L : \
+  case Op::kMove8R : \
+  case Op::kWatchF : \
+  case Op::kWatchB : \
+  case Op::kWatchL : \
+  case Op::kWatchR : \
+  case Op::kWatchForeverF : \
+  case Op::kWatchForeverB : \
+  case Op::kWatchForeverL : \
+  case Op::kWatchForeverR : \
+  case Op::kWait : \
+  case Op::kWait8 : \
+  case Op::kWatchWait : \
+  case Op::kWatchForeverWait : \
+  case Op::kBeep8 : \
+  case Op::kStop : \
+  case Op::kMotors : \
+  case Op::kMotors8 : \
+  case Op::kBeep : \
+  case Op::kSet0 : \
+  case Op::kSet1 : \
+  case Op::kSet2 : \
+  case Op::kSet3 : \
+  case Op::kSet4 : \
+  case Op::kSet5 : \
+  case Op::kSet6 : \
+  case Op::kSet7
+
 // Whether a second byte is that of GO or of WATCH_GO: the code of MOVE or of WATCH.
 constexpr bool is_way(uint8_t code) { return (code & 0xf4) == 0x40; }
 
@@ -373,19 +416,19 @@ enum class Family : uint8_t {
   kShowYesNo = 6,
   kSet = 7,
   kSetShort = 8,  // SET_0, SET_1, SET_2, SET_3 ...
-  kStop = 9,
-  kMotors = 10,
-  kMotors8 = 11,
-  kMove = 12,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
-  kMove8 = 13,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
-  kWatch = 14,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
-  kWatchForever = 15,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
-  kWatchWait = 16,
-  kWatchForeverWait = 17,
-  kWait = 18,
-  kWait8 = 19,
-  kBeep = 20,
-  kBeep8 = 21,
+  kMove = 9,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
+  kMove8 = 10,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
+  kWatch = 11,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
+  kWatchForever = 12,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
+  kWait = 13,
+  kWait8 = 14,
+  kWatchWait = 15,
+  kWatchForeverWait = 16,
+  kBeep8 = 17,
+  kStop = 18,
+  kMotors = 19,
+  kMotors8 = 20,
+  kBeep = 21,
   kLook = 72,
   kEndWhen = 73,
 };

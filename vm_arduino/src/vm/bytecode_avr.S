@@ -36,6 +36,37 @@
 #define op_when op_none
 #endif
 
+// What C++ does of instructions of so many bytes.
+.macro acts_of_1
+op_move:
+op_watch:
+op_watch_forever:
+op_wait:
+op_watch_wait:
+op_watch_forever_wait:
+op_stop:
+op_motors:
+op_beep:
+op_set_short:
+.endm
+
+// What C++ does of instructions of so many bytes.
+.macro acts_of_2
+op_set:
+op_wait8:
+.endm
+
+// What C++ does of instructions of so many bytes.
+.macro acts_of_3
+op_move8:
+op_motors8:
+.endm
+
+// What C++ does of instructions of so many bytes.
+.macro acts_of_4
+op_beep8:
+.endm
+
 // The low bits of an instruction that compares are its comparator.
 #define tini_comparator_bits 7
 

@@ -104,17 +104,15 @@ op_read:
 2:  rjmp stay
 
 ; A statement that C++ does, of four bytes, of three, of two, of one.
-op_beep8:
+    acts_of_4
     movw at, r26
     adiw r26, 3
     rjmp 3f
-op_move8:
-op_motors8:
+    acts_of_3
     movw at, r26
     adiw r26, 2
     rjmp 3f
-op_set:
-op_wait8:
+    acts_of_2
 op_way:
     movw at, r26
     adiw r26, 1
@@ -123,16 +121,7 @@ op_end:
 tini_of_tasks(op_look:)
 tini_of_tasks(op_end_task:)
 tini_of_tasks(op_end_when:)
-op_set_short:
-op_move:
-op_watch:
-op_watch_forever:
-op_wait:
-op_watch_wait:
-op_watch_forever_wait:
-op_stop:
-op_motors:
-op_beep:
+    acts_of_1
     movw at, r26
 3:  rcall perform
 statement_end:

@@ -159,37 +159,11 @@ tini_always_inline bool InnerLoop::step() {
       if (act(code)) return true;
       if (next_ == at_) top_++;
       return false;
-    case Op::kSet:
-    case Op::kMoveF:
-    case Op::kMoveB:
-    case Op::kMoveL:
-    case Op::kMoveR:
-    case Op::kMove8F:
-    case Op::kMove8B:
-    case Op::kMove8L:
-    case Op::kMove8R:
-    case Op::kWatchF:
-    case Op::kWatchB:
-    case Op::kWatchL:
-    case Op::kWatchR:
-    case Op::kWatchForeverF:
-    case Op::kWatchForeverB:
-    case Op::kWatchForeverL:
-    case Op::kWatchForeverR:
-    case Op::kWait:
-    case Op::kWait8:
-    case Op::kWatchWait:
-    case Op::kWatchForeverWait:
-    case Op::kBeep8:
-    case Op::kStop:
-    case Op::kMotors:
-    case Op::kMotors8:
-    case Op::kBeep:
     case Op::kEnd:
     case Op::kLook:
     case Op::kEndTask:
     case Op::kEndWhen:
-      tini_each_short(kSet) : return act(code);
+      tini_each_act : return act(code);
     case Op::kEscape:
       return act(code, 2, 2);  // GO or WATCH_GO
     case Op::kUntil:

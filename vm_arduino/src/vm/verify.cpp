@@ -91,6 +91,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   uint8_t tasks = 0;            // that have begun beside the main one
   ControlRole closer = ControlRole::kNone;  // of the routine
   uint8_t needed = 0;           // of `needs`, beside tasks
+  uint8_t minor = 0;            // that its instructions came with, beside what they need
   bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
   top->end = 0;
@@ -119,6 +120,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (!is_way(*++operand)) return {Rule::kUnknownOpcode, at};
       needed = kNeedsWays;
     }
+    if (minor_of_op(*operand) > minor) minor = minor_of_op(*operand);
     const DecodeForm form = decode_form_of(*operand);
     if (kHasTasks && (may_need & kNeedsTasks) == 0 && form.role() >= ControlRole::kTask) {
       return {Rule::kUnknownOpcode, at};
@@ -310,7 +312,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   if (checker != ControlRole::kNone) return {Rule::kInsideCheck, at};
   if (top->kind != Kind::kCode || end != 0) return {Rule::kStillOpen, at};
   if (tasks != 0) needed |= kNeedsTasks;
-  return {Rule::kNone, needed};
+  return {Rule::kNone, static_cast<uint16_t>(minor << 8 | needed)};
 }
 
 }  // namespace

@@ -16,14 +16,19 @@
 namespace tiniscript {
 
 // Of code that is refused: the first rule that it violates, and the offset of the instruction there.
-// Of code that is accepted: kNone, and bits of `needs`.
+// Of code that is accepted: kNone, and bits of `needs` below the minor version that its instructions
+// came with.
 struct Verdict {
   Rule rule;
   uint16_t offset_or_needs;
 
   bool is_accepted() const { return rule == Rule::kNone; }
   uint16_t offset() const { return offset_or_needs; }
-  uint16_t needs() const { return offset_or_needs; }
+  uint8_t needs() const { return static_cast<uint8_t>(offset_or_needs); }
+  uint8_t minor() const {  // of its image: the lowest that has what it has and needs
+    const uint8_t of_ops = kOpsHaveMinors ? static_cast<uint8_t>(offset_or_needs >> 8) : 0;
+    return minor_of_needs(needs()) > of_ops ? minor_of_needs(needs()) : of_ops;
+  }
 };
 
 // Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Its image says

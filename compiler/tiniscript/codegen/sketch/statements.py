@@ -149,9 +149,10 @@ class Statements:
     def stop(self, _: ir.Stop, comment: str) -> None:
         self.add_line(f"{self.use('stop_motors')}();", comment)
 
-    def beep(self, beep: ir.Beep, comment: str) -> None:
-        parts = ((beep.time, None), (beep.hertz, (31, 20_000)))
-        self.add_call("beep", comment, self.argument_codes(*parts))
+    def act(self, act: ir.Act, comment: str) -> None:
+        """Call the helper that is named as the role of the word."""
+        parts = ((value, argument.whole_limits) for argument, value in act.arguments)
+        self.add_call(act.word.role.name, comment, self.argument_codes(*parts))
 
     def assign(self, assign: ir.Assign, comment: str) -> None:
         name = self.names.variables[assign.variable]
@@ -350,7 +351,7 @@ _STATEMENTS: dict[type, Callable[..., None]] = {
     ir.Move: Statements.move,
     ir.Motors: Statements.motors,
     ir.Stop: Statements.stop,
-    ir.Beep: Statements.beep,
+    ir.Act: Statements.act,
     ir.Show: Statements.show,
     ir.Set: Statements.set,
     ir.Assign: Statements.assign,

@@ -47,23 +47,17 @@ def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     return not is_exact_as_float(kit.sensors)
 
 
-def _arguments(statement: ir.Statement, robot: Robot) -> tuple[ir.Expression | None, ...]:
+def _arguments(statement: ir.Statement, robot: Robot) -> tuple[ir.Expression, ...]:
     """Return the arguments that are numbers."""
-    if isinstance(statement, ir.Move):
-        return statement.time, statement.power
-    if isinstance(statement, ir.Motors):
-        return statement.left, statement.right
-    if isinstance(statement, ir.Beep):
-        return statement.time, statement.hertz
-    if isinstance(statement, ir.Loop):
-        return (statement.times,)
+    if isinstance(statement, (ir.Move, ir.Motors, ir.Act, ir.Loop)):
+        return (*ir.values_of(statement).values(),)
     if isinstance(statement, ir.Set) and not robot.kit.actuators[statement.actuator].is_yes_no:
         return (statement.value,)
     return ()
 
 
-def _is_computed(expression: ir.Expression | None) -> bool:
-    return expression is not None and constant(expression) is None
+def _is_computed(expression: ir.Expression) -> bool:
+    return constant(expression) is None
 
 
 def _needs_arithmetic(term: ir.Term) -> bool:

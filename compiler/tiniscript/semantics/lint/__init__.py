@@ -42,7 +42,7 @@ TABLE = (
     ),
     Row((codes.SWAPPED,), ir.Move, numbers.report_swapped_names),
     Row((codes.SWAPPED,), PROGRAM, numbers.report_swapped_rounds),
-    Row((codes.ZERO_TIME_MOVE, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.check_beep),
+    Row((codes.ZERO_TIME_MOVE, codes.LONG_TIME, codes.CUT_VALUE), ir.Act, numbers.check_act),
     Row((codes.LONG_TIME,), STATEMENT, numbers.check_clock),
     Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.check_times),
     # conditions whose answer does not come

@@ -12,7 +12,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.syntax.lexer import Scan
 
-STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
+STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Act)  # they leave the robot where it is
 MOST_CHARACTERS = 120  # characters of a condition that a message can hold
 
 

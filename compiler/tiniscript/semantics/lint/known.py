@@ -51,10 +51,9 @@ def report_past_clock(context: LintContext) -> None:
 
 def _least_duration(statement: ir.Statement) -> int:
     """Return how long a statement surely lasts, in thousandths of a second."""
-    if isinstance(statement, ir.Move) and (statement.unit or statement.until is not None):
+    if isinstance(statement, ir.Move) and statement.until is not None:
         return 0
-    time = statement.time if isinstance(statement, (ir.Beep, ir.Move)) else None
-    return max(0, known_value(time) or 0)
+    return max(0, known_value(ir.time_of(statement)) or 0)
 
 
 def _report_over(

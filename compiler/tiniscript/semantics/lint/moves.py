@@ -20,7 +20,7 @@ LONG_MOVE_MS = 500  # ms: a robot goes a hand's breadth in this time
 LONG_STEP_MS = 1000  # ms: in a WHILE it is looked at again after so long
 LONG_AFTER_MS = 5000  # ms: it was looked at once before so long a move
 _GREATER_COMPARATORS = ("GT", "GE")
-_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set)
+_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Act)
 _LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
@@ -128,9 +128,7 @@ class _LateConditions:
         move_before = _nearest_move(body, range(k - 1, -1, -1))
         move_after = _nearest_move(body, range(k + 1, len(body)))
         pausing_statements = [
-            statement
-            for statement in branch.arms[0].body
-            if isinstance(statement, (ir.Move, ir.Beep))
+            statement for statement in branch.arms[0].body if ir.takes_time(statement)
         ]
         if any(isinstance(move, ir.Move) and move.direction == "W" for move in pausing_statements):
             return  # S with its wait is a pause
@@ -256,7 +254,7 @@ def _only_stop(branch: ir.If) -> ir.Stop | None:
 
 def _is_talk(statement: ir.Statement) -> bool:
     is_wait = isinstance(statement, ir.Move) and statement.direction == "W"
-    return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
+    return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Act))
 
 
 def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
@@ -267,7 +265,7 @@ def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: Lint
             continue
         rest = (body[index] for index in range(k + 1, len(body)))
         next_statement = next(
-            (item for item in rest if not isinstance(item, _INSTANT_STATEMENTS)), None
+            (item for item in rest if isinstance(item, ir.If) or not _is_instant(item)), None
         )
         if isinstance(next_statement, ir.If) and all(map(_is_instant, (next_statement, *rest))):
             next_statement = None
@@ -292,7 +290,7 @@ def report_unseen_motors(body: ir.Body, body_context: BodyContext, context: Lint
 def _is_instant(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
     if not isinstance(statement, ir.If):
-        return isinstance(statement, _INSTANT_STATEMENTS)
+        return isinstance(statement, _INSTANT_STATEMENTS) and not ir.takes_time(statement)
     bodies = (statement.else_body, *(arm.body for arm in statement.arms))
     return all(isinstance(item, ir.Stop) or _is_instant(item) for body in bodies for item in body)
 

@@ -10,12 +10,12 @@ import re
 from tiniscript.base.fixed_point import ONE, Fault, as_text, whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
-from tiniscript.base.words import HERTZ, POWER, UNIT_OF, Argument
+from tiniscript.base.words import POWER, UNIT_OF, Argument
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, comparisons_in
-from tiniscript.semantics.ir import Beep, Expression, Move
+from tiniscript.semantics.ir import Act, Expression, Move
 from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
@@ -255,26 +255,29 @@ def _is_milliseconds(time: int) -> bool:
     return is_whole and (time % (500 * SECOND_MS) == 0 or time % (30 * SECOND_MS) != 0)
 
 
-def check_beep(beep: Beep, body_context: BodyContext, context: LintContext) -> None:
-    """Warn of a sound that lasts longer than anybody can bear."""
-    time, hertz = known_value(beep.time), known_value(beep.hertz)
-    context.diagnostics += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
+def check_act(act: Act, body_context: BodyContext, context: LintContext) -> None:
+    """Warn of values outside their range, and of a sound that is longer than anybody can bear."""
+    word, time = act.word.text, known_value(act.time)
+    for argument, value in act.arguments:
+        if argument.whole_limits is not None:
+            context.diagnostics += _warn_of_cut_value(value, argument, act.span, word)
     if time is not None and time <= 0:
-        context.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
+        context.report(codes.ZERO_TIME_MOVE, act.span, word=word)
+    hertz = known_value(act.values[1]) if act.word.has_tone else None
     if time is None or hertz is None or time < LONG_BEEP_MS:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
-    rival = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
-    fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
+    rival = f"{word}({as_text(time // 1000)}, {as_text(hertz)})"
+    fix = f"{word}({as_text(hertz // 1000)}, {as_text(time)})"
     sound = ""
     if time % (100 * SECOND_MS) == 0:  # a round time, and no note's hertz
         fix, rival = rival if hertz % 100_000 else "", ""
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
-        fix, rival, sound = "", "", f"BEEP(seconds, {as_text(time)})"
+        fix, rival, sound = "", "", f"{word}(seconds, {as_text(time)})"
     elif time % (50 * SECOND_MS) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
         fix, rival = rival, fix
     gaps = {"fix": fix, "sound": sound} | ({"rival": rival} if rival else {})
-    context.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
+    context.report(codes.LONG_TIME, act.span, time=as_text(time), **gaps)
 
 
 def report_swapped_rounds(context: LintContext) -> None:

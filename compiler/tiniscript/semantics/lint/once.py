@@ -16,8 +16,8 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint.context import LintContext
 
-_LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Loop, ir.While, ir.Call)
-_VISIBLE_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
+_LONG_STATEMENTS = (ir.Loop, ir.While, ir.Call)
+_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # or heard
 
 
 def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
@@ -44,7 +44,8 @@ def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
                 "SENSOR", statements
             ):
                 break  # it has been waited for
-            is_before_loop = is_before_loop and not isinstance(statement, _LASTING_STATEMENTS)
+            is_long = ir.takes_time(statement) or isinstance(statement, _LONG_STATEMENTS)
+            is_before_loop = is_before_loop and not is_long
 
 
 def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
@@ -91,7 +92,7 @@ def _loop_repair(span: Span, body: ir.Body, context: LintContext) -> Repair | No
     """Put a loop around what is read once and all that follows, where the rest takes time."""
     later_statements = [statement for statement in body if statement.span.end > span.start]
     if not any(
-        isinstance(statement, _VISIBLE_STATEMENTS)
+        isinstance(statement, _SEEN_STATEMENTS)
         for statement in ir.walk_with_calls((*later_statements,), context.program.procedures)
     ):
         return None

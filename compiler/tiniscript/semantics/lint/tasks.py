@@ -19,7 +19,7 @@ from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
 _MOST_INSTRUCTIONS = 6  # instructions that a suggestion shows
-_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
+_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call, ir.Act)
 
 
 def report_kept_motors(context: LintContext) -> None:
@@ -92,7 +92,7 @@ class _Motors:
                 is_wanted_now = True
             elif isinstance(statement, ir.Stop) or _is_move(statement):
                 is_wanted_now = False
-            elif isinstance(statement, (ir.Move, ir.Beep)):
+            elif ir.takes_time(statement):
                 is_wanted_now = is_wanted_now or None
             elif isinstance(statement, ir.Call):
                 is_wanted_now = self._wants_motors_after(
@@ -132,7 +132,10 @@ def report_brief_tasks(context: LintContext) -> None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, statements)):
                 context.diagnostics.append(_single_run_diagnostic(task, context.source))
         elif driving_statements and known_value(task.until.condition) is None:
-            is_brief = all(isinstance(statement, _INSTANT_STATEMENTS) for statement in statements)
+            is_brief = all(
+                isinstance(statement, _INSTANT_STATEMENTS) and not ir.takes_time(statement)
+                for statement in statements
+            )
             if is_brief and any(isinstance(statement, ir.Stop) for statement in statements):
                 _report_resumed_move(task, driving_statements[0], context)
 
@@ -168,7 +171,10 @@ def report_lone_task(context: LintContext) -> None:
     text = context.source[task.span]
     statements = [statement for statement in task.body if not isinstance(statement, ir.Read)]
     moves_last = sorted(statements, key=_is_move)
-    if [*map(_is_move, moves_last)] != [False, True] or not isinstance(moves_last[0], ir.Beep):
+    is_sound_with_move = [*map(_is_move, moves_last)] == [False, True] and (
+        isinstance(moves_last[0], ir.Act) and ir.takes_time(moves_last[0])
+    )
+    if not is_sound_with_move:
         context.report(codes.LONE_TASK, task.word)
         return
     parts = [
@@ -225,9 +231,8 @@ def _is_move(statement: ir.Statement) -> bool:
 
 def _takes_time(statement: ir.Statement) -> bool:
     """Whether a statement surely takes time."""
-    if not isinstance(statement, (ir.Move, ir.Beep)):
-        return False
     if isinstance(statement, ir.Move) and (statement.time is None or statement.until is not None):
         return statement.until is None
-    assert statement.time is not None
+    if not isinstance(statement, (ir.Move, ir.Act)) or not ir.takes_time(statement):
+        return False
     return (known_value(statement.time) or 0) > 0

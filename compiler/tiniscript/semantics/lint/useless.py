@@ -20,7 +20,7 @@ from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.lexer import NEWLINE, Token
 
-_LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
+_SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # or heard
 _NOTE_BEHIND = r"[ \t;]{0,99}//"
 MOST_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
 _CALL = (
@@ -147,8 +147,7 @@ def report_busy_loop(
         or not _is_forever(loop)
         or ir.breaks_out(loop.body)
         or any(
-            isinstance(call, _LASTING_STATEMENTS)
-            for call in ir.walk_with_calls(loop.body, procedures)
+            isinstance(call, _SEEN_STATEMENTS) for call in ir.walk_with_calls(loop.body, procedures)
         )
     ):
         return
