@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.cli.test_esp32_radio import NETWORK, PASSWORD, near
-from tests.cli.test_owner_commands import claimed
 from tests.machines.esp32 import HAS_TLS
 from tests.support.certificates import Authority, der
+from tests.support.claimed_robots import claimed
 from tests.support.command import inside, process
+from tests.support.esp32_near import NETWORK, PASSWORD, near
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on

@@ -18,9 +18,9 @@ from typing import cast
 
 import pytest
 
-from tests.cli.test_esp32_radio import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
-from tests.cli.test_owner_commands import as_another, claimed
+from tests.support.claimed_robots import as_another, claimed
 from tests.support.command import FOREVER, Command, Done, inside, process
+from tests.support.esp32_near import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on

@@ -7,19 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_owner_commands import as_another, claimed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
+from tests.support.claimed_robots import as_another, claimed
 from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.esp32_announced import Announced
+from tests.support.esp32_near import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
 from tests.support.esp32_pty_robot import Esp32PtyRobot
-from tests.support.esp32_radio import in_reach, port_of, radios
+from tests.support.esp32_radio import port_of, radios
 from tests.support.network import BadNetwork
 from tests.support.pty_robot import on
-
-NETWORK, PASSWORD = "Aula 3", b"a secret of the school"
-DRIVES = "SI|F(0.2, 80)"
-DROVE = ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 @pytest.fixture
@@ -43,14 +40,6 @@ def asked(robot: Esp32PtyRobot, what: str) -> str:
     return said[0]
 
 
-def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
-    def reach(host_firmware: HostFirmware) -> None:
-        assert isinstance(host_firmware, Esp32Robot)
-        in_reach(host_firmware, NETWORK, password.decode())
-
-    robot.ask(reach)
-
-
 @pytest.fixture
 def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     """A robot with an owner, in a network."""
@@ -68,16 +57,6 @@ def driving(robot: Esp32PtyRobot, place: str) -> Command:
     command.until("running")
     robot.until(lambda: robot.moves, "it drives")
     return command
-
-
-def drove(robot: Esp32PtyRobot) -> list[str]:
-    return [line for line in robot.did if line.startswith("MOTORS")]
-
-
-def files_with(folder: Path, words: bytes) -> list[str]:
-    return [
-        str(path) for path in folder.rglob("*") if path.is_file() and words in path.read_bytes()
-    ]
 
 
 def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) -> None:

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.flash.test_flash import ENDS, copied
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc
 from tests.support.copies import linked
+from tests.support.flashed_boards import ENDS, copied
 from tests.support.needs import need
 from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, has_ended, until

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_virtual_command import Robot, robot
 from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE, Command, Tsc, inside
 from tests.support.link_events import event
 from tests.support.rows import each_row
+from tests.support.virtual_command import Robot, robot
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, ValueCatcher, requested_command

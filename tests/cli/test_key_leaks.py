@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_owner_commands import claimed
+from tests.support.claimed_robots import claimed
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile

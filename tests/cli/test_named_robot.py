@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import tiniscript
-from tests.cli.test_virtual_command import robot
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc, inside
 from tests.support.rows import each_row
+from tests.support.virtual_command import robot
 from tiniscript import ProgramError
 from tiniscript.cli.texts.options import OPTIONS
 from tiniscript.cli.texts.verbs import VERBS

@@ -7,15 +7,14 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 import pytest
 
 from tests.machines.host_firmware import EMPTY
-from tests.support.command import FOREVER, Command, Done, inside
+from tests.support.claimed_robots import as_another, claimed
+from tests.support.command import FOREVER, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import set_owner
@@ -25,27 +24,6 @@ from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.link.sharing.requests import ClientRequests
 
 DRIVES = "SI|F(0.2, 80)"
-
-
-def claimed(pty_robot: PtyRobot, *options: str) -> Done:
-    """Claim the robot, with a hand on its button: a press before it is asked counts for nothing."""
-
-    def said(words: str, file: object = None, flush: bool = False) -> None:
-        print(words, file=sys.stdout if file is None else sys.stderr, flush=flush)
-        if file is not None:
-            assert "2 s" in words
-            pty_robot.hold(after_ms=1000, times=8)
-
-    with mock.patch.object(set_owner, "print", said, create=True):
-        done = on(pty_robot, "set", "owner", *options)
-    pty_robot.let_go()
-    secrets = [key.key.hex() for key in KeyFile().all()]
-    assert not [secret for secret in secrets if secret in done.out + done.err]
-    return done
-
-
-def as_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str = "another") -> None:
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / name))
 
 
 def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_outputs import PROFILE, WORLD
-from tests.link.test_session import DESCRIPTION
 from tests.support.command import PROGRAM, Tsc
 from tests.support.rows import each_row
 from tests.support.sampling import some_of
+from tests.support.session_frames import DESCRIPTION
 from tests.support.verbs import parsers, values_of, words_of
 from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError

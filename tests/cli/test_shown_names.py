@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.library.test_source_map import compiled, mapped
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.source_maps import compiled, mapped
 from tiniscript.base import files
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum

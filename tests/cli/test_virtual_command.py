@@ -8,63 +8,18 @@ import re
 import signal
 import socket
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.command import OBSTACLE, Command, Done, Tsc, inside
+from tests.support.command import OBSTACLE, Command, Tsc, inside
+from tests.support.virtual_command import FOREVER, Robot, robot, visitor
 from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.virtual import directory
-
-FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
-
-
-class Robot:
-    """A `tsc robot` that runs."""
-
-    def __init__(self, *words: str | Path) -> None:
-        self.command = Command("robot", *map(str, words))
-        self.port = self.line()
-
-    def line(self) -> str:
-        assert self.command.process.stdout
-        return self.command.process.stdout.readline().decode().removesuffix("\n")
-
-    def until(self, said: str) -> list[str]:
-        """Return the lines up to one that ends so."""
-        lines: list[str] = []
-        while not lines or not lines[-1].endswith(said):
-            lines.append(self.line())
-            assert lines[-1], f"it ends without {said}: {lines}"
-        return lines
-
-    def kill(self) -> None:
-        self.command.kill()
-
-    def end(self, number: int = signal.SIGINT) -> Done:
-        if self.command.process.poll() is None:
-            self.command.signal(number)
-        return self.command.ended()
-
-
-@contextmanager
-def robot(*arguments: str | Path) -> Iterator[Robot]:
-    found = Robot(*arguments)
-    try:
-        yield found
-    finally:
-        found.end(signal.SIGTERM)
-
-
-def visitor(port: str) -> socket.socket:
-    return socket.create_connection(("127.0.0.1", int(port.rpartition(":")[2])))
-
 
 # -- a robot with a port --------------------------------------------------------------------------
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import BAUD, NAMES
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.robot_on_uno import BAUD, NAMES
 from tests.support.simulated_port import simulated
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.conformance.comparing import AGREES

@@ -18,7 +18,7 @@ def memory(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
-    from tests.firmware.test_uno_robot import switched_on
+    from tests.support.robot_on_uno import switched_on
 
     with switched_on(sketch, memory) as found:
         yield found
@@ -27,7 +27,7 @@ def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
 @pytest.fixture
 def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator[Uno]:
     """The one of the parameter `board`."""
-    from tests.firmware.test_uno_robot import switched_on
+    from tests.support.robot_on_uno import switched_on
 
     with switched_on(sketches(board), memory, board) as found:
         yield found

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
 from tests.support.images import image_of
 from tests.support.virtual_robot import Talk
 from tiniscript import robots

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import pytest
 
-from tests.firmware.test_boards import LAMP, START, STEADY, on_board, pulses, started
 from tests.machines.board import HERTZ, MS, Board
+from tests.support.board_states import LAMP, START, STEADY, on_board, pulses, started
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 

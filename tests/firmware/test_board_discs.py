@@ -18,7 +18,7 @@ from tests.machines.wired import Wired
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
 from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
-from tests.wiring.test_wiring import with_discs
+from tests.support.wired_robots import with_discs
 from tiniscript import robots
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session

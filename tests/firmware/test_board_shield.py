@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_boards import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, started
 from tests.machines.board import CONTROLS, HERTZ, MS, PORTS, Board
 from tests.machines.shift_register import HOLD_NS, ShiftRegister, WrongTiming
+from tests.support.board_states import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, started
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from tests.firmware.test_boards import START, on_board, started
 from tests.machines.board import HERTZ, MS, PORTS, Board
+from tests.support.board_states import START, on_board, started
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 

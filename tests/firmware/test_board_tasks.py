@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
-
 import pytest
 
-from tests.firmware.test_host_firmware import outcome
-from tests.firmware.test_uno_robot import FORWARD, MOTORS, OFF, computer, send, states
-from tests.firmware.test_uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
+from tests.support.board_builds import BOARDS, each_board
 from tests.support.casefile import ROOT, Case, read
-from tests.vm.test_tasks import STATES
+from tests.support.robot_on_host import outcome
+from tests.support.robot_on_uno import FORWARD, MOTORS, OFF, computer, send, states
+from tests.support.task_states import STATES
+from tests.support.uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
-
-Test = TypeVar("Test", bound=Callable[..., None])
 
 AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
 LOOK_MS = (
@@ -35,15 +31,6 @@ def without_readings() -> list[Case]:
     cases = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
     cases = [each for each in cases if "tiniscript" in each.parts]
     return [each for each in cases if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
-
-
-BOARDS = pytest.mark.parametrize("board", ["uno", "mega"])
-
-
-def each_board(test: Test) -> Test:
-    """Run a test on both; a commit draws one of them for each row."""
-    found: Test = pytest.mark.sampled("board")(BOARDS(test))
-    return found
 
 
 @pytest.mark.sampled("case", "board", keep=2)

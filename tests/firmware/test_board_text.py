@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_board_tasks import each_board
-from tests.firmware.test_uno_robot import BAUD, FORWARD, NAMES, OFF, computer, states, switched_on
 from tests.machines.uno import needed
+from tests.support.board_builds import each_board
 from tests.support.platformio import copied, pio
+from tests.support.robot_on_uno import BAUD, FORWARD, NAMES, OFF, computer, states, switched_on
 from tiniscript import robots
 from tiniscript.flash import building
 from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS

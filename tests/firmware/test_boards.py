@@ -2,88 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from itertools import pairwise
 
 import pytest
 
-from tests.machines.board import HERTZ, MS, Board
-from tests.robots.test_robots import TEXTS
+from tests.machines.board import MS, Board
+from tests.support.board_states import (
+    BACK,
+    DRIVERS,
+    FORWARD,
+    LAMP,
+    MOVES,
+    OFF,
+    PRESS,
+    SERVOS,
+    START,
+    STOPS,
+    TURN,
+    driven,
+    on_board,
+    pulses,
+    robot_with,
+    started,
+)
 from tiniscript import robots
 from tiniscript.robots.ports import AVRS
-from tiniscript.robots.profile import Robot
-from tiniscript.robots.reader import read
-
-STEADY = 29.8  # ms after its release a button is surely up
-PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is surely up again
-FORWARD, BACK, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
-MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
-TURN = 250.0
-
-
-def robot_with(motors: str) -> Robot:
-    """The robot tinibot with other motors."""
-    head, _, rest = TEXTS["tinibot"].partition("[board.motors]")
-    text = f"{head}[board.motors]\n{motors}\n[board.sensors.LIGHT_R]"
-    text += rest.partition("[board.sensors.LIGHT_R]")[2]
-    return read(text, "test")
-
-
-def bridge(driver: str, more: str = "") -> str:
-    return (
-        f'driver = "{driver}"\nleft_pwm = 5\nleft_forward = 7\nleft_backward = 8\n'
-        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{more}"
-    )
-
-
-TWO_WIRE = (
-    'driver = "two_wire"\nleft_forward = 5\nleft_backward = 6\n'
-    "right_forward = 9\nright_backward = 10\n"
-)
-SERVOS = 'driver = "servos"\nleft_pin = 9\nright_pin = 6\nright_still_us = 1480\n'
-
-# The pins in the order of the profile: forward with 80 %, back with 40 %, M(50, -100), off.
-BRIDGE_STATES = (
-    ("pwm 204", "high", "low", "pwm 204", "high", "low"),
-    ("pwm 102", "low", "high", "pwm 102", "low", "high"),
-    ("pwm 127", "high", "low", "pwm 255", "low", "high"),
-    ("low",) * 6,
-)
-TWO_WIRE_STATES = (
-    ("pwm 204", "low", "pwm 204", "low"),
-    ("low", "pwm 102", "low", "pwm 102"),
-    ("pwm 127", "low", "low", "pwm 255"),
-    ("low",) * 4,
-)
-# One direction pin for each motor, and the board makes the other.
-ONE_DIRECTION = (
-    'driver = "pwm_dir"\nleft_pwm = 5\nleft_forward = 7\nright_pwm = 6\nright_forward = 9\n'
-    'standby = "A5"\n'
-)
-ONE_DIRECTION_STATES = tuple(
-    (*(state[k] for k in (0, 1, 3, 4)), "low" if state[0] == "low" else "high")
-    for state in BRIDGE_STATES
-)
-DRIVERS = {
-    "l298n": (bridge("l298n"), BRIDGE_STATES),
-    "l293d": (bridge("l293d"), BRIDGE_STATES),
-    "tb6612": (
-        bridge("tb6612", 'standby = "A5"\n'),
-        tuple((*state, "low" if state[0] == "low" else "high") for state in BRIDGE_STATES),
-    ),
-    "two_wire": (TWO_WIRE, TWO_WIRE_STATES),
-    "pwm_dir": (ONE_DIRECTION, ONE_DIRECTION_STATES),
-}
-
-
-def driven(name: str) -> Robot:
-    return robot_with(DRIVERS[name][0])
-
-
-def started(robot: Robot, text: str, more: str = "") -> Board:
-    board = Board(robot, text, more)
-    board.press(PRESS, START - STEADY)
-    return board
 
 
 @pytest.mark.sampled("name", keep=2)
@@ -100,15 +43,6 @@ def test_one_motor_drives_alone(powers: str, pin: int) -> None:
     board = started(driven("tb6612"), f"SI|M({powers});W(1)").ran(START + 60)
     state = board.motors(START + 50)
     assert (state[pin], state[-1]) == ("pwm 204", "high")
-
-
-def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
-    """A shipped robot on another board, or wired in another way."""
-    text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new, 1)
-    return read(text, name)
 
 
 @pytest.mark.sampled("chip")
@@ -147,13 +81,6 @@ def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
 LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
-def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
-    """Return when each pulse began, in ms, and its length in us."""
-    edges = board.edges(pin)
-    pairs = zip(edges[::2], edges[1::2], strict=False)
-    return [(up / MS, (down - up) * 1e6 / HERTZ) for up, down in pairs]
-
-
 def test_servos_turn_and_stand_for_a_second() -> None:
     board = started(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").ran(START + 2000)
     left, right = (pulses(board, pin) for pin in board.motor_pins())
@@ -177,13 +104,6 @@ def test_servos_turn_and_stand_for_a_second() -> None:
 
 # -- the stop that an interrupt does
 
-STOPS = """
-#include <avr/interrupt.h>
-#include "boards/motors.h"
-// A change of A5 does what the link does when it sees a stop.
-ISR(PCINT1_vect) { tiniscript::motors_stop(); }
-__attribute__((constructor)) static void begin() { PCICR = 1 << 1; PCMSK1 = 1 << 5; }
-"""
 STOP_PIN = 19
 STOP_US = 20.0
 
@@ -208,7 +128,6 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
 
 SWEPT_CYCLES = 3700
 STOPPING = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);LAMP(TRUE);LAMP(FALSE);END_LOOP"
-LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
 
 
 @pytest.mark.sampled("chip", "lamp", "stop_pin", "group")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, held, stored, switched_on
 from tests.machines.host_firmware import drives
 from tests.support.debugging import Debugged, Halt, debugged
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT, computer, held, stored, switched_on
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.bytecode.opcodes import ISA_MAJOR

@@ -16,13 +16,13 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_uno_robot import KIT, MOTORS, computer, switched_on
-from tests.firmware.test_uno_trace import power
 from tests.machines import MACHINES, Senses
 from tests.oracle import programs
 from tests.oracle.words import PAPER_KIT
 from tests.support.campaign import failure_text
 from tests.support.images import image_of
+from tests.support.robot_on_uno import KIT, MOTORS, computer, switched_on
+from tests.support.uno_trace import power
 from tiniscript import robots
 from tiniscript.base.fixed_point import value_text
 from tiniscript.bytecode.image import Image, pack

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Sequence
 
 import pytest
 
-from tests.firmware.test_uno_robot import AWAY, OFF, computer, send, states
 from tests.machines.host import FLAGS, SOURCES, compiled
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT
+from tests.support.robot_on_uno import AWAY, OFF, computer, send, states
 from tools.uno import CYCLES_PER_MS, Uno
 
 Told = list[tuple[int, str]]  # when in us, and P, H or R

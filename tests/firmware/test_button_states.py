@@ -11,17 +11,13 @@ from functools import lru_cache
 import pytest
 
 from tests.firmware.test_button import answers_to
-from tests.firmware.test_host_firmware import computer, send, stored, switched_on
-from tests.firmware.test_text import typed
-from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import LINE, OTHER, SAVED, STATES, TYPED, Table
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
-from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
-from tiniscript.link.messages import KEY_OWNER, OWNED
+from tests.support.owners import HELD, PRESSED, RELEASED
+from tests.support.text_robot import typed
 from tiniscript.link.requests import OK
-from tiniscript.link.session import Session
 
-SAVED, OTHER, MEMORY, TYPED, LINE = 80, 70, 60, 40, 30  # powers: which program it is that drives
 FLAGS = {"P": PRESSED, "H": HELD, "R": RELEASED}
 EDGE, SHORT, LATE, TWO = range(4)  # columns of the table
 
@@ -58,170 +54,6 @@ def letters() -> dict[str, list[tuple[int, str]]]:
         if name == FOR_EVER:
             rows[name] = [each for each in rows[name] if each[1] != "R"]
     return rows
-
-
-class SmallRobot(HostFirmware):
-    """As an Uno: it reads text where the program is that it holds."""
-
-    has_draft = False
-
-
-class Table:
-    """A robot in a state. `program` is the power of what a press starts, `runs` of what runs."""
-
-    def __init__(self, has_draft: bool = True) -> None:
-        self.robot = switched_on() if has_draft else SmallRobot(KIT)
-        self.session = computer()
-        self.talks: Session | None = self.session  # who goes on talking
-        self.keys: Keys | None = None  # of the one who has claimed it
-        self.program = 0
-        self.is_reset_down = False
-
-    def send(self, text: str, **how: bool) -> None:
-        send(self.robot, self.session, text, **how)
-
-    def is_ready(self, power: int, is_saved: bool = True) -> None:
-        self.send(f"SB|F(600, {power})", saves=is_saved)
-        if is_saved:
-            stored(self.robot, self.session)
-        self.program = power
-
-    def quiet(self) -> None:
-        """The client goes; a person may type."""
-        self.robot.wait(4000)
-        self.talks = None
-
-    def talk(self, milliseconds: int, flags: int = 0) -> None:
-        self.robot.pass_time(self.talks, milliseconds, flags)
-
-
-def empty(table: Table) -> None:
-    assert table.robot.until(table.session, table.session.hello()) == OK
-
-
-def saved(table: Table) -> None:
-    table.is_ready(SAVED)
-
-
-def in_memory(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.is_ready(MEMORY, is_saved=False)
-
-
-def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
-    """Have a person type; `power` is that of the program which the button starts then."""
-
-    def enter(table: Table) -> None:
-        table.is_ready(SAVED)
-        table.quiet()
-        typed(table.robot, text)
-        table.program = power
-
-    return enter
-
-
-def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
-    """Have a computer send a live line, and go on."""
-
-    def enter(table: Table) -> None:
-        table.is_ready(SAVED)
-        request = table.session.live(image_of(line).code)
-        assert table.robot.until(table.session, request) == OK
-        table.talk(milliseconds)
-
-    return enter
-
-
-def runs_memory(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.send(f"SI|F(600, {MEMORY})", saves=False)
-    table.program = MEMORY
-
-
-def runs_saved(table: Table) -> None:
-    table.is_ready(SAVED)
-    assert table.robot.until(table.session, table.session.start()) == OK
-
-
-def was_stopped(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.session.stop(table.robot.now_ms)
-    table.talk(300)
-
-
-def receives(table: Table) -> None:
-    table.is_ready(SAVED)
-    request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
-    while request.done_bytes < 60:
-        table.talk(1)
-    table.talks = None  # the rest does not come, or not in time
-
-
-def saves(table: Table) -> None:
-    table.send(f"SB|F(600, {SAVED})")
-    table.program = SAVED
-
-
-def brings_back(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.is_ready(OTHER)
-    assert table.robot.until(table.session, table.session.undo()) == OK
-    table.program = SAVED
-
-
-def keeps_trim(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.session.trim(b"\0\0\1")
-    table.talk(40)
-
-
-def is_claimed(table: Table) -> None:
-    table.keys = Keys()
-    table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=table.keys)
-    table.is_ready(SAVED)
-    table.session.claim(KEY_OWNER)
-    table.talk(300)
-
-
-def has_owner(table: Table) -> None:
-    is_claimed(table)
-    table.talk(1, PRESSED)
-    table.talk(31)
-    table.talk(2100, HELD)
-    table.talk(1, RELEASED)
-    table.talk(1000)
-    assert table.session.robot and table.session.robot.values.features & OWNED
-    table.quiet()
-
-
-def reset_down(table: Table) -> None:
-    table.is_ready(SAVED)
-    memory = table.robot.memory()
-    table.robot = type(table.robot)(KIT, memory)
-    table.talks = None
-    table.is_reset_down = True
-
-
-STATES: dict[str, Callable[[Table], None]] = {
-    "holds no program": empty,
-    "holds a saved program": saved,
-    "holds a program in memory only": in_memory,
-    "holds a program that was typed": types(f"SB|F(600, {TYPED})\n", TYPED),
-    "is running a program in memory": runs_memory,
-    "is running the saved program": runs_saved,
-    "is running a live line": runs(f"SI|F(600, {LINE})"),
-    "is running text": types(f"SI|F(600, {TYPED})\n"),
-    "has an open block of text": types(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
-    "was stopped": was_stopped,
-    "has a fault": runs("SI|X = 0; SHOW(5 / X)", 300),
-    "is receiving an upload": receives,
-    "is saving its program": saves,
-    "is bringing back the previous program": brings_back,
-    "is saving a trim": keeps_trim,
-    "is being claimed": is_claimed,
-    "has an owner": has_owner,
-    "was reset with the button down": reset_down,
-}
 
 
 @lru_cache

@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding, send, stored
-from tests.firmware.test_second_time import SmallRobot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT, computer, happened, held, holding, send, stored
+from tests.support.small_robot import SmallRobot
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVED, SAVED_NOTHING

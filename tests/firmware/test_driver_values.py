@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_boards import START, pulses, started
 from tests.machines.board import Board, simulates
-from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
+from tests.support.board_states import START, pulses, started
+from tests.support.wired_robots import DEVICES, MOTORS, robot_with
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Driver, SensorDriver
 from tiniscript.robots.profile import Wiring

@@ -14,7 +14,9 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_esp32_broker import (
+from tests.machines.esp32 import HAS_TLS, Esp32Robot
+from tests.support.certificates import Authority, der
+from tests.support.esp32_broker import (
     DEAD_MAN_MS,
     ID,
     at,
@@ -23,14 +25,12 @@ from tests.firmware.test_esp32_broker import (
     present,
     until,
 )
-from tests.firmware.test_esp32_transports import Ends, ended, uploaded
-from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
-from tests.machines.esp32 import HAS_TLS, Esp32Robot
-from tests.support.certificates import Authority, der
 from tests.support.esp32_radio import known, talk
+from tests.support.esp32_wifi import joined, remote, school_in_reach
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
 from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import Ends, ended, uploaded
 from tiniscript.link import wifi
 from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.transports.broker import Access, Broker, RobotPresence

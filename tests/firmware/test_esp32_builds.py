@@ -13,30 +13,22 @@ import pytest
 
 from tests.machines.esp32 import HAS_TLS, STAND_INS, flags_of
 from tests.machines.host import SOURCES, missing
-from tests.project.test_cpp_sources import code_of
+from tests.support.cpp_sources import code_of
+from tests.support.esp32_builds import BOARD, complaints
 from tiniscript import robots
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tools.builds.chips import CHIPS, Chip, compile_one
 from tools.builds.chips import why_missing as no_compiler
 
-BOARD = SOURCES / "src" / "boards"
 CODE = [
     *sorted(BOARD.glob("*.cpp")),
     *sorted((BOARD / "esp32").glob("*.cpp")),
     SOURCES / "src" / "main.cpp",
     STAND_INS / "signatures.cpp",
 ]
-STRICT = ("-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti", "-ffreestanding",
-          "-fsyntax-only")  # fmt: skip
 ISA = {"esp32dev": "lx6", "esp32c3": "rv32imc"}
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
-
-def complaints(path: Path, *flags: str, standard: str = "gnu++11") -> str:
-    """Return what this computer's compiler has against a file."""
-    command = ["g++", f"-std={standard}", *STRICT, *flags, str(path)]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stderr[:3000]
 
 
 @needs_host

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_esp32_builds import BOARD, complaints
 from tests.machines.esp32 import STAND_INS, Esp32Robot, flags_of
 from tests.machines.host import missing
+from tests.support.esp32_builds import BOARD, complaints
 from tests.support.images import image_of
-from tests.wiring.test_wiring import with_discs
+from tests.support.wired_robots import with_discs
 from tiniscript import robots
 from tiniscript.link.outcomes import Event
 from tiniscript.link.requests import OK

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
-from tests.firmware.test_esp32_wifi import owned, remote
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_wifi import owned, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
+from tests.support.robot_on_host import happened
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
 from tiniscript.link.requests import OK

@@ -18,15 +18,15 @@ from typing import Any, NamedTuple
 import pytest
 
 from tests.firmware.test_esp32_next_client import PLACES, with_wrong_key
-from tests.firmware.test_esp32_transports import Make
-from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
 from tests.firmware.test_history import first_difference, told_of, without_counts
 from tests.machines.esp32 import Esp32Robot, Kept
+from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, wanted
 from tests.support.esp32_radio import Bytes, Client, End, talk
+from tests.support.esp32_wifi import joined, remote, school_in_reach
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.text.test_bytes_around import PIECES
+from tests.support.robot_on_esp32 import Make
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS, STOP_BYTES

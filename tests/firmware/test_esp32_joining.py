@@ -6,10 +6,10 @@ from struct import pack
 
 import pytest
 
-from tests.firmware.test_esp32_transports import Ends, booted, ended
-from tests.firmware.test_esp32_wifi import SCHOOL, joined, owned, school_in_reach, state
 from tests.support.esp32_radio import in_reach, radios, talk
+from tests.support.esp32_wifi import SCHOOL, joined, owned, school_in_reach, state
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import Ends, booted, ended
 
 drawn = pytest.mark.sampled(of="how an ESP32 joins", keep=2)
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_esp32_transports import Ends, booted, ended
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
+from tests.support.robot_on_esp32 import Ends, booted, ended
+from tests.support.robot_on_host import happened
 from tiniscript.link.messages import STOP_ZEROS
 
 NAMES = ["tinibot32", "tinibotc3"]

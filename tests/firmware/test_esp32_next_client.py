@@ -8,9 +8,6 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_esp32_transports import AWAY, Ends, Make, ended, uploaded
-from tests.firmware.test_esp32_wifi import far_owner, owned, remote
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     Bytes,
@@ -22,8 +19,11 @@ from tests.support.esp32_radio import (
     takes,
     talk,
 )
+from tests.support.esp32_wifi import far_owner, owned, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import AWAY, Ends, Make, ended, uploaded
+from tests.support.robot_on_host import happened
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session

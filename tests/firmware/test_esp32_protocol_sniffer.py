@@ -6,9 +6,9 @@ from random import Random
 
 import pytest
 
-from tests.firmware.test_esp32_wifi import joined
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network
+from tests.support.esp32_wifi import joined
 from tests.support.owners import Keys
 from tests.virtual.test_protocol_sniffer import NOT_FOR_ROBOTS
 from tiniscript.link.messages import STOP_BYTES

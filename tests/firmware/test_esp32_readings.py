@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_esp32_transports import Ends, booted, ended
 from tests.support.esp32_radio import LowEnergy, session, talk
 from tests.support.images import image_of
+from tests.support.robot_on_esp32 import Ends, booted, ended
 from tiniscript.link.messages import AUTHORITY_MS
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.session import Session

@@ -8,13 +8,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.firmware.test_esp32_broker import broker_settings_of, until
-from tests.firmware.test_esp32_transports import Ends, ended
-from tests.firmware.test_esp32_wifi import HOTSPOT, joined, owned, state
 from tests.machines.esp32 import Esp32Robot
+from tests.support.esp32_broker import broker_settings_of, until
 from tests.support.esp32_radio import radios, talk
+from tests.support.esp32_wifi import HOTSPOT, joined, owned, state
 from tests.support.mosquitto import LOCAL
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import Ends, ended
 from tiniscript.link import wifi
 from tiniscript.link.messages import STATE_STOPPED, STOP_BYTES
 from tiniscript.link.session import Session

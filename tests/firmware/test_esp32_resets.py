@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tests.firmware.test_esp32_transports import ended
 from tests.machines.esp32 import EXTERNAL, POWER_ON, Esp32Robot, Kept
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
+from tests.support.robot_on_esp32 import ended
 from tiniscript.link.messages import RESETS
 from tiniscript.link.payloads import HelloReply
 

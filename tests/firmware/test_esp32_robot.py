@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, happened, outcome, pushed, send, stored
 from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
+from tests.support.robot_on_host import computer, happened, outcome, pushed, send, stored
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import Frame, encode_frame

@@ -14,8 +14,9 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_esp32_transports import Ends, ended
-from tests.firmware.test_esp32_wifi import (
+from tests.machines.esp32 import Esp32Robot, Kept
+from tests.support.esp32_radio import in_reach, radios, talk
+from tests.support.esp32_wifi import (
     HOTSPOT,
     SCHOOL,
     WIFI_KEY,
@@ -25,9 +26,8 @@ from tests.firmware.test_esp32_wifi import (
     school_in_reach,
     state,
 )
-from tests.machines.esp32 import Esp32Robot, Kept
-from tests.support.esp32_radio import in_reach, radios, talk
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import Ends, ended
 from tiniscript.link import wifi
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
@@ -22,44 +20,11 @@ from tests.support.esp32_radio import (
 )
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript import robots
-from tiniscript.link.connection import PendingRequest
+from tests.support.robot_on_esp32 import AWAY, RADIOS, Ends, Make, booted, claimed, ended, uploaded
+from tests.support.robot_on_host import happened
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STATUS_NAMES, STOP_BYTES
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STOP_BYTES
 from tiniscript.link.session import Session
-
-AWAY = "SI|F(60, 80)"
-Make = Callable[[Esp32Robot], End]
-RADIOS: list[Make] = [LowEnergy, SerialPort]
-Ends = list[tuple[End | None, Client]]
-
-
-def booted(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
-    robot = Esp32Robot(robots.load(name), major=major)
-    robot.wait(300)
-    return robot
-
-
-def ended(robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms: int = 5000) -> str:
-    """Let all talk until a request is over; return how it ended."""
-    for _ in range(limit_ms):
-        if request.outcome is not None:
-            status = request.outcome.status
-            return STATUS_NAMES.get(status, str(status))
-        talk(robot, ends, 1)
-    raise AssertionError("the request is not over")
-
-
-def claimed(robot: Esp32Robot, ends: Ends, who: Session, which: int = 0) -> None:
-    """Let somebody claim a robot, and hold its button."""
-    claim = who.claim(which)
-    for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
-        talk(robot, ends, milliseconds, flags)
-    assert claim.outcome and claim.outcome.status == 0
-
-
-def uploaded(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
-    return ended(robot, ends, who.upload(image_of(text), saves=False))
 
 
 @pytest.mark.parametrize("major", [2, 3])

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, ended, uploaded
-from tests.firmware.test_esp32_wifi import joined
-from tests.firmware.test_host_firmware import happened
-from tests.firmware.test_typed_stops import ALL, HELD_MS, SILENCE_MS, spellings_after
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
+from tests.support.esp32_wifi import joined
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import RADIOS, Ends, Make, booted, ended, uploaded
+from tests.support.robot_on_host import happened
+from tests.support.stop_spellings import ALL, HELD_MS, SILENCE_MS, spellings_after
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session

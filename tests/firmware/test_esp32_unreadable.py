@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
-from tests.firmware.test_esp32_wifi import owned, remote
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import BLOBS, CLOSED, EMPTY, NUMBERS, Esp32Robot, Kept
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_wifi import owned, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import AWAY, Ends, ended, uploaded
+from tests.support.robot_on_host import happened
 from tiniscript.link.messages import SAVED, STOP_BYTES
 from tiniscript.link.session import Session
 

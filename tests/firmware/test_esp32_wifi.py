@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_esp32_transports import AWAY, Ends, booted, claimed, ended, uploaded
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import BROWN_OUT, EXTERNAL, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.esp32_radio import (
     Bytes,
@@ -20,64 +18,28 @@ from tests.support.esp32_radio import (
     session,
     talk,
 )
+from tests.support.esp32_wifi import (
+    HOTSPOT,
+    SCHOOL,
+    WIFI_KEY,
+    far_owner,
+    joined,
+    owned,
+    remote,
+    school_in_reach,
+    state,
+    wifi_reply_of,
+)
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import AWAY, Ends, booted, ended, uploaded
+from tests.support.robot_on_host import happened
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, MAJOR, MINOR, WIFI_RESTS, encode_payload
-from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
-
-SCHOOL = wifi.Network("Aula 3 ñ".encode(), b"correct horse battery staple, and forty more")
-HOTSPOT = wifi.Network(b"Tini", b"12345678", True)
-WIFI_KEY = b"wifi"
-
-
-def owned(keys: Keys, robot: Esp32Robot | None = None) -> tuple[Esp32Robot, Session]:
-    """Return a robot with an owner, and the owner's session over the cable."""
-    robot = robot or booted()
-    owner = Session(7, 115200, robot.robot.kit.fingerprint, keys=keys)
-    claimed(robot, [(None, owner)], owner)
-    return robot, owner
-
-
-def far_owner(keys: Keys) -> tuple[Esp32Robot, Network, Session]:
-    """Return a robot in a network, and its owner's session over TCP."""
-    robot, _ = joined(keys)
-    talk(robot, [], AUTHORITY_MS + 100)
-    return robot, Network(robot), remote(robot, keys)
-
-
-def school_in_reach(robot: Esp32Robot) -> None:
-    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
-
-
-def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
-    """Return the same with a network, which is in reach."""
-    robot, owner = owned(keys)
-    school_in_reach(robot)
-    assert ended(robot, [(None, owner)], owner.join(network)) == "OK"
-    talk(robot, [(None, owner)], 50)
-    return robot, owner
-
-
-def wifi_reply_of(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
-    request = who.wifi()
-    assert ended(robot, ends, request) == "OK"
-    assert request.outcome
-    return request.outcome.values
-
-
-def state(robot: Esp32Robot, owner: Session) -> tuple[str, str]:
-    wifi_reply = wifi_reply_of(robot, [(None, owner)], owner)
-    return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state]
-
-
-def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
-    return Session(nonce, 115200, robot.robot.kit.fingerprint, keys=keys)
-
 
 # -- setting it ---------------------------------------------------------------------------------
 

@@ -18,13 +18,13 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT
-from tests.firmware.test_second_time import READINGS, SmallRobot, drawn, without_readings
 from tests.machines.host_firmware import HostFirmware
+from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
-from tests.text.test_bytes_around import PIECES
+from tests.support.robot_on_host import KIT
+from tests.support.small_robot import READINGS, SmallRobot, drawn, without_readings
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encode_frame

@@ -11,8 +11,8 @@ import random
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, switched_on
 from tests.support.campaign import each_seed, wanted
+from tests.support.robot_on_host import KIT, switched_on
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (

@@ -9,13 +9,13 @@ import random
 
 import pytest
 
-from tests.firmware.test_button_states import SmallRobot
-from tests.firmware.test_host_firmware import KIT, computer
-from tests.firmware.test_text import typed
 from tests.link.test_remote_control import NONE, readings
 from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import SmallRobot
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
+from tests.support.robot_on_host import KIT, computer
+from tests.support.text_robot import typed
 from tiniscript.link.messages import HOLD_MS
 from tiniscript.link.remote import RemoteState, remote_state_of
 from tiniscript.link.requests import OK

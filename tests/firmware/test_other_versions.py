@@ -8,10 +8,10 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, happened, send, switched_on
-from tests.firmware.test_persistence import EACH, FIRST, SECOND, bytes_of, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
+from tests.support.kept_programs import EACH, FIRST, SECOND, bytes_of, saved
+from tests.support.robot_on_host import computer, happened, send, switched_on
 from tiniscript.bytecode.image import REFUSALS, pack, unpack, with_checksum
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session

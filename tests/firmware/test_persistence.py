@@ -9,56 +9,37 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_host_firmware import (
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.kept_programs import (
+    DRIVES,
+    EACH,
+    FIRST,
+    bytes_of,
+    name_after_power_off,
+    program_after_power_off,
+    saved,
+)
+from tests.support.robot_on_host import (
     KIT,
     broken_upload,
     computer,
     happened,
     holding,
-    outcome,
     pushed,
     send,
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import HostFirmware
-from tests.support.images import image_of
-from tiniscript.bytecode.image import pack
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
 from tiniscript.link.requests import OK, Request, send_single
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
-DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
 PAUSES = "SI|LOOP(FOREVER);F(0.05, 80);W(0.004);END_LOOP"
-FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and bytes of a record's
-
-
-def saved(robot: HostFirmware, session: Session) -> str:
-    return SAVED[robot.done(session, session.status()).saved][0]
-
-
-def name_after_power_off(robot: HostFirmware) -> str:
-    again, session = switched_on(robot.memory()), computer(77)
-    assert again.until(session, session.hello()) == OK
-    assert session.robot is not None
-    return session.robot.name
-
-
-def program_after_power_off(robot: HostFirmware) -> bytes:
-    again, session = switched_on(robot.memory()), computer(78)
-    request = session.fetch()
-    if again.until(session, request) != OK:
-        return b""
-    return outcome(request).values.image
-
-
-def bytes_of(text: str) -> bytes:
-    image = image_of(text)
-    return pack(image.start, image.devices, image.code)
 
 
 def marks(robot: HostFirmware) -> list[str]:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned, owner_of
+from tests.support.robot_on_host import KIT, computer, switched_on
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.link.authority import OWNED_BY_YOU

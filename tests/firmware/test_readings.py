@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT
 from tests.machines.host_firmware import TICKS
 from tests.support.debugging import Debugged
+from tests.support.robot_on_host import KIT
 from tests.support.shown_in_loops import Did, apart_ms, program
 from tiniscript.link import handshake
 from tiniscript.link.frames import Frame, encode_frame

@@ -18,11 +18,11 @@ import pytest
 
 from tests.firmware.test_readings import BYTE_TICKS, is_steady
 from tests.firmware.test_readings import ran as on_line
-from tests.firmware.test_uno_robot import KIT, MOTORS, computer, switched_on
-from tests.firmware.test_uno_trace import power
 from tests.support.campaign import failure_text
 from tests.support.images import image_of
+from tests.support.robot_on_uno import KIT, MOTORS, computer, switched_on
 from tests.support.shown_in_loops import Did, apart_ms, program
+from tests.support.uno_trace import power
 from tiniscript import robots
 from tiniscript.bytecode.image import Image
 from tiniscript.link.requests import OK

@@ -21,11 +21,11 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT
-from tests.firmware.test_second_time import SmallRobot
 from tests.machines.host_firmware import TICKS, HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT
+from tests.support.small_robot import SmallRobot
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     AGAIN_MS,

@@ -19,14 +19,22 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer
-from tests.firmware.test_persistence import saved
-from tests.firmware.test_text import typed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.oracle.task_programs import task_program
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_for, image_of
+from tests.support.kept_programs import saved
+from tests.support.robot_on_host import computer
+from tests.support.small_robot import (
+    FIRST_READINGS,
+    MARK,
+    READINGS,
+    SmallRobot,
+    drawn,
+    without_readings,
+)
+from tests.support.text_robot import typed
 from tiniscript import robots
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import Image, unpack
@@ -37,17 +45,10 @@ from tiniscript.link.requests import OK
 
 KIT = robots.load("tinibot").kit
 ESP32 = robots.load("tinibot32")
-MARK = "BEEP(0.001, 31);"  # tells when a program begins
 MARKED = ("BEEP 31 1", "TONE 31")
 CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # what a robot's clock says at first
 RUNS_MS = 600  # of the second program that are looked at
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
-
-
-class SmallRobot(HostFirmware):
-    """As an Uno: it reads text where the program is that it holds."""
-
-    has_draft = False
 
 
 class Scene:
@@ -70,7 +71,6 @@ class Scene:
         assert self.robot.until(self.session, self.session.hello()) == OK
 
 
-FIRST_READINGS, READINGS = (1_000, 2_000, 3_000), (9_000, 600_000, 5_000)
 KINDS: dict[str, Callable[[], HostFirmware]] = {
     "a mega": lambda: HostFirmware(KIT),
     "an uno": lambda: SmallRobot(KIT),
@@ -206,19 +206,6 @@ def story(rng: random.Random, starts: str, kind: str) -> Story:
         return tale
     beside = rng.choice([*BESIDE])
     return tale._replace(beside=beside, lasts="button" in beside and rng.random() < 0.5)
-
-
-def drawn(rng: random.Random) -> str:
-    """Return a program that begins with the mark, and draws nothing by itself."""
-    text = re.sub(r"RANDOM\(\d, \d\)", str(rng.randint(0, 3)), task_program(rng)[0])
-    moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);",
-                        "BEEP(3, 262);"))  # fmt: skip
-    return MARK + text.replace("\n", ";") + ";" + moves
-
-
-def without_readings(text: str) -> str:
-    text = re.sub(r";(DISTANCE|LIGHT_L)(?=;)", ";W(0)", text)
-    return re.sub("DISTANCE|LIGHT_L", "TIME", text)
 
 
 def seen(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:

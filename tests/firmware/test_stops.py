@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_button_states import STATES, Table, keeps_trim, saves
-from tests.firmware.test_host_firmware import AWAY, KIT, computer, happened, live, send, switched_on
 from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import STATES, Table, keeps_trim, saves
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
+from tests.support.robot_on_host import AWAY, KIT, computer, happened, live, send, switched_on
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
 from tests.support.images import image_of
-from tests.vm.test_tasks import STATES
+from tests.support.robot_on_host import happened
+from tests.support.task_states import STATES
 from tiniscript.link.messages import STATE_FAULTED, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session

@@ -11,7 +11,11 @@ import re
 
 import pytest
 
-from tests.firmware.test_host_firmware import (
+from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tests.support.campaign import each_seed, wanted
+from tests.support.command import OBSTACLE
+from tests.support.images import image_of
+from tests.support.robot_on_host import (
     KIT,
     LONG,
     computer,
@@ -22,29 +26,23 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
-from tests.support.campaign import each_seed, wanted
-from tests.support.command import OBSTACLE
-from tests.support.images import image_of
+from tests.support.text_robot import (
+    LINE,
+    SAVED_BACK,
+    SAVED_MEMORY,
+    fetched,
+    holding,
+    read_back,
+    status,
+    typed,
+)
 from tiniscript import robots
 from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATE_RUNNING, STATUSES
-from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
-from tiniscript.link.session import Session
 
-SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
-LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
-SAVED_MEMORY = 1
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
-
-
-def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
-    """Let bytes arrive at 9600 baud; return the lines that it answers."""
-    data = text if isinstance(text, bytes) else text.encode()
-    sent = b"".join(robot.step(bytes((byte,))) for byte in data)
-    return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
 
 
 # What a person types at a robot that stands, and what it answers in English and in Spanish.
@@ -191,33 +189,6 @@ def test_who_makes_many_mistakes_is_told_that_once(language: str) -> None:
         robot.wait(3800)
         assert typed(robot, "FOO\n", 1100) == []
         robot.wait(4000)
-
-
-def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
-    """Return a robot that holds a program, and whose client has gone."""
-    robot, session = switched_on(), computer()
-    send(robot, session, text, saves=saves)
-    if saves:
-        stored(robot, session)
-    robot.wait(4000)
-    robot.did.clear()
-    return robot, session
-
-
-def status(robot: HostFirmware, session: Session) -> StatusReply:
-    return robot.done(session, session.status())
-
-
-def fetched(robot: HostFirmware, session: Session) -> bytes:
-    return robot.done(session, session.fetch()).image
-
-
-def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:
-    """Return a robot that holds a program, and that program, when its client has gone."""
-    robot, session = holding(saves=saves)
-    before = fetched(robot, session)
-    robot.wait(4000)
-    return robot, session, before
 
 
 def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200) -> list[str]:
@@ -725,6 +696,6 @@ def test_what_an_open_block_waits_for_is_told(text: str, awaited: str) -> None:
 
 
 if __name__ == "__main__":
-    from tests.firmware.test_text_fuzz import run
+    from tests.support.text_fuzz import run
 
     each_seed(run, wanted(1000, 1_000_000))

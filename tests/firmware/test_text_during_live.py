@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_button_states import SmallRobot
-from tests.firmware.test_host_firmware import KIT, computer
 from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import SmallRobot
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT, computer
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 

@@ -10,8 +10,10 @@ import random
 import pytest
 
 from tests.firmware import test_text, test_text_fuzz
-from tests.firmware.test_host_firmware import computer, happened, pushed, send, stored, switched_on
-from tests.firmware.test_text import (
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.robot_on_host import computer, happened, pushed, send, stored, switched_on
+from tests.support.text_robot import (
     LINE,
     SAVED_BACK,
     SAVED_MEMORY,
@@ -21,8 +23,6 @@ from tests.firmware.test_text import (
     status,
     typed,
 )
-from tests.machines.host_firmware import HostFirmware
-from tests.support.images import image_of
 from tiniscript.link.messages import SAVED_NOTHING, SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
 

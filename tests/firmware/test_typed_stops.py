@@ -9,7 +9,6 @@ before it starts nothing afterwards.
 from __future__ import annotations
 
 import random
-import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -19,73 +18,32 @@ from pathlib import Path
 import pytest
 
 from tests.firmware.test_board_text import OBSTACLE
-from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, states
 from tests.machines.host import once
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tests.support.platformio import firmware, shared
+from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OFF, states
+from tests.support.stop_spellings import (
+    ALL,
+    FRAMED,
+    HELD_MS,
+    MOST_MS,
+    RUNS,
+    SILENCE_MS,
+    STRICT,
+    spellings_after,
+)
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tools.bench.link import build
 from tools.uno import CYCLES_PER_MS, Uno
 
 BAUDS = (9600, 115_200)
-RUNS = b"SI|F(60,80)\n"
-SILENCE_MS = 1000
-HELD_MS, MOST_MS = 100, 1.0
 TURN_MS = 2.1  # the clock counts one or two milliseconds each 1.024 ms
 BUSY_TURN_MS = 5.0  # and the main loop comes late that has lines to read and answers to write
 
-# What comes before the line of the stop, after a program that runs and a second of silence.
-PREFIXES = {
-    "nothing": b"",
-    "CR LF": b"\r\n",
-    "CR CR": b"\r\r",
-    "LF CR": b"\n\r",
-    "tabs": b"\t\t",
-    "a digit": b"5\n",
-    "a cursor key": b"\x1b[A",
-    "a key with numbers": b"\x1b[1;5C",
-    "another key": b"\x1bOB",
-    "backspace": b"x\b",
-    "backspace first": b"\b",
-    "delete": b"\x7f",
-    "a bracket": b"(\n",
-    "a blank": b" \n",
-    "a line": b"F(1,80)\n",
-    "a line that is cut": b"F(1,\x03\n",
-    "half a program": b"SI|F(1,\n",
-    "a lost line": b"F(1,80);" * 12 + b"\n",
-    "a long number": b"9" * 90 + b"\n",
-    "noise": b"\x7f\x80\xff\n",
-    "a frame": b"\0\x08\x02\x02\x0a\x62\xe4\x10\x1c\0",
-    "a damaged frame": b"\0\x08\x02\x02\x0b\x62\xe4\x10\x1c\0",
-    "a zero": b"\0",
-    "zeros": b"\0\0",
-    "a line after a zero": b"\0F(1,80)\r\n",
-    "a mistake": b"FORWARD!\n",
-    "six questions": b"HELP\n" * 6,
-    "eight questions": b"HELP\n" * 8,
-    "UTF-8": "ñandú\n".encode(),
-    "a byte order mark": b"\xef\xbb\xbf",
-    "a module's message": b"OK+CONN\r\n",
-}
-# The same in what began as a frame.
-FRAMED = {
-    "a frame that has begun": b"\0\x08\x02\x02\n",
-    "a zero and lines without anything": b"\0\n\n",
-    "a zero and UTF-8": "\0ñandú\n".encode(),
-    "a zero and noise": b"\0\x7f\x80\xff\n",
-}
-ALL = PREFIXES | FRAMED
-STRICT = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
-LOOSE = (
-    b"SS\n", b"S.\r", b"Stop.\r\n", b"stop!\n", b"S()\n", b"stop();\r\n", b"STOP NOW\n", b"alto\r",
-    b"PARA\n", b"parar\r\n", b"detente\n", b"halt\r", "¡Alto!\n".encode(), b"S\0", b"STOP\0",
-)  # fmt: skip
-SPELLINGS = STRICT + LOOSE
 FROM_ONE_STATE = 25  # random stops; what follows happens to a robot that has seen the last of them
 
 
@@ -179,20 +137,6 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
             stop_after(uno, baud, ALL[name], spelling)
             if spelling == spellings[-1]:
                 is_latched(uno)
-
-
-def spellings_after(name: str) -> tuple[bytes, ...]:
-    """Return which are a stop after a prefix. What a 0x00 ends or begins has to be printable."""
-    if name in FRAMED:
-        return STRICT
-    prefix = PREFIXES[name]
-    line = re.split(rb"[\r\n\0]|\x1b\[[\d;]*.|\x1bO.", prefix)[-1].lstrip(b" \t\b\x7f")
-    found = tuple(each for each in SPELLINGS if each[-1] != 0 or _is_printable(line))
-    return tuple(each for each in found if prefix[-1:] != b"\0" or _is_printable(each[:-2]))
-
-
-def _is_printable(line: bytes) -> bool:
-    return all(0x20 <= byte < 0x7F for byte in line)
 
 
 @pytest.mark.parametrize("name", FRAMED)

@@ -11,8 +11,20 @@ from itertools import product
 
 import pytest
 
-from tests.firmware.test_button_states import OTHER, SAVED, STATES, Table
-from tests.firmware.test_host_firmware import (
+from tests.firmware.test_other_versions import VERSION_3, kept
+from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import OTHER, SAVED, STATES, Table
+from tests.support.images import image_of
+from tests.support.kept_programs import (
+    DRIVES,
+    FIRST,
+    SECOND,
+    bytes_of,
+    name_after_power_off,
+    program_after_power_off,
+    saved,
+)
+from tests.support.robot_on_host import (
     KIT,
     LONG,
     broken_upload,
@@ -24,18 +36,6 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.firmware.test_other_versions import VERSION_3, kept
-from tests.firmware.test_persistence import (
-    DRIVES,
-    FIRST,
-    SECOND,
-    bytes_of,
-    name_after_power_off,
-    program_after_power_off,
-    saved,
-)
-from tests.machines.host_firmware import HostFirmware
-from tests.support.images import image_of
 from tiniscript.bytecode.image import with_checksum
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decode_frame

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.firmware.test_uno_robot import (
+from tests.machines.wired import Wired
+from tests.support.robot_on_uno import (
     AWAY,
     BAUD,
     FORWARD,
@@ -20,8 +21,7 @@ from tests.firmware.test_uno_robot import (
     states,
     switched_on,
 )
-from tests.firmware.test_uno_watchdog import built
-from tests.machines.wired import Wired
+from tests.support.uno_watchdog import built
 from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK

@@ -9,6 +9,19 @@ import pytest
 from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tests.support.owners import Keys
+from tests.support.robot_on_uno import (
+    AWAY,
+    BAUD,
+    FORWARD,
+    KIT,
+    MOTORS,
+    OFF,
+    computer,
+    saved,
+    send,
+    states,
+    switched_on,
+)
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
 from tiniscript.library import source_map
@@ -21,50 +34,13 @@ from tiniscript.link.session import Session
 from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
-KIT = robots.load("tinibot").kit
-BAUD = 9600
-# The wiring of the profile `tinibot`.
-NAMES = {
-    "left": "D5", "left forward": "D7", "left backward": "D8",
-    "right": "D6", "right forward": "D9", "right backward": "D10",
-    "button": "D2", "echo": "D3", "trigger": "D4", "light": "D13", "radio": "D12",
-}  # fmt: skip
-MOTORS = [name for name in NAMES if "left" in name or "right" in name]
-OFF = dict.fromkeys(MOTORS, "low")
-FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
 SHOWS = """SI|ONE = 1; TWO = 2; THREE = 3; LOOP(8); SHOW(THREE); END_LOOP
 TASK; LOOP(8); SHOW(ONE); END_LOOP; END_TASK
 TASK; LOOP(8); W(0.001); SHOW(TWO); END_LOOP; END_TASK"""
-AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/develop/link.md
 LIVE_CYCLES = 2160  # from the last byte of a frame to the pins: 135 us in three of four
 HASH_MS = 12  # from a tag to its answer, beside the bytes: a stop is in the interrupt
 LATE_CYCLES = 2640  # 165 us: the work for a millisecond has just begun
-
-
-def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
-    # Nobody opens its port here, and whoever does by mistake does not reset it.
-    uno = Uno(sketch, names=NAMES, board=board, eeprom=memory, baud=BAUD, resets_on_open=False)
-    uno.run_ms(300)
-    assert states(uno) == OFF
-    return uno
-
-
-def states(uno: Uno) -> dict[str, str]:
-    return {name: uno.pins[name].state for name in MOTORS}
-
-
-def computer(uno: Uno, nonce: int = 1) -> Wired:
-    return Wired(uno, Session(nonce, BAUD, KIT.fingerprint))
-
-
-def send(wired: Wired, text: str, **how: bool) -> None:
-    assert wired.until(wired.session.upload(image_of(text), **how)) == OK
-
-
-def saved(wired: Wired) -> int:
-    """Return how the robot's program is kept."""
-    return wired.done(wired.session.status()).saved
 
 
 def test_a_program_drives(uno: Uno) -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_board_tasks import BOARDS
-from tests.firmware.test_uno_robot import NAMES, computer, saved, send
 from tests.machines.wired import Wired
+from tests.support.board_builds import BOARDS
+from tests.support.robot_on_uno import NAMES, computer, saved, send
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno

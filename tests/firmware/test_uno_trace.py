@@ -4,24 +4,13 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_uno_robot import MOTORS, computer, send, switched_on
-from tests.machines import MACHINES
-from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import ROOT, Case, read
-from tiniscript.bytecode.image import unpack
-from tiniscript.link.requests import OK
-from tools.uno import CYCLES_PER_MS, Uno
-
-SHORT_MS = 95  # settings that are over sooner: between two instructions, or while a sensor is read
-OFF_MS = 5  # that a change may be from its time in the trace,
-PING_MS = 25
-READING_MS = 55  # and so much more for each reading before it: it may have to be confirmed,
-FIRST_MS = 85  # or is the first of the run
-TELLING_MS = 200  # for which SHOW and DONE may be on the wire at the end
+from tests.support.robot_on_uno import computer, send, switched_on
+from tests.support.uno_trace import OFF_MS, check_pins, last_zero, program
+from tools.uno import CYCLES_PER_MS
 
 PAPER = [case for case in read(ROOT / "tests" / "cases" / "paper.md") if "robot" in case.parts]
 OTHERS = [
@@ -33,146 +22,11 @@ OTHERS = [
 ]
 
 
-class Setting(NamedTuple):
-    """What the motors get from a time on, in percent."""
-
-    ms: float
-    left: int
-    right: int
-
-
-def program(text: str) -> Case:
-    return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
-
-
-def seen(uno: Uno, since: int) -> list[Setting]:
-    """Return what the pins have told the motors since a cycle."""
-    changes = [
-        change
-        for name in MOTORS
-        for change in uno.pins.history(name)
-        if change.cycle > since
-    ]  # fmt: skip
-    found = []
-    for cycle in sorted({change.cycle for change in changes}):
-        powers = (power(uno, side, cycle) for side in ("left", "right"))
-        found.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
-    return lasting(found)
-
-
-def power(uno: Uno, side: str, cycle: int) -> int:
-    strength = uno.pins.at(side, cycle)
-    if strength.state == "low":
-        return 0
-    level = strength.value if strength.state == "pwm" else 255
-    is_backward = uno.pins.at(f"{side} backward", cycle).state == "high"
-    return round(-level / 2.55 if is_backward else level / 2.55)
-
-
-def parsed_trace(trace: str) -> tuple[list[Setting], list[float]]:
-    """Return the motors and the times of readings that a trace has; its end turns them off."""
-    rows = [line.split() for line in trace.splitlines()]
-    settings = [
-        Setting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
-    ]
-    end_ms = float(rows[-1][0])
-    if rows[-1][1] == "DONE":
-        settings.append(Setting(end_ms, 0, 0))
-    return lasting(settings), [float(row[0]) for row in rows if row[1] == "READ"]
-
-
-def lasting(settings: list[Setting]) -> list[Setting]:
-    """Return the settings that are different from the one before, and last; the last one does."""
-    settings = [
-        setting for before, setting in pairwise([Setting(-1.0, 101, 0), *settings])
-        if before[1:] != setting[1:]
-    ]  # fmt: skip
-    ends = [setting.ms for setting in settings[1:]] + [float("inf")]
-    found = [Setting(-1.0, 0, 0)]
-    for setting, end_ms in zip(settings, ends[: len(settings)], strict=True):
-        if end_ms - setting.ms >= SHORT_MS and setting[1:] != found[-1][1:]:
-            found.append(setting)
-    return found[1:]
-
-
-def pinged(distances: list[float]) -> list[float]:
-    """Return what each ping hears: three pings make the first reading, and two one that jumps."""
-    found = distances[:1] * 3
-    for before, now in pairwise(distances):
-        is_far = abs(now - before) > max(3, before / 5)
-        found += [now] * (1 + is_far)
-    return found
-
-
 @pytest.mark.sampled("case", keep=3)
 @pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:
     with switched_on(sketch, tmp_path / "eeprom") as uno:
         check_pins(case, uno)
-
-
-def check_pins(case: Case, uno: Uno) -> None:
-    robot, senses = robot_and_senses(case)
-    image = unpack(compiled(case).image)
-    trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
-    expected, reads = parsed_trace(trace)
-    end_ms = float(trace.splitlines()[-1].split()[0])
-    is_over = not trace.endswith("LIMIT\n")
-    distances = [each / 1000 for each in senses.readings.get("DISTANCE", [0])]
-    for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
-        uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
-    uno.sonar("trigger", "echo", distances[0])
-    wired = computer(uno)
-    if image.start == "PING":
-        assert wired.until(wired.session.hello()) == OK
-        assert seen(uno, 0) == []
-        return
-    heard = len(uno.received_bytes)
-    assert wired.until(wired.session.upload(image, is_detached=True)) == OK
-    began = last_zero(uno, heard)
-    if image.start == "SB":
-        wired.run(300)
-        assert seen(uno, began) == []
-        uno.press("button", 60)
-        began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
-    triggers = 0
-    distances = pinged(distances)
-    last_ms = end_ms + FIRST_MS + READING_MS * len(reads) + TELLING_MS
-    while (uno.cycle - began) / CYCLES_PER_MS < last_ms:
-        wired.run(2)
-        pulses = [
-            pin_change for pin_change in uno.pins.history("trigger") if pin_change.state == "high"
-        ]
-        if len(pulses) > triggers:
-            triggers = len(pulses)
-            wired.run(PING_MS)
-            uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
-    found = seen(uno, began)
-    events = wired.session.events()
-    if not is_over:
-        found = [setting for setting in found if setting.ms < end_ms]
-        expected = [setting for setting in expected if setting.ms < end_ms]
-    assert [setting[1:] for setting in found] == [setting[1:] for setting in expected]
-    for pins, line in zip(found, expected, strict=True):
-        before = sum(read_ms <= line.ms for read_ms in reads)
-        late_ms = OFF_MS + READING_MS * before + (FIRST_MS - READING_MS) * bool(before)
-        assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
-    if is_over:
-        said = [line.split(" ", 1)[1] for line in trace.splitlines()]
-        shown = [line for line in said if line.startswith("SHOW") or line == "DONE"]
-        names = [event.name for event in events]
-        assert [name for name in names if name in ("SHOW", "DONE")] == [
-            line.split()[0] for line in shown
-        ]
-
-
-def last_zero(uno: Uno, since: int) -> int:
-    """Return when the last frame was there from which something has begun to move."""
-    heard = uno.received_bytes[since:]
-    moved = [change.cycle for name in MOTORS for change in uno.pins.history(name)
-             if change.state in ("high", "pwm") and change.cycle > heard[0].cycle]  # fmt: skip
-    end = min(moved, default=heard[-1].cycle + 1)
-    return max(byte.cycle for byte in heard if byte.cycle < end and byte.value == 0)
 
 
 @pytest.mark.sampled(of="long ways of a chip")

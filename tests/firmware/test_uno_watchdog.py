@@ -6,36 +6,28 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
-from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.images import image_of
-from tests.support.platformio import changed
+from tests.support.robot_on_uno import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tests.support.uno_watchdog import (
+    HANGS,
+    HANGS_ALONE,
+    STALL,
+    TIMER_MS,
+    WATCHDOG,
+    WATCHDOG_MS,
+    built,
+    is_on,
+)
 from tiniscript.link.payloads import HelloReply
 from tools.uno import CYCLES_PER_MS, Uno
 
-PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
-WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
-HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
-TIMER_MS, WATCHDOG_MS = 110, 300
 MOVE_AT = 2  # the offset in AWAY, after what it takes
-
-
-def built(folder: Path, hang: str, environment: str = "uno") -> Path:
-    """Return the firmware that hangs when the button is pressed."""
-    needed()
-    hangs = f"if (press == Press::kPressed) {hang}"
-    return changed(folder, "main.cpp", PRESSED, hangs, environment)
 
 
 def hello_of(wired: Wired) -> HelloReply:
     """Return what HELLO says of the robot."""
     return wired.done(wired.session.hello())
-
-
-def is_on(uno: Uno) -> bool:
-    """Return whether a motor may turn. A chip that is being reset leaves all its pins alone."""
-    return any(state in ("high", "pwm") for state in states(uno).values())
 
 
 @pytest.mark.sampled("board")

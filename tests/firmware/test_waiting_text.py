@@ -13,11 +13,11 @@ from itertools import cycle
 
 import pytest
 
-from tests.firmware.test_button_states import SmallRobot
-from tests.firmware.test_host_firmware import KIT, computer, happened
 from tests.machines.host_firmware import HostFirmware
+from tests.support.button_states import SmallRobot
 from tests.support.campaign import wanted
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT, computer, happened
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decode_frame, encode_frame

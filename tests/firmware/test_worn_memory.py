@@ -13,11 +13,11 @@ from struct import pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import held
-from tests.firmware.test_persistence import bytes_of
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
+from tests.support.kept_programs import bytes_of
 from tests.support.owners import Keys, Owned, owner_of
+from tests.support.robot_on_host import held
 from tiniscript.link.authority import FREE, OWNED_BY_YOU
 from tiniscript.link.messages import SAVED_STORED
 

@@ -8,16 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
-from tests.firmware.test_uno_watchdog import (
-    HANGS,
-    HANGS_ALONE,
-    STALL,
-    TIMER_MS,
-    WATCHDOG_MS,
-    built,
-    is_on,
-)
 from tests.machines.bootloaders import Bootloader, bootloader
 from tests.machines.uno import built as nothing_but
 from tests.machines.uno import needed
@@ -26,6 +16,16 @@ from tests.support.command import process
 from tests.support.images import image_of
 from tests.support.needs import need
 from tests.support.platformio import firmware, shared
+from tests.support.robot_on_uno import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tests.support.uno_watchdog import (
+    HANGS,
+    HANGS_ALONE,
+    STALL,
+    TIMER_MS,
+    WATCHDOG_MS,
+    built,
+    is_on,
+)
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 

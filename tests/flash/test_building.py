@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.flash.test_flash import ENDS, command, copied, interrupted, new_board, tsc
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
-from tests.robots.test_robots import TEXTS
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc, process
 from tests.support.copies import linked
+from tests.support.edited_robots import TEXTS
+from tests.support.flashed_boards import ENDS, command, copied, interrupted, new_board, tsc
 from tests.support.needs import need
 from tests.support.platformio import prepared
 from tests.support.waiting import has_ended, until

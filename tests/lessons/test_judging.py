@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.lessons.test_lessons import findings_of
+from tests.support.lesson_findings import findings_of
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import robots

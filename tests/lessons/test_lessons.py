@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from tests.support.lesson_findings import findings_of
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.base.languages import languages, text
 from tiniscript.lessons import catalogue, text_judging
-from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import JUDGES
-from tiniscript.lessons.lesson import Answer, Lesson
+from tiniscript.lessons.lesson import Answer
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import sheet
-from tiniscript.library.compiling import compile_source, image_maker
+from tiniscript.library.compiling import compile_source
 from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
@@ -40,14 +39,6 @@ def name_of(value: object) -> str:
     if isinstance(value, Path):
         return value.name
     return str(value.label_by_language["en"]).replace(" ", "_")  # type: ignore[attr-defined]
-
-
-def findings_of(text: str, lesson: Lesson, seeds: Sequence[int]) -> list[Finding]:
-    """Return what is missing in the first world where something is, or in the text."""
-    from tiniscript.lessons.marking import Marking
-
-    robot = robots.load(lesson.robot)
-    return list(Marking(text, image_maker(robot), robot, lesson, seeds).run_to_end().findings)
 
 
 def test_they_are_numbered_without_a_gap() -> None:

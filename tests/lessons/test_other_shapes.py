@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.lessons.test_lessons import findings_of
+from tests.support.lesson_findings import findings_of
 from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.catalogue import NAMED

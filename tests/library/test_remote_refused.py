@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.link.test_session import DESCRIPTION
+from tests.support.session_frames import DESCRIPTION
 from tiniscript import robots
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME

@@ -13,10 +13,10 @@ from typing import Any, cast
 import pytest
 
 import tiniscript
-from tests.cli.test_virtual_command import robot as virtual_robot
 from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
+from tests.support.virtual_command import robot as virtual_robot
 from tests.support.waiting import until
 from tiniscript.library import opening
 from tiniscript.library.client import Client

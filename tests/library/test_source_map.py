@@ -11,24 +11,13 @@ import pytest
 
 from tests.oracle import programs
 from tests.support.kits import KITS
-from tiniscript import Compilation, compile_text, robots
+from tests.support.source_maps import compiled, mapped
+from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.library import source_map
-from tiniscript.library.source_map import MapLocation, SourceMap
+from tiniscript.library.source_map import MapLocation
 from tiniscript.semantics.ir import Show
-
-KIT = robots.load("tinibot").kit
-
-
-def compiled(text: str) -> Compilation:
-    found = compile_text(text, KIT, "drive.ts")
-    assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
-    return found
-
-
-def mapped(found: Compilation) -> SourceMap:
-    return source_map.map_of_compiled(found)
 
 
 def located(text: str) -> list[tuple[str, str]]:

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from tests.link.test_unsent_requests import greeted, image, live, long_upload, upload
 from tests.machines.host_firmware import HostFirmware
 from tests.support.command import FOREVER
 from tests.support.pty_robot import drives_now
+from tests.support.unsent_requests import greeted, image, live, long_upload, upload
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED

@@ -10,8 +10,8 @@ import struct
 
 import pytest
 
-from tests.link.test_link_channel import damaged
 from tests.machines.link import CppLink, Step, cpp_link
+from tests.support.link_channel import damaged
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR

@@ -8,9 +8,9 @@ from __future__ import annotations
 import random
 from collections import Counter
 
-from tests.link.test_link_channel import OUTCOMES, World
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import wanted
+from tests.support.link_channel import OUTCOMES, World
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
 from tiniscript.link.frames import decode_frame

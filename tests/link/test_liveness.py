@@ -13,10 +13,10 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
+from tests.support.robot_on_host import computer, switched_on
 from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest
 from tiniscript.link.requests import OK
 from tiniscript.link.session import DEAF_MS, Session

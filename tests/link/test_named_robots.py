@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.cli.test_virtual_command import FOREVER, Robot, robot
 from tests.support.command import LONG, Command, Tsc, inside, process
 from tests.support.network import BadNetwork
+from tests.support.virtual_command import FOREVER, Robot, robot
 from tests.support.waiting import HANGS_S, until
 from tiniscript.base import files
 from tiniscript.link import known_ports, ports

@@ -8,84 +8,18 @@ from an event, from a reply, or is what stops; the robot knows the epoch of each
 from __future__ import annotations
 
 import random
-from collections import Counter, deque
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections import Counter
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
-from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encode_frame
-from tiniscript.link.messages import BY_NAME, STATE_STOPPED
+from tests.support.queued_requests import ACTING, NOTHING, OTHERS, OWN, STOPS, Losses, Wire
+from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
-from tiniscript.link.session import Session
 
-SHORT, LONG = "SI|F(60, 40)", "SI|" + "F(0.1, 30); B(0.1, 20);" * 30
 RUNS = "SI|F(60, 80)"
-STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
-Ask = Callable[[Session], PendingRequest[Any]]
-ACTING: list[Ask] = [
-    lambda session: session.live(image_of(SHORT).code),
-    lambda session: session.upload(image_of(SHORT), saves=False),
-    lambda session: session.upload(image_of(LONG)),
-    lambda session: session.start(),
-    lambda session: session.start(is_detached=True),
-]
-OTHERS: list[Ask] = [
-    lambda session: session.status(),
-    lambda session: session.ping(),
-    lambda session: session.hello(),
-    lambda session: session.trim(),
-    lambda session: session.undo(),
-]
-STOPS: dict[str, Callable[[HostFirmware, Session], bytes]] = {
-    "zeros": lambda robot, session: robot.step(bytes(8)),
-    "a message": lambda robot, session: robot.step(STOP_MESSAGE),
-    "the button": lambda robot, session: robot.step(flags=1) + robot.step(flags=2),
-    "the cable": lambda robot, session: robot.step(flags=8) + robot.step(bytes(4)),
-}
-OWN = "its own"
-
-
-class Losses(NamedTuple):
-    """How much of what the one and the other is told."""
-
-    to_robot: float
-    to_session: float
-
-
-NOTHING = Losses(0, 0)
-
-
-class Wire:
-    """What goes between both: at times it loses what the one or the other says, and some carry
-    what the robot shall hear late: a frame is under way while somebody else stops it.
-    """
-
-    def __init__(self, rng: random.Random) -> None:
-        self.robot, self.session = switched_on(), computer()
-        self.rng = rng
-        self.loses = NOTHING
-        self.late_ms = rng.choice((0, 0, 4, 20))
-        self.under_way: deque[bytes] = deque()
-
-    def turn(self, sent: bytes = b"") -> None:
-        data = self.session.poll(self.robot.now_ms)
-        if self.rng.random() < self.loses.to_robot:
-            data = b""
-        self.under_way.append(data)
-        is_late = len(self.under_way) <= self.late_ms
-        sent += self.robot.step(b"" if is_late else self.under_way.popleft())
-        if self.rng.random() >= self.loses.to_session:
-            self.session.receive(sent, self.robot.now_ms)
-
-    def turns(self, count: int) -> None:
-        for _ in range(count):
-            self.turn()
 
 
 def is_driving(robot: HostFirmware) -> bool:

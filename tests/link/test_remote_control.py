@@ -12,11 +12,11 @@ from struct import pack
 
 import pytest
 
-from tests.link.test_queue_across_a_stop import OWN, STOPS
-from tests.link.test_session import greeted as described
-from tests.link.test_unsent_requests import greeted, image
 from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import KIT, Keys, Owned
+from tests.support.queued_requests import OWN, STOPS
+from tests.support.session_frames import greeted as described
+from tests.support.unsent_requests import greeted, image
 from tiniscript.base.kit import YES_NO, Device, Kit
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (

@@ -13,10 +13,10 @@ from collections import Counter
 
 import pytest
 
-from tests.link.test_link_channel import World, damaged, one_upload, program
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
+from tests.support.link_channel import World, damaged, one_upload, program
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (

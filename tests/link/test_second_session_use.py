@@ -18,19 +18,11 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer
-from tests.link.test_queue_across_a_stop import (
-    ACTING,
-    LONG,
-    NOTHING,
-    OTHERS,
-    STOPS,
-    Losses,
-    Wire,
-)
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
+from tests.support.queued_requests import ACTING, LONG, NOTHING, OTHERS, STOPS, Losses, Wire
+from tests.support.robot_on_host import computer
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import MissedEvent
 from tiniscript.link.requests import OK

@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from tests.link.test_session import FORWARD, answer, event, greeted, receipt
+from tests.support.session_frames import FORWARD, answer, event, greeted, receipt
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME, PLACES, STATE_IDLE, STATE_RUNNING

@@ -10,10 +10,9 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.link.test_session_resets import KIT, reset, running
 from tests.machines.host_firmware import HostFirmware
-from tiniscript import compile_text
-from tiniscript.bytecode.image import Image, unpack
+from tests.support.session_resets import reset, running
+from tests.support.unsent_requests import greeted, image, live, long_upload, upload
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import EmptyReply, ReceiptReply
@@ -24,30 +23,6 @@ FAULTS = "SHOW(1 / DISTANCE)"  # at once
 FAULTS_SOON = "W(0.6); SHOW(1 / DISTANCE)"
 Happens = Callable[[HostFirmware], HostFirmware]
 Ask = Callable[[Session], PendingRequest[ReceiptReply]]
-
-
-def image(text: str) -> Image:
-    return unpack(compile_text(text, KIT).image)
-
-
-def live(session: Session) -> PendingRequest[ReceiptReply]:
-    return session.live(image("SHOW(2)").code)
-
-
-def upload(session: Session) -> PendingRequest[ReceiptReply]:
-    return session.upload(image("SHOW(2)"))
-
-
-def long_upload(session: Session) -> PendingRequest[ReceiptReply]:
-    return session.upload(image("SHOW(2);" * 30))
-
-
-def greeted() -> tuple[Session, HostFirmware]:
-    session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
-    robot.wait(100)
-    assert robot.until(session, session.hello()) == OK
-    robot.talk(session, 300)
-    return session, robot
 
 
 def busy_line(session: Session, robot: HostFirmware, asks: str) -> None:

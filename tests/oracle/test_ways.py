@@ -21,7 +21,7 @@ from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
-from tests.vm.test_agreement import same
+from tests.support.vm_agreement import same
 from tiniscript import Compilation, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack

@@ -12,6 +12,7 @@ import pytest
 
 from tests.machines import host
 from tests.machines.host import SOURCES, WARNINGS, missing
+from tests.support.cpp_sources import code_of
 from tests.support.rows import each_row
 
 EXTRAS = SOURCES / "extras"
@@ -46,14 +47,6 @@ ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # said by a header that is for sketches
 CHIP_OF_THE_CORE = "ARDUINO_ARCH_ESP32"  # defined on the command line, as __AVR__ is for an AVR
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
              "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
-
-
-def code_of(path: Path) -> str:
-    """Return the text of a file without its comments and strings."""
-    text = path.read_text(encoding="utf-8")
-    return re.sub(
-        r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\])\'', " ", text, flags=re.S
-    )
 
 
 def shouting(path: Path) -> set[str]:

@@ -17,7 +17,7 @@ from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
 from tests.support.new_word import DANCE, HORN, SAID, SHAKE, WIGGLE, with_texts
 from tests.support.rows import each_row
-from tests.text.test_line import check_line
+from tests.support.text_lines import check_line
 from tiniscript import compile_text, robots
 from tiniscript.base import languages
 from tiniscript.base.source import Source

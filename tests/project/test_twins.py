@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tests.project.test_cpp_sources import code_of
 from tests.support.casefile import ROOT
+from tests.support.cpp_sources import code_of
 from tests.support.rows import each_row
 
 CPP = ROOT / "vm_arduino" / "src"

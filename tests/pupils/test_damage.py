@@ -8,13 +8,13 @@ from __future__ import annotations
 import random
 import re
 import sys
-from functools import cache, partial
+from functools import partial
 
 import pytest
 
 from tests.pupils.corpus import check
 from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
-from tests.support.casefile import ROOT, read
+from tests.support.damaged_programs import programs
 from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of, repair_program
@@ -26,15 +26,6 @@ SLIPS = [
     " si ", " entonces ", " fin ", " SINO ", " ENDIF ", " END_LOOP ", " LOOP(2) ", "l", "ñ", "s",
     "%", " adelante ", " girar ", " derecha ", " 5 ", " cm", "F", " DEF ", " mi vel ",
 ]  # fmt: skip
-
-
-@cache
-def programs() -> list[str]:
-    """Return programs of the examples, and those of cases and documents."""
-    found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
-    for page in sorted((*ROOT.glob("tests/cases/*.md"), *ROOT.glob("docs/*/lang*.md"))):
-        found += [case.parts["tiniscript"] for case in read(page) if "tiniscript" in case.parts]
-    return [text for text in found if len(text) < 600 and not mistakes(check(text))]
 
 
 def damaged(seed: int) -> str:

@@ -13,7 +13,7 @@ from tests.oracle import programs as written
 from tests.oracle.words import PAPER_KIT
 from tests.oracle.words import Kit as OracleKit
 from tests.pupils.corpus import entries
-from tests.pupils.test_damage import programs
+from tests.support.damaged_programs import programs
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base import languages

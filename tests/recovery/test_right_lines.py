@@ -13,7 +13,7 @@ from functools import cache
 import pytest
 
 from tests.pupils.corpus import check, entries
-from tests.pupils.test_damage import programs
+from tests.support.damaged_programs import programs
 from tests.support.rows import each_row
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS

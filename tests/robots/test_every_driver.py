@@ -10,14 +10,14 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_esp32_builds import complaints
 from tests.machines import board as boards
 from tests.machines.esp32 import flags_of
 from tests.machines.host import SOURCES, missing
 from tests.support.casefile import ROOT
+from tests.support.esp32_builds import complaints
 from tests.support.needs import need
 from tests.support.sampling import some_of
-from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
+from tests.support.wired_robots import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
 from tiniscript.codegen.sketch.wiring import SketchPlan

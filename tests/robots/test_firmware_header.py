@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tests.machines import board as boards
-from tests.robots.test_robots import TEXTS
 from tests.support import arduino_builder
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
+from tests.support.edited_robots import TEXTS
 from tests.support.platformio import shared
 from tiniscript import robots
 from tiniscript.robots import firmware

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.robots.test_robots import TEXTS
 from tests.support.command import Tsc
+from tests.support.edited_robots import TEXTS
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.robots.nearness import nearest_to

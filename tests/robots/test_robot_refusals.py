@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.robots.test_robots import TEXTS, edited
+from tests.support.edited_robots import TEXTS, edited
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, said
 from tiniscript import robots

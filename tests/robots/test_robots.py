@@ -9,23 +9,16 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.edited_robots import FOLDER, TEXTS, edited
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.robots.boards import CHIPS, NEEDS, Chip
 from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.reader import read
 
-FOLDER = Path(robots.__file__).parent
-TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
 FINGERPRINTS = {"tinibot": 0x231B, "liner": 0xFC65, "grabber": 0x74B5,
                 "tinibot2": 0x231B, "tinibot32": 0x231B, "tinibotc3": 0x231B,
                 "elegoo4": 0x73BC, "sumo": 0x742B}  # fmt: skip
-
-
-def edited(name: str, old: str, new: str) -> str:
-    """The text of a shipped profile with its first `old` replaced."""
-    assert old in TEXTS[name]
-    return TEXTS[name].replace(old, new, 1)
 
 
 # ---- the shipped robots

@@ -22,8 +22,8 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.sharing.test_strangers import driven, registration_of, say_all
 from tests.support.command import process
+from tests.support.port_strangers import driven, registration_of, say_all
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
 

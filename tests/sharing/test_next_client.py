@@ -21,9 +21,9 @@ from typing import Any, cast
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, switched_on
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
+from tests.support.robot_on_host import computer, switched_on
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import Event, TimedEvent

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_virtual_command import Robot, robot, visitor
-from tests.sharing.test_strangers import driven, registration_of
 from tests.support.command import Command, inside, process
+from tests.support.port_strangers import driven, registration_of
+from tests.support.virtual_command import Robot, robot, visitor
 from tests.support.waiting import HANGS_S
 from tiniscript.base import files
 from tiniscript.link.sharing import peers, registry

@@ -4,92 +4,10 @@ from __future__ import annotations
 
 import json
 import signal
-import socket
-import subprocess
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from random import Random
 
-from tests.support.command import FOREVER, TSC, Command
+from tests.support.command import Command
+from tests.support.port_strangers import say_all
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tiniscript import __version__
-from tiniscript.link.sharing import protocol, registry
-from tiniscript.link.sharing.registry import Registration
-
-OURS = __version__.encode()
-GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (OURS, b"0" * 32)
-STRANGE = (
-    b'{"token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"' + OURS + b'","token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"' + OURS + b'","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
-    '{"token":"é","verb":"x"}\n'.encode(),
-    b'{"token":"\xff\xfe","verb":"x"}\n',
-    b'{"token":NaN,"verb":Infinity}\n',
-    b'{"token":' + b"9" * 900 + b',"verb":true}\n',
-    b'{"token":1e999,"verb":-1e999}\n',
-    b'{"token":null,"token":"a","token":[]}\n',
-    b'{"token":' + b"[" * 900 + b"\n",
-    b'{"a":' * 180 + b"\n",
-    b"9" * 5000 + b"\n",
-    b"[" * 100_000,
-    b'{"tsc":"' + b"0" * 1_000_000,
-    b"\xef\xbb\xbf" + GREETING,
-    GREETING.decode().encode("utf-16"),
-    GREETING * 50,
-    GREETING[:-1],
-    protocol.encode_message({"do": "stop"}),
-    b"\n" * 1000,
-    b"\0" * 1000,
-    b"GET / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
-    b"\x16\x03\x01\x00\xf0\x01",
-    b"",
-)
-
-
-def mutated(chance: Random) -> bytes:
-    """Return something strange that is a little otherwise."""
-    data = bytearray(chance.choice(STRANGE)[:1200] or b"{")
-    for _ in range(chance.randrange(1, 6)):
-        at = chance.randrange(len(data))
-        kind = chance.randrange(4)
-        if kind == 0:
-            data[at] = chance.randrange(256)
-        elif kind == 1:
-            data[at:at] = chance.choice((b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9"))
-        elif kind == 2:
-            del data[at : at + chance.randrange(20)]
-        else:
-            data += chance.choice(STRANGE)[:200]
-        data = data or bytearray(b"{")
-    return bytes(data)
-
-
-def say(registration: Registration, data: bytes, chance: Random) -> None:
-    """Say something in one or more pieces, and leave in one of several ways."""
-    with (
-        socket.create_connection((protocol.HOST, registration.number), 10) as peer,
-        suppress(OSError),
-    ):
-        cut = chance.randrange(len(data) + 1)
-        for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
-            peer.sendall(piece)
-        if chance.random() < 0.5:
-            peer.shutdown(socket.SHUT_WR)
-            said = peer.recv(1000)
-            assert said == b"", "a stranger is answered"
-
-
-def say_all(port: str, seed: int, count: int) -> None:
-    """Say everything strange, and so much that is a little otherwise."""
-    chance, registration = Random(seed), registration_of(port)
-    for data in (*STRANGE, *(mutated(chance) for _ in range(count))):
-        say(registration, data, chance)
-
-
-def registration_of(port: str) -> Registration:
-    registration = registry.find_registration(port)
-    assert registration is not None
-    return registration
 
 
 def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, link: Command) -> None:
@@ -108,31 +26,3 @@ def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, lin
 
 
 # -- of `test_many_strangers.py`, too --------------------------------------------------------------
-
-FEW = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
-
-
-@contextmanager
-def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A `tsc` that may have few files open."""
-    process = subprocess.Popen(
-        [*FEW, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
-
-@contextmanager
-def driven() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
-    """A virtual robot, its port, and the command that drives it with what that has said."""
-    with few("robot") as robot:
-        assert robot.stdout
-        port = robot.stdout.readline().decode().strip()
-        with few("upload", "--port", port, "-e", FOREVER) as command:
-            assert command.stdout
-            receipt = command.stdout.readline()
-            assert b"running" in receipt
-            yield robot, port, command, receipt

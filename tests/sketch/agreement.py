@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tests.machines.sketch_board import Ran, Signal, SketchBoard
 from tests.oracle import interpreter, programs
 from tests.oracle.interpreter import Kit as OracleKit
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.base.fixed_point import ONE

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_boards import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
 from tests.machines import MACHINES, Senses
 from tests.machines.sketch_board import Ran, SketchBoard, built
 from tests.sketch.agreement import (
@@ -27,6 +26,7 @@ from tests.sketch.agreement import (
     wanted,
     with_wide_kit,
 )
+from tests.support.board_states import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
 from tests.support.campaign import each_seed
 from tests.support.campaign import wanted as wanted_seeds
 from tests.support.casefile import example_robot, sketch_examples
@@ -166,7 +166,7 @@ def test_a_gripper_and_a_lamp_of_a_mega() -> None:
 
 
 def test_a_pwm_actuator() -> None:
-    from tests.robots.test_robots import TEXTS
+    from tests.support.edited_robots import TEXTS
     from tiniscript.robots.reader import read
 
     text = TEXTS["grabber"].replace('driver = "servo"            #', 'driver = "pwm" #')

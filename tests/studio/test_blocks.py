@@ -11,6 +11,7 @@ import pytest
 from tests.oracle import programs as oracle_programs
 from tests.pupils import corpus
 from tests.studio.programs import Program, programs
+from tests.support.block_words import of_word
 from tests.support.kits import KITS
 from tests.support.new_word import HORN
 from tests.support.rows import each_row
@@ -117,36 +118,6 @@ def test_what_pupils_write_becomes_blocks_and_text() -> None:
 
 
 # -- every word has a block ------------------------------------------------------------------------
-
-# A program for each role of words; the words of a role are put in.
-ROLES = {
-    "setup": {"PING": "PING|CHECK_CONNECTION", "CHECK_CONNECTION": "PING|CHECK_CONNECTION",
-              "SI": "SI|S", "SB": "SB|S"},
-    "until": {"UNTIL": "{}"}, "forever": {"FOREVER": "LOOP(FOREVER);W(1);END_LOOP"},
-    "block": {"DEF": "DEF X;END_DEF", "IF": "IF(TRUE);ENDIF", "LOOP": "LOOP(1);END_LOOP",
-              "WHILE": "WHILE(FALSE);END_WHILE", "TASK": "TASK;END_TASK",
-              "WHEN": "WHEN(FALSE);END_WHEN"},
-    "arm": {"ELSE": "IF(TRUE);ELSE;ENDIF", "ELSEIF": "IF(TRUE);ELSEIF(TRUE);ENDIF"},
-    "end": {"ENDIF": "IF(TRUE);ENDIF", "END_LOOP": "LOOP(1);END_LOOP",
-            "END_WHILE": "WHILE(FALSE);END_WHILE", "END_DEF": "DEF X;END_DEF",
-            "END_TASK": "TASK;END_TASK", "END_WHEN": "WHEN(FALSE);END_WHEN"},
-    "alias": {"END_IF": "IF(TRUE);END_IF", "ENDLOOP": "LOOP(1);ENDLOOP",
-              "ENDWHILE": "WHILE(FALSE);ENDWHILE", "ENDDEF": "DEF X;ENDDEF",
-              "ENDTASK": "TASK;ENDTASK", "ENDWHEN": "WHEN(FALSE);ENDWHEN"},
-    "break": {"BREAK": "LOOP(1);BREAK;END_LOOP"},
-    "unit": {"CM": "F(20 CM, 60)", "DEG": "L(90 DEG, 60)"},
-    "operator": {"AND": "SHOW(TRUE AND FALSE)", "OR": "SHOW(TRUE OR FALSE)",
-                 "NOT": "SHOW(NOT TRUE)"},
-}  # fmt: skip
-
-
-def of_word(word: str) -> str:
-    role = WORDS[word].role.name
-    if role == "until":
-        return "W(1) UNTIL(DISTANCE < 10)"
-    if role in ("value", "function"):
-        return f"SHOW({WORDS[word].example})"
-    return ROLES[role][word] if role in ROLES else WORDS[word].example
 
 
 @each_row("word", [name for name, word in WORDS.items() if word.role.name != "later"])

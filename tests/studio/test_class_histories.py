@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from tests.studio.test_classroom import FakeRobot, Room
+from tests.support.class_room import FakeRobot, Room
 from tiniscript.studio import classroom
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import HERE_S, PLACE_S, QUEUE_S, REST_S

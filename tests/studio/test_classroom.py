@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 from collections.abc import Callable, Iterator
@@ -13,93 +12,14 @@ from typing import Any
 
 import pytest
 
+from tests.support.class_room import HERE, FakeRobot, Json, Room
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom, recordings
 from tiniscript.studio import rates as rate_of
 from tiniscript.studio.class_keeping import Keeper
-from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest
-
-Json = dict[str, Any]
-HERE = "192.0.2.9"
-
-
-@dataclasses.dataclass
-class FakeRobot:
-    """A connection that a test plays."""
-
-    has_ended: bool = False
-    name: str = "TINI"
-    left: str = ""
-    stopped: int = 0
-    was_left: bool = False
-    silent_s: float = 0.0
-    is_half_made: bool = False
-    witness: Callable[[list[Json]], object] | None = None
-
-    def leave(self, why: str) -> None:
-        self.left = why
-        self.has_ended = True
-
-    @property
-    def attending(self) -> FakeRobot:
-        return self
-
-    def latch(self) -> None:
-        self.stopped += 1
-
-
-class FakeHosting:
-    """Notes what reaches robots."""
-
-    def __init__(self) -> None:
-        self.asked: list[Json] = []
-        self.robots: dict[str, FakeRobot] = {}
-        self.held: set[str] = set()  # ports that are being left
-
-    def answer(self, request: Json) -> Json:
-        self.asked.append(request)
-        if request.get("do") == "connect":
-            self.robots[request["page"]] = FakeRobot()
-            return {}
-        return {"news": []}
-
-    def robot_of(self, page: str) -> FakeRobot | None:
-        return self.robots.get(page)
-
-    def is_free(self, port: str) -> bool:
-        return port not in self.held
-
-
-class Room:
-    """A class with so many robots, whose clock a test moves."""
-
-    def __init__(self, robots: int = 1) -> None:
-        self.now_s = 1000.0
-        self.hosting = FakeHosting()
-        ports = [f"port{k}" for k in range(robots)]
-        self.made = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
-
-    def joins(self, name: str, address: str = HERE) -> str:
-        answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
-        return str(answer["token"])
-
-    def here(self, token: str, wants: bool | None = None, **more: Any) -> Json:
-        request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
-        return self.made.answer(token, HERE, request)
-
-    def connects(self, token: str) -> FakeRobot:
-        assert self.made.answer(token, HERE, {"do": "connect", "page": "x", "port": "y"}) == {}
-        return self.hosting.robots[self.hosting.asked[-1]["page"]]
-
-    def teaches(self, do: str, **more: Any) -> Json:
-        return self.made.teach({"do": do, **more})
-
-    def number(self, name: str) -> int:
-        return next(int(each["number"]) for each in self.teaches("class")["pupils"]
-                    if each["name"] == name)  # fmt: skip
 
 
 def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:

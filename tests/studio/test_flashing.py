@@ -76,7 +76,7 @@ def test_a_new_board_becomes_a_robot(
     """An old Nano is found at the second speed, as by `tsc firmware`; an Uno that was left without
     firmware by somebody who cancelled is no worse than a new one."""
     needed()
-    from tests.flash.test_flash import new_board, to_hex
+    from tests.support.flashed_boards import new_board, to_hex
 
     elf = firmware(board, tmp_path, shared(tmp_path_factory))
     to_hex(elf, tmp_path / "firmware.hex")

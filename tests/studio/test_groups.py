@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from tests.studio.test_class_histories import without_ports  # noqa: F401
-from tests.studio.test_classroom import HERE, Room
+from tests.support.class_room import HERE, Room
 from tests.support.waiting import HANGS_S, until
 from tiniscript.studio import groups
 from tiniscript.studio.class_keeping import MOST_PUPILS

@@ -6,18 +6,33 @@ import json
 import random
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.oracle import programs as oracle_programs
 from tests.studio.programs import programs
 from tests.studio.random_in_page import compare, round_trip, without_places
-from tests.studio.test_blocks import of_word
-from tests.studio.test_page_for_everyone import SCREENS
+from tests.support.block_words import of_word
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
+from tests.support.page_blocks import (
+    FLYOUT,
+    PATIENCE_MS,
+    PROGRAM,
+    becomes,
+    becomes_other,
+    block,
+    box_of,
+    drag,
+    meet,
+    offered,
+    path_of,
+    start,
+    text_of,
+)
+from tests.support.page_screens import SCREENS
 from tests.support.sampling import some_of
 from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
@@ -32,13 +47,10 @@ from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, why_stale
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page
+    from playwright.sync_api import Page
 
 drawn = pytest.mark.sampled(of="details of blocks", keep=4)
 
-PROGRAM = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"  # no toolbox
-FLYOUT = ".blocklyFlyout:visible .blocklyBlockCanvas > .blocklyDraggable"  # no numbers in blocks
-PATIENCE_MS = 90_000
 SAMPLE = 8  # random programs
 # Whether a field of text keeps the key of undo.
 KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
@@ -51,69 +63,6 @@ def page(page: Page) -> Page:
     page.set_default_timeout(PATIENCE_MS)
     start(page, "SI|F(2, 80);\nS;\n")
     return page
-
-
-def start(page: Page, text: str, level: str = "few") -> None:
-    page.click("#view_text")
-    write(page, text)
-    page.click("#view_blocks")
-    page.select_option("#level", level)
-    shown(page)
-
-
-def text_of(page: Page) -> str:
-    """Return the program's text, which is beside the blocks or behind them."""
-    shown(page)
-    kept: str = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
-    return kept
-
-
-def becomes(page: Page, text: str) -> None:
-    """Wait until the blocks have become this text; the page is told of a change a moment later."""
-    for _ in range(PATIENCE_MS // 50):
-        if text_of(page) == text:
-            return
-        page.wait_for_timeout(50)
-    assert text_of(page) == text
-
-
-def becomes_other(page: Page, text: str) -> None:
-    hears(page, lambda: text_of(page) != text, f"another text than {text}")
-
-
-def block(page: Page, words: str) -> Locator:
-    """Return the innermost block with these words on it."""
-    locator = page.locator(f"{PROGRAM} .blocklyBlock")
-    return locator.filter(has_text=words).last
-
-
-def box_of(block: Locator) -> Any:
-    """Return the box of a block without those that hang below it, as the page has it: what
-    Playwright says of a path is beside it."""
-    return path_of(block).evaluate("e => e.getBoundingClientRect().toJSON()")
-
-
-def path_of(block: Locator) -> Locator:
-    return block.locator("> .blocklyPath:not(.blocklyPathSelected)")
-
-
-def drag(
-    page: Page, group: str, words: str, target: Locator | None, off: tuple[int, int] = (0, 0)
-) -> None:
-    """Drag a block out of a group of the toolbox, below another one and so many pixels off, or, in
-    place of a target, to where it hangs on nothing."""
-    page.locator(".blocklyToolboxCategory", has_text=group).click()
-    source = page.locator(FLYOUT).filter(has_text=words).first
-    source.wait_for()
-    a = box_of(source)
-    page.mouse.move(a["x"] + 8, a["y"] + 10)
-    page.mouse.down()
-    page.mouse.move(700, 330, steps=8)
-    if target is not None:
-        b = box_of(target)  # once the toolbox is no longer over it
-        page.mouse.move(b["x"] + 10 + off[0], b["y"] + b["height"] + 8 + off[1], steps=8)
-    page.mouse.up()
-    page.locator("#blocks[data-state=shown]").wait_for()
 
 
 @pytest.mark.sampled("part")
@@ -367,12 +316,6 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     assert icons.count() == 0
 
 
-def meet(a: dict[str, float], b: dict[str, float]) -> bool:
-    """Whether two boxes lie over each other, by more than a notch."""
-    beside = a["left"] > b["right"] - 1 or b["left"] > a["right"] - 1
-    return not (beside or a["top"] > b["bottom"] - 8 or b["top"] > a["bottom"] - 8)
-
-
 @drawn
 def test_a_message_stands_on_no_block(page: Page) -> None:
     """And one for which no room is left is put away."""
@@ -536,25 +479,6 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
             shown(page)
             for words, _, below, beside, _ in page.evaluate(LOWEST):
                 assert below <= 1 and beside <= 1, (language, name, words)
-
-
-# Opens one group after the other: the kinds of the blocks that can be dragged out.
-OFFERED = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].flatMap((row) => {
-  const { x, y, width, height } = row.getBoundingClientRect();
-  const words = document.elementFromPoint(x + width / 2, y + height / 2);
-  const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
-    words.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true })));
-  press();
-  const list = '.blocklyFlyout .blocklyBlockCanvas > .blocklyDraggable';
-  const blocks = [...document.querySelectorAll(list)].filter((block) => block.checkVisibility());
-  press();
-  return blocks.map((block) => block.classList[0]);
-})"""
-
-
-def offered(page: Page) -> set[str]:
-    shown(page)
-    return set(page.evaluate(OFFERED))
 
 
 def test_every_word_that_has_a_block_can_be_dragged_out(

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_blocks import (
+from tests.support.node import in_node
+from tests.support.page_blocks import (
     FLYOUT,
     PROGRAM,
     becomes,
@@ -20,8 +21,7 @@ from tests.studio.test_page_blocks import (
     start,
     text_of,
 )
-from tests.studio.test_page_runs import kept
-from tests.support.node import in_node
+from tests.support.page_runs import kept
 from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, speak, write
 
 if TYPE_CHECKING:

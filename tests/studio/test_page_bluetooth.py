@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.studio.test_page_link import said
 from tests.support import studio
 from tests.support.command import FOREVER
+from tests.support.page_link import said
 from tests.support.pty_robot import drives_now
 from tests.support.studio import enter, write
 from tiniscript import robots

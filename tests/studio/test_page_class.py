@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_lost import lose_answer, refuse, tears
 from tests.support import studio
 from tests.support.class_pages import joined, said, teaches
 from tests.support.command import FOREVER
+from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import some_of
 from tests.support.studio import (

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_programs import MOVE, colours, content, opened, share
 from tests.support import studio
 from tests.support.needs import need
+from tests.support.page_programs import MOVE, colours, content, opened, share
 from tests.support.studio import (
     Pages,
     checked,

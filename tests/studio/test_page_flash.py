@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.flash.test_flash import new_board, to_hex
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
-from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
+from tests.support.flashed_boards import new_board, to_hex
+from tests.support.page_link import said
 from tests.support.platformio import firmware, shared
 from tests.support.studio import enter
 from tests.support.waiting import until

@@ -12,6 +12,7 @@ import pytest
 from tests.studio import screens
 from tests.support import studio
 from tests.support.needs import need
+from tests.support.page_screens import LOOK, SCREENS
 from tests.support.sampling import some_of
 from tests.support.studio import Pages, axe, checked, enter, image, speak, write
 from tiniscript import check, compile
@@ -21,37 +22,11 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
 LOW = ((683, 384), (640, 512), (320, 256), (1024, 500))
 # How wide and high something is at least.
 LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
          "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
-# What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
-LOOK = """() => {
-  const found = [];
-  const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #views_of_run > *, #controls > *, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page, #arena, #world_tools > :not(span), #world_numbers > *')]
-    .filter((e) => e.checkVisibility() && (e.textContent || e.value || e.id === 'arena' || e.querySelector('svg')))
-    .map((e) => [e.id || e.tagName, e.getBoundingClientRect()]);
-  for (const [name, box] of boxes) {
-    if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5)
-      found.push(name + ' is cut off');
-    if (box.width < 1 || box.height < 1) found.push(name + ' cannot be seen');
-  }
-  for (const [a, one] of boxes) for (const [b, other] of boxes) {
-    if (a < b && Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1
-        && Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 1)
-      found.push(a + ' is over ' + b);
-  }
-  for (const e of document.querySelectorAll('button, select')) {
-    if (!e.checkVisibility()) continue;
-    const box = e.getBoundingClientRect();
-    if (box.height < 44 || box.width < 44) found.push((e.id || e.textContent) + ' is too small for a finger');
-    if (e.scrollWidth > e.clientWidth + 1 && e.tagName === 'BUTTON') found.push(e.textContent + ' does not fit');
-  }
-  if (document.documentElement.scrollWidth > innerWidth) found.push('the page is too wide');
-  return found;
-}"""
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
 SCROLLED = LOOK.replace(
     ".map((e) => [e.id || e.tagName, e.getBoundingClientRect()])",

@@ -10,16 +10,8 @@ import pytest
 
 from tests.studio import test_page_debugging as debugging
 from tests.studio.test_page_held import SERIAL
-from tests.studio.test_page_link import (
-    connect,
-    first,
-    first_robot,
-    page,
-    pages,
-    robot,
-    said,
-)
-from tests.studio.test_page_robot import running
+from tests.support.page_link import connect, first, first_robot, page, pages, robot, said
+from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import UPLOADS, Pages, checked, enter, hears, write
 from tiniscript import robots

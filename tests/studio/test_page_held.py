@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_link import said
 from tests.support import studio
 from tests.support.node import in_node
+from tests.support.page_link import said
 from tests.support.studio import Pages, checked, enter, hears
 from tiniscript.studio import serving
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.lessons.test_forms import has_line_on_floor, of_text
-from tests.studio.test_page_blocks import drag, offered, start
+from tests.support.page_blocks import drag, offered, start
 from tests.support.sampling import some_of
 from tests.support.studio import SETTLED, Pages, axe, shown, speak
 from tiniscript.base.words import WORDS

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.studio.test_page_link import KIT, connect, said
 from tests.support.command import FOREVER
+from tests.support.page_link import KIT, connect, said
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, checked, drives, hang, hears, write
 from tiniscript.link import known_ports

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_link import connect, said
 from tests.support.casefile import ROOT
+from tests.support.page_link import connect, said
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import (
     UPLOADS,

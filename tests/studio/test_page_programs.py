@@ -6,13 +6,23 @@ import base64
 import json
 import random
 import subprocess
-import zlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.studio.programs import programs
+from tests.support.page_programs import (
+    GOOD,
+    MOVE,
+    as_json,
+    colours,
+    content,
+    opened,
+    packed,
+    share,
+    unfold,
+)
 from tests.support.rows import each_row
 from tests.support.studio import SETTLED, Pages, asked, axe, checked, image, in_phase, noted, write
 from tiniscript import check, compile
@@ -26,32 +36,6 @@ if TYPE_CHECKING:
 drawn = pytest.mark.sampled(of="details of programs", keep=2)
 
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
-
-
-def content(page: Page) -> str:
-    return str(page.locator(".cm-content").inner_text())
-
-
-def unfold(page: Page) -> None:
-    """Show how a program is shared."""
-    if not page.locator("#share[open]").count():
-        page.click("#share summary")
-    page.locator("#programs[data-shared]:not([data-shared=asked])").wait_for()
-
-
-def share(page: Page, how: str = "link") -> str:
-    """Open the window if it is not, and return what it shares."""
-    if not page.locator("#programs").is_visible():
-        page.click("#my_programs")
-    unfold(page)
-    page.click(f"#share_{how}")
-    page.locator("#programs:not([data-shared=asked])").wait_for()
-    return str(page.input_value("#shared"))
-
-
-def opened(page: Page) -> list[str]:
-    """Return what earlier programs are called."""
-    return page.locator("#versions li:not(:has(#new)) strong").all_inner_texts()
 
 
 def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) -> None:
@@ -149,17 +133,6 @@ def test_a_link_says_from_where_it_opens() -> None:
     )
 
 
-def packed(content: bytes) -> str:
-    compress = zlib.compressobj(9, zlib.DEFLATED, -15)
-    whole = compress.compress(content) + compress.flush()
-    return base64.urlsafe_b64encode(whole).decode().rstrip("=")
-
-
-def as_json(content: Any) -> str:
-    return packed(json.dumps(content).encode())
-
-
-GOOD = as_json({"text": "SI|F(9, 90)", "robot": "tinibot"})
 WRONG = {
     "nothing": "",
     "no letters": "<img src=x onerror=alert(1)>",
@@ -322,22 +295,6 @@ def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, bu
     page.keyboard.press("Escape")
 
 
-COLOURS = """async (letters) => {
-  const image = await createImageBitmap(new Blob([Uint8Array.from(atob(letters), (c) => c.charCodeAt(0))]));
-  const sheet = document.createElement('canvas');
-  Object.assign(sheet, { width: image.width, height: image.height });
-  const pen = sheet.getContext('2d');
-  pen.drawImage(image, 0, 0);
-  const { data } = pen.getImageData(0, 0, image.width, image.height);
-  const counts = {};
-  for (let k = 0; k < data.length; k += 4) {
-    const colour = data.slice(k, k + 3).join();
-    counts[colour] = (counts[colour] ?? 0) + 1;
-  }
-  return [image.width, image.height, counts];
-}"""
-
-
 def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
     """Save the picture of the blocks; return its size, and how often it has each colour."""
     unfold(page)
@@ -345,15 +302,6 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
         page.click("#share_picture")
     assert download.value.suggested_filename.endswith(".png")
     return colours(page, Path(download.value.path()).read_bytes())
-
-
-def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
-    assert data.startswith(b"\x89PNG\r\n")
-    width, height, counts = page.evaluate(COLOURS, base64.b64encode(data).decode())
-    return width, height, counts
-
-
-MOVE = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it
 
 
 @drawn

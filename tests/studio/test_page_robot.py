@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
+from tests.support.page_robot import running, value
+from tests.support.page_screens import SCREENS
 from tests.support.rows import each_row
 from tests.support.studio import (
     SETTLED,
@@ -30,20 +31,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
-
-
-def value(page: Page, name: str) -> str:
-    return (
-        page.locator("#values div")
-        .filter(has=page.get_by_text(name, exact=True))
-        .locator("dd")
-        .inner_text()
-    )
-
-
-def running(page: Page) -> str:
-    """Return which part of the text is marked."""
-    return " ".join(page.locator(".cm-running").all_inner_texts())
 
 
 @pytest.mark.sampled("name", "robot", "world")

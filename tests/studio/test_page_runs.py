@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.runs_again import recorded
-from tests.studio.test_page_robot import running, value
+from tests.support.page_robot import running, value
+from tests.support.page_runs import kept
 from tests.support.studio import in_phase, write
 from tiniscript import compile, robots
 from tiniscript.studio.playing import play, prepare
@@ -39,12 +40,6 @@ def ran(page: Page, text: str, shown: str) -> None:
     page.click("#run")
     page.locator("#trace", has_text=shown).wait_for(state="attached")
     in_phase(page, "ended")
-
-
-def kept(page: Page) -> list[str]:
-    """Open the window of the runs; return what each is called."""
-    page.click("#runs_open")
-    return page.locator("#runs_list button:first-child").all_inner_texts()
 
 
 def saved(page: Page, row: int) -> bytes:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_link import KIT, connect, said, upload_until_it_runs
-from tests.studio.test_page_runs import kept
+from tests.support.page_link import KIT, connect, said, upload_until_it_runs
+from tests.support.page_runs import kept
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, axe, drives, write
 from tiniscript import robots

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
+from tests.support.page_link import said
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import HUNG_MS, drives, enter, hang, write
 from tiniscript import robots

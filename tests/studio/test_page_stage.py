@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_blocks import PROGRAM, becomes, block, box_of
+from tests.support.page_blocks import PROGRAM, becomes, block, box_of
 from tests.support.studio import (
     SETTLED,
     Pages,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.studio.test_page_programs import GOOD
+from tests.support.page_programs import GOOD
 from tests.support.studio import (
     SETTLED,
     Pages,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_robot import running, value
+from tests.support.page_robot import running, value
 from tests.support.studio import in_phase, write
 
 if TYPE_CHECKING:

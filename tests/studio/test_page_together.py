@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_link import events
 from tests.support.class_pages import (
     class_of_many,
     enters,
@@ -20,6 +19,7 @@ from tests.support.class_pages import (
     teaches,
     types,
 )
+from tests.support.page_link import events
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Class, Pages, checked, drives, image, noted, write
 from tests.support.waiting import until

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_blocks import PROGRAM as PROGRAM_BLOCKS
-from tests.studio.test_page_blocks import block, box_of, drag
 from tests.support import studio
 from tests.support.class_pages import class_of_many, enters, goes_to, has, joined, lines, types
+from tests.support.page_blocks import PROGRAM as PROGRAM_BLOCKS
+from tests.support.page_blocks import block, box_of, drag
 from tests.support.studio import Class, Pages, image, shown, write
 from tests.support.waiting import until
 from tiniscript import compile

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.studio.test_page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
+from tests.support.page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
 from tests.support.studio import SETTLED, Pages, hears, shown, speak, write
 
 if TYPE_CHECKING:

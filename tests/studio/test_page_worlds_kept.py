@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_worlds import drag, on_screen, put, read_start, said, saved
+from tests.support.page_worlds import drag, on_screen, put, read_start, said, saved
 from tests.support.studio import Pages, checked, in_phase, speak, write
 from tiniscript.virtual import worlds
 

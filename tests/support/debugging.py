@@ -6,9 +6,9 @@ from collections.abc import Callable
 from struct import iter_unpack
 from typing import NamedTuple
 
-from tests.firmware.test_host_firmware import KIT, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
+from tests.support.robot_on_host import KIT, switched_on
 from tiniscript.bytecode.image import Image
 from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 from tiniscript.link.outcomes import Event

@@ -12,23 +12,16 @@ from collections import Counter
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT
 from tests.machines.host_firmware import HostFirmware
+from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, wanted
+from tests.support.robot_on_host import KIT
 
 LINE = "SI|BEEP(0.1,97);W(9)"
 ENDS = (b"\n", b"\r\n", b"\r")
 BEEPS = "BEEP 97 100"
 # Between two zeros is a frame where not every byte is one of a line; a damaged one is not answered.
 DAMAGED_FRAME = re.compile(rb"\0[^\0]*[^ -~\0][^\0]*\0")
-# What apps, terminals and modules send by themselves, and what is left of other lines.
-PIECES = (
-    b"\n", b"\r", b"\r\n", b"\n\n", b" ", b"\t", b";", b"\xef\xbb\xbf", b"\0", b"\0\0", b"\0\0\0",
-    b"AT\r\n", b"AT", b"AT+NAMEx\r\n", b"OK+CONN", b"OK+LOST", b"+CONNECTED\r\n", b"OK\r\n",
-    b"S\n", b"S", b"F", b"x", b"1", b"SI|", b"si|", b"SB|", b"F(1,", b"80)\n", b"END_LOOP\n",
-    b"// note\n", b"~1234ABCD\n", b"\x1b[A", b"\x08", b"\x7f", b"\xff", b"\xc3", b"LOOP(2)\n",
-    b"x" * 300, b"F(0.1,80);" * 60,
-)  # fmt: skip
 
 
 class SmallRobot(HostFirmware):

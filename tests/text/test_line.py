@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import random
-import re
 
 import pytest
 
 from tests.oracle import programs
 from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.kits import KITS
-from tests.vm.test_cases import CASES
-from tiniscript import compile_text
-from tiniscript.base.kit import Kit
+from tests.support.text_lines import check_line
+from tests.support.vm_cases import CASES
 from tiniscript.base.source import Source
-from tiniscript.base.words import WORDS
-from tiniscript.codegen.text.line import line_of, plain_code
-from tiniscript.diagnostics import codes
+from tiniscript.codegen.text.line import line_of
 from tiniscript.syntax.checksums import with_checksum
 
 
@@ -38,37 +34,6 @@ from tiniscript.syntax.checksums import with_checksum
 )
 def test_what_is_left_of_a_text(text: str, line: str) -> None:
     assert line_of(Source(text)) == with_checksum(line)
-
-
-def written_out(word: re.Match[str]) -> str:
-    """Return what a word with fixed values stands for, and any other as it is."""
-    known = WORDS.get(word[0].upper())
-    return (known and known.stands_for) or word[0]
-
-
-def check_line(text: str, kit: Kit) -> None:
-    found = compile_text(text, kit)
-    line = line_of(found.source)
-    assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
-    assert "//" not in line and "  " not in line
-    assert line == line.upper()
-    longest = re.sub(r"\w+", written_out, text)
-    assert len(line) <= len(longest.encode()) + len("SI|~00000000")
-    again = compile_text(line, kit)
-    assert again.is_right and again.image == found.image, line
-    assert found.program is not None and again.program is not None
-    assert plain_code(again.program).code == plain_code(found.program).code, line
-    # A line has no notes, nor a block with nothing but a note inside.
-    told, then = (
-        sorted(
-            diagnostic.code.number
-            for diagnostic in one.diagnostics
-            if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
-        )
-        for one in (found, again)
-    )
-    assert told == then
-    assert line_of(Source(line)) == line
 
 
 @pytest.mark.sampled("first")

@@ -16,8 +16,8 @@ from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
-from tests.vm.test_agreement import same
-from tests.vm.test_cases import CASES, having
+from tests.support.vm_agreement import same
+from tests.support.vm_cases import CASES, having
 from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import disassemble

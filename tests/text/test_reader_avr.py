@@ -12,7 +12,7 @@ import pytest
 
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader
 from tests.support.kits import KITS
-from tests.text.test_reader_agreement import some_texts
+from tests.support.reader_agreement import some_texts
 from tiniscript.bytecode.image import STARTS
 from tiniscript.codegen.text.problems import PROBLEM_NAMES
 from tiniscript.robots.kit_words import kit_words

@@ -11,7 +11,7 @@ from tests.machines.qemu import emulated, missing
 from tests.machines.text_reader import LARGEST_ROOM, TextReader
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
-from tests.text.test_reader_agreement import some_texts
+from tests.support.reader_agreement import some_texts
 from tools.builds import chips
 
 KIT = KITS[1][1]

@@ -10,8 +10,8 @@ from random import Random
 import pytest
 
 from tests.support.rows import each_row
+from tests.support.simulator_visits import PING, received, until, until_answered, visit
 from tests.support.virtual_robot import floor, robot_in
-from tests.virtual.test_simulator import PING, received, until, until_answered, visit
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.library.test_source_map import mapped
 from tests.support.rows import each_row
+from tests.support.source_maps import mapped
 from tests.support.virtual_robot import robot_in
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import socket
-from collections.abc import Callable
 
 import pytest
 
-from tiniscript.link.frames import Frame, encode_frame
-from tiniscript.link.messages import BY_NAME
+from tests.support.simulator_visits import PING, received, until, visit
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import (
     HEARTBEAT_MS,
@@ -19,34 +16,7 @@ from tiniscript.virtual.simulator import (
     Simulator,
 )
 
-PING = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, 1, 0))
 REST = b"the rest"
-TURNS = 3000  # far more than anything here takes
-
-
-def visit(simulator: Simulator) -> socket.socket:
-    connection = socket.create_connection(("127.0.0.1", simulator.transports.port))
-    connection.setblocking(False)
-    return connection
-
-
-def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:
-    for _ in range(TURNS):
-        if is_so():
-            return
-        simulator.turn(0.01)
-    raise AssertionError("it does not come to that")
-
-
-def until_answered(simulator: Simulator, client: socket.socket, end: bytes = b"\0") -> None:
-    heard = bytearray()
-    until(simulator, lambda: end in received(client, heard))
-
-
-def received(client: socket.socket, into: bytearray) -> bytearray:
-    with contextlib.suppress(BlockingIOError):
-        into += client.recv(10_000)
-    return into
 
 
 def test_a_flood_waits_outside(simulator: Simulator) -> None:

@@ -6,8 +6,8 @@ import socket
 import time
 from pathlib import Path
 
-from tests.cli.test_virtual_command import FOREVER, robot, visitor
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
+from tests.support.virtual_command import FOREVER, robot, visitor
 from tests.support.waiting import HANGS_S
 
 SILENT_S = 3  # longer than the second that a robot waits for, whose clock may go slower

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from tests.robots.test_robots import TEXTS
+from tests.support.edited_robots import TEXTS
 from tests.support.virtual_robot import Talk
 from tiniscript import robots
 from tiniscript.robots.kinematics import Pose

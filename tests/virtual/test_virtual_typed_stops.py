@@ -6,9 +6,9 @@ from random import Random
 
 import pytest
 
-from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
+from tests.support.simulator_visits import until, visit
+from tests.support.stop_spellings import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
-from tests.virtual.test_simulator import until, visit
 from tiniscript.link.messages import STOP_BYTES, TEXT_MS
 from tiniscript.link.typed_stop import is_at_stop
 from tiniscript.virtual.protocol_sniffer import sniff_robot_client

@@ -15,6 +15,7 @@ from tests.oracle import interpreter, programs
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS, RandomProgram, random_program
+from tests.support.vm_agreement import same
 from tiniscript import compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.disassembly import assemble, disassemble
@@ -26,21 +27,6 @@ from tiniscript.syntax.formatter import format_source
 BATCH = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
 BATCHES = 160  # in the tests, of which a commit runs one; a campaign runs more
-
-
-def same(want: str, got: str) -> bool:
-    """Whether two traces mean the same: where `max-steps` cuts is not part of the meaning."""
-    if want == got:
-        return True
-    ours, theirs = got.splitlines(), want.splitlines()
-    if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
-        return False
-    shorter = min(len(ours), len(theirs)) - 1
-    return ours[:shorter] == theirs[:shorter]
-
-
-def _is_cut(line: str) -> bool:
-    return line.endswith(" LIMIT") and line != f"{MAX_MS} LIMIT"
 
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:

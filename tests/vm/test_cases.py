@@ -6,16 +6,15 @@ import pytest
 
 from tests.machines import MACHINES, Machine
 from tests.support.case_runs import compiled, robot_and_senses
-from tests.support.casefile import Case, accept, all_cases
+from tests.support.casefile import Case, accept
 from tests.support.images import image_for
 from tests.support.rows import each_row
+from tests.support.vm_cases import disassemblies_alone, having
 from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.syntax.formatter import format_source
-
-CASES = all_cases()
 
 
 def trace_of(case: Case, machine: Machine) -> str:
@@ -33,10 +32,6 @@ def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -
         accept(case, part, actual)
         return
     assert actual == case.parts[part], f"{case.path.name}:{case.line}"
-
-
-def having(*parts: str) -> list[pytest.ParameterSet]:
-    return [pytest.param(each, id=each.id) for each in CASES if all(p in each.parts for p in parts)]
 
 
 @each_row("case", having("tiniscript"))
@@ -87,12 +82,6 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
 @pytest.mark.parametrize("case", having("tiniscript", "formatted"))
 def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "formatted", format_source(compiled(case).source), request)
-
-
-def disassemblies_alone() -> list[pytest.ParameterSet]:
-    """Return the disassemblies of no program."""
-    alone = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
-    return [pytest.param(case, id=case.id) for case in alone]
 
 
 @pytest.mark.parametrize("machine", MACHINES)

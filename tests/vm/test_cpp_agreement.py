@@ -41,7 +41,7 @@ from tests.support.cpp_checks import (
 )
 from tests.support.random_codes import random_codes, simple, some_programs
 from tests.support.rows import each_row
-from tests.vm.test_cases import disassemblies_alone
+from tests.support.vm_cases import disassemblies_alone
 from tiniscript import compile_text
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import assemble

@@ -32,7 +32,7 @@ from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
 from tests.support.random_codes import jump, random_codes, simple
-from tests.vm.test_cases import disassemblies_alone, having
+from tests.support.vm_cases import disassemblies_alone, having
 from tests.vm.test_cpp_edges import changed_code, kit_of
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit

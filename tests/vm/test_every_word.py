@@ -19,10 +19,10 @@ from tests.oracle import interpreter
 from tests.oracle.programs import WIDE_KIT
 from tests.sketch.agreement import with_wide_kit
 from tests.studio import test_blocks as blocks
+from tests.support.reader_agreement import check_bytes, check_program
 from tests.support.sampling import some_of
-from tests.text.test_line import check_line
-from tests.text.test_reader_agreement import check_bytes, check_program
-from tests.vm.test_agreement import same
+from tests.support.text_lines import check_line
+from tests.support.vm_agreement import same
 from tiniscript import compile_text
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.limits import BLOCKS, CALLS, STACK_VALUES

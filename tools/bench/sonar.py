@@ -13,8 +13,8 @@ from statistics import median
 from typing import NamedTuple
 
 from tests.firmware.test_board_sonar import US_PER_CM, approaching, driven_ms, pings, wire
-from tests.firmware.test_boards import START, STEADY
 from tests.machines.board import BUILT_IN, Board, built
+from tests.support.board_states import START, STEADY
 from tiniscript import compile_text, robots
 from tiniscript.robots import firmware
 from tools.bench import page

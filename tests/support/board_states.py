@@ -1,0 +1,106 @@
+"""What the pins of each motor driver do for each way of driving."""
+
+from __future__ import annotations
+
+import re
+
+from tests.machines.board import HERTZ, MS, Board
+from tests.support.edited_robots import TEXTS
+from tiniscript.robots.profile import Robot
+from tiniscript.robots.reader import read
+
+STEADY = 29.8  # ms after its release a button is surely up
+PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is surely up again
+FORWARD, BACK, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
+MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
+TURN = 250.0
+
+
+def robot_with(motors: str) -> Robot:
+    """The robot tinibot with other motors."""
+    head, _, rest = TEXTS["tinibot"].partition("[board.motors]")
+    text = f"{head}[board.motors]\n{motors}\n[board.sensors.LIGHT_R]"
+    text += rest.partition("[board.sensors.LIGHT_R]")[2]
+    return read(text, "test")
+
+
+def bridge(driver: str, more: str = "") -> str:
+    return (
+        f'driver = "{driver}"\nleft_pwm = 5\nleft_forward = 7\nleft_backward = 8\n'
+        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{more}"
+    )
+
+
+TWO_WIRE = (
+    'driver = "two_wire"\nleft_forward = 5\nleft_backward = 6\n'
+    "right_forward = 9\nright_backward = 10\n"
+)
+SERVOS = 'driver = "servos"\nleft_pin = 9\nright_pin = 6\nright_still_us = 1480\n'
+# The pins in the order of the profile: forward with 80 %, back with 40 %, M(50, -100), off.
+BRIDGE_STATES = (
+    ("pwm 204", "high", "low", "pwm 204", "high", "low"),
+    ("pwm 102", "low", "high", "pwm 102", "low", "high"),
+    ("pwm 127", "high", "low", "pwm 255", "low", "high"),
+    ("low",) * 6,
+)
+TWO_WIRE_STATES = (
+    ("pwm 204", "low", "pwm 204", "low"),
+    ("low", "pwm 102", "low", "pwm 102"),
+    ("pwm 127", "low", "low", "pwm 255"),
+    ("low",) * 4,
+)
+# One direction pin for each motor, and the board makes the other.
+ONE_DIRECTION = (
+    'driver = "pwm_dir"\nleft_pwm = 5\nleft_forward = 7\nright_pwm = 6\nright_forward = 9\n'
+    'standby = "A5"\n'
+)
+ONE_DIRECTION_STATES = tuple(
+    (*(state[k] for k in (0, 1, 3, 4)), "low" if state[0] == "low" else "high")
+    for state in BRIDGE_STATES
+)
+DRIVERS = {
+    "l298n": (bridge("l298n"), BRIDGE_STATES),
+    "l293d": (bridge("l293d"), BRIDGE_STATES),
+    "tb6612": (
+        bridge("tb6612", 'standby = "A5"\n'),
+        tuple((*state, "low" if state[0] == "low" else "high") for state in BRIDGE_STATES),
+    ),
+    "two_wire": (TWO_WIRE, TWO_WIRE_STATES),
+    "pwm_dir": (ONE_DIRECTION, ONE_DIRECTION_STATES),
+}
+
+
+def driven(name: str) -> Robot:
+    return robot_with(DRIVERS[name][0])
+
+
+def started(robot: Robot, text: str, more: str = "") -> Board:
+    board = Board(robot, text, more)
+    board.press(PRESS, START - STEADY)
+    return board
+
+
+def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
+    """A shipped robot on another board, or wired in another way."""
+    text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return read(text, name)
+
+
+def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
+    """Return when each pulse began, in ms, and its length in us."""
+    edges = board.edges(pin)
+    pairs = zip(edges[::2], edges[1::2], strict=False)
+    return [(up / MS, (down - up) * 1e6 / HERTZ) for up, down in pairs]
+
+
+STOPS = """
+#include <avr/interrupt.h>
+#include "boards/motors.h"
+// A change of A5 does what the link does when it sees a stop.
+ISR(PCINT1_vect) { tiniscript::motors_stop(); }
+__attribute__((constructor)) static void begin() { PCICR = 1 << 1; PCMSK1 = 1 << 5; }
+"""
+LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'

@@ -1,0 +1,62 @@
+"""An ESP32 robot at a broker."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from tests.machines.esp32 import Esp32Robot
+from tests.support.esp32_radio import talk
+from tests.support.esp32_wifi import joined
+from tests.support.mosquitto import Mosquitto
+from tests.support.owners import Keys
+from tests.support.robot_on_esp32 import ended
+from tests.support.robot_on_host import happened
+from tiniscript.link import wifi
+from tiniscript.link.messages import AUTHORITY_MS
+from tiniscript.link.session import Session
+from tiniscript.link.transports.broker import Broker, RobotPresence
+
+ID = "12345678"
+DEAD_MAN_MS = 1050
+
+
+def at(
+    broker: Mosquitto, keys: Keys, settings: wifi.BrokerSettings | None = None
+) -> tuple[Esp32Robot, Session]:
+    """Return a robot with an owner, which is at the broker, and the owner's session by cable."""
+    robot, owner = joined(keys)
+    request = owner.use_broker(settings or broker.settings())
+    assert ended(robot, [(None, owner)], request) == "OK"
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    talk(robot, [], AUTHORITY_MS + 100)
+    # that is less of this computer's time: a broker that had no turn was given up
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    return robot, owner
+
+
+def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) -> None:
+    for _ in range(limit_ms // 20):
+        if holds():
+            return
+        for _ in range(20):
+            robot.step()
+            time.sleep(0.0005)
+    raise AssertionError("not in time")
+
+
+def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str]:
+    """Return the mode, the state and the class of its broker."""
+    request = owner.broker()
+    assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
+    wifi_reply = request.outcome.values
+    return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
+
+
+def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
+    robot.wait(20)
+    return at.list_robots(group)
+
+
+def motors(robot: Esp32Robot) -> str:
+    return [line for line in happened(robot) if "MOTORS" in line][-1]

@@ -1,0 +1,18 @@
+"""What a strict compiler complains of."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from tests.machines.host import SOURCES
+
+BOARD = SOURCES / "src" / "boards"
+STRICT = ("-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti", "-ffreestanding",
+          "-fsyntax-only")  # fmt: skip
+
+
+def complaints(path: Path, *flags: str, standard: str = "gnu++11") -> str:
+    """Return what this computer's compiler has against a file."""
+    command = ["g++", f"-std={standard}", *STRICT, *flags, str(path)]
+    return subprocess.run(command, capture_output=True, text=True, check=False).stderr[:3000]

@@ -1,0 +1,38 @@
+"""Programs that a robot keeps without power."""
+
+from __future__ import annotations
+
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.robot_on_host import computer, outcome, switched_on
+from tiniscript.bytecode.image import pack
+from tiniscript.link.messages import SAVED
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and bytes of a record's
+
+
+def saved(robot: HostFirmware, session: Session) -> str:
+    return SAVED[robot.done(session, session.status()).saved][0]
+
+
+def name_after_power_off(robot: HostFirmware) -> str:
+    again, session = switched_on(robot.memory()), computer(77)
+    assert again.until(session, session.hello()) == OK
+    assert session.robot is not None
+    return session.robot.name
+
+
+def program_after_power_off(robot: HostFirmware) -> bytes:
+    again, session = switched_on(robot.memory()), computer(78)
+    request = session.fetch()
+    if again.until(session, request) != OK:
+        return b""
+    return outcome(request).values.image
+
+
+def bytes_of(text: str) -> bytes:
+    image = image_of(text)
+    return pack(image.start, image.devices, image.code)

@@ -1,0 +1,231 @@
+"""A line that damages, loses and doubles bytes."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import Any
+
+from tests.machines.link import CppLink
+from tests.support.link_cases import KIT
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.session import Session
+from tiniscript.link.statuses import name_of
+
+PIECE_BYTES = 20  # as Bluetooth Low Energy sends them,
+PAUSES_MS = (5, 5, 5, 5, 5, 30, 30, 30, 100, 300, 1500)  # the last is a silence for the receiver
+LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
+OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
+
+
+def lost(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at + 1 :]
+
+
+def changed(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + bytes([data[at] ^ draw.randrange(1, 256)]) + data[at + 1 :]
+
+
+def doubled(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[: at + 1] + data[at:]
+
+
+def swapped(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at : at + 2][::-1] + data[at + 2 :]
+
+
+def inserted(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + bytes([draw.randrange(256)]) + data[at:]
+
+
+def cut(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at + draw.randrange(1, 20) :]
+
+
+def talked_over(data: bytes, at: int, draw: random.Random) -> bytes:
+    """What radio modules write into the stream."""
+    return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
+
+
+DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
+    lost, changed, doubled, swapped, inserted, cut, talked_over,
+)  # fmt: skip
+
+
+def damaged(data: bytes, draw: random.Random) -> bytes:
+    """Return the bytes of a frame with one to three damages."""
+    for _ in range(draw.choice((1, 1, 2, 3))):
+        if data:
+            data = draw.choice(DAMAGES)(data, draw.randrange(len(data)), draw)
+    return data
+
+
+class Radio:
+    """One direction: bytes arrive later, in order, and not all of them as they were sent."""
+
+    def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
+        self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
+        self.shuffles = 0.0  # how often a frame comes twice, or before the one that it follows
+        self.is_split = False  # into pieces of PIECE_BYTES, with a pause before some of them
+        self.is_out = False
+        self._queue: deque[tuple[float, int]] = deque()
+        self._last_ms = 0.0
+
+    def send(self, data: bytes, now_ms: int) -> None:
+        if self.is_out:
+            return
+        if self.shuffles:
+            data = self.shuffled(data)
+        at = 0
+        while at < len(data):
+            if self.draw.random() < self.faults:
+                data = self.draw.choice(DAMAGES)(data, at, self.draw)
+            at += 1
+        late_ms = self.draw.uniform(15, 40) + (self.draw.random() < 0.02) * self.draw.uniform(
+            200, 600
+        )
+        self._last_ms = max(self._last_ms, now_ms + late_ms)
+        for at, byte in enumerate(data):
+            if self.is_split and at % PIECE_BYTES == 0 and self.draw.random() < 0.2:
+                self._last_ms += self.draw.choice(PAUSES_MS)
+            self._last_ms += self.byte_ms
+            self._queue.append((self._last_ms, byte))
+
+    def shuffled(self, data: bytes) -> bytes:
+        frames = re.findall(rb"\0*[^\0]*\0?", data)
+        for at in range(len(frames) - 1, -1, -1):
+            if self.draw.random() >= self.shuffles:
+                continue
+            if self.draw.random() < 0.5:
+                frames.insert(at, frames[at])
+            else:
+                frames[at : at + 2] = frames[at : at + 2][::-1]
+        return b"".join(frames)
+
+    def arrived(self, now_ms: int) -> bytes:
+        found = bytearray()
+        while self._queue and self._queue[0][0] <= now_ms:
+            found.append(self._queue.popleft()[1])
+        return bytes(found)
+
+
+class World:
+    """A computer, a robot and two radios. A disconnect takes both radios out for a while."""
+
+    STEP_MS = 5
+    is_split = False
+
+    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
+        self.cpp, self.draw, self.drops = cpp, draw, drops
+        baud = draw.choice((9600, 9600, 57600, 115200))
+        self.there = Radio(draw, baud, faults)
+        self.back = Radio(draw, baud, faults)
+        self.now_ms = 0
+        self.session = Session(draw.getrandbits(32), baud, KIT)
+        self.did: list[str] = []
+        self._out_until = 0
+        self.line = 240 if cpp.is_large else 54  # bytes of code of a live line
+        cpp.begin(room=8192 if cpp.is_large else 389, kit=KIT, epoch=draw.randrange(256))
+
+    def again(self) -> None:
+        """Another session with the same robot."""
+        self.session = Session(self.draw.getrandbits(32), 9600, KIT)
+
+    def run(self, request: PendingRequest[Any] | None, most_ms: int = 600_000) -> None:
+        """Let time pass until the request is over."""
+        end_ms = self.now_ms + most_ms
+        while self.now_ms < end_ms and (request is None or request.outcome is None):
+            if self.draw.random() < self.drops:
+                self._out_until = self.now_ms + self.draw.randrange(100, 3000)
+            self.there.is_out = self.back.is_out = self.now_ms < self._out_until
+            self.disturb()
+            data = self.session.poll(self.now_ms)
+            if data:
+                self.heard(data)
+                self.there.send(data, self.now_ms)
+            came = self.there.arrived(self.now_ms)
+            if came or self.now_ms % 50 == 0:
+                step = self.cpp.step(self.now_ms, came)
+                self.did += step.did
+                if step.sent:
+                    self.heard(step.sent)
+                    self.back.send(step.sent, self.now_ms)
+            self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
+            self.now_ms += self.STEP_MS
+
+    def disturb(self) -> None:
+        """What others do at this time."""
+
+    def heard(self, data: bytes) -> None:
+        """What others hear."""
+
+
+def program(draw: random.Random, is_large: bool = False) -> bytes:
+    """Return code that no other program of the test has: moves of random times and powers."""
+    move = BY_NAME["MOVE8_F"].code
+    count = draw.choice((1, 3, 12, 18, 19, 40, 129, *(LARGE_COUNTS if is_large else ())))
+    return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
+
+
+def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
+    """Upload a program over another one, then send lines and stop; return how the upload went."""
+    draw = random.Random(seed)
+    faults = draw.choice((0, 0.001, 0.01))
+    world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
+    old = pack("SI", 0, program(draw, cpp.is_large))
+    world.there.faults = world.back.faults = 0
+    drops, world.drops = world.drops, 0
+    first = world.session.upload(unpack(old), runs=False)
+    world.run(first)
+    assert first.outcome and first.outcome.status == 0 and cpp.held() == old
+    world.there.faults = world.back.faults = faults
+    world.there.is_split = world.back.is_split = world.is_split
+    world.drops = drops
+    if cpp.is_large:
+        world.there.shuffles = world.back.shuffles = draw.choice((0, 0, 0.02, 0.2))
+
+    new = pack("SI", 0, program(draw, cpp.is_large))
+    world.again()
+    request = world.session.upload(unpack(new))
+    world.run(request)
+    assert request.outcome, f"seed {seed}: an upload has no end"
+    status = request.outcome.status
+    is_done = status == 0
+    if is_done:
+        assert cpp.held() == new, f"seed {seed}: the upload says done, the robot has another one"
+    assert cpp.held() in (old, new), f"seed {seed}: neither the old program nor the new one"
+    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
+    assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
+    starts = sum(row.startswith("START") for row in world.did)
+    assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
+
+    # each line runs once or not at all, and once if the computer says so
+    lines = []
+    for _ in range(4):
+        code = program(draw, cpp.is_large)[: world.line]
+        request = world.session.live(code)
+        world.run(request)
+        assert request.outcome
+        lines.append(
+            (f"TAKE live {unpack(pack('SI', 0, code)).checksum:08x}", request.outcome.status)
+        )
+    times = Counter(world.did)
+    for row, answer in lines:
+        assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
+
+    # after a stop nothing begins, whatever is still under way
+    request = world.session.live(program(draw)[: world.line])
+    world.run(None, draw.randrange(0, 200))
+    before = len(world.did)
+    world.session.stop(world.now_ms)
+    world.run(None, 300)
+    since = world.did[before:]
+    if "PINS OFF" in since:
+        rest = since[since.index("PINS OFF") :]
+        assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
+    return "done" if is_done else OUTCOMES.get(status) or name_of(status)

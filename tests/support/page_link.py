@@ -1,0 +1,109 @@
+"""The page and its robot: connected, and what is said of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import UPLOADS, Pages, speak
+from tiniscript import robots
+from tiniscript.link import known_ports
+from tiniscript.studio import serving
+from tiniscript.studio.recordings import decode
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+
+KIT = robots.load("tinibot").kit
+PATIENCE_MS = 90_000
+
+
+@pytest.fixture
+def pages(hosted_pages: Pages) -> Pages:
+    return hosted_pages
+
+
+@pytest.fixture(scope="module")
+def first_robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
+
+
+@pytest.fixture
+def robot(first_robot: PtyRobot) -> PtyRobot:
+    """A robot that many tests share: each has it as new."""
+    first_robot.begin_anew()
+    known_ports.remember(first_robot.port, "TINI")  # so that it is listed, and first
+    return first_robot
+
+
+@pytest.fixture(scope="module")
+def first(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+    found = Pages(browser, server.address, entrance=server.entrance)
+    yield found, found.open()
+    found.close()
+
+
+def said(page: Page, text: str | re.Pattern[str]) -> None:
+    from playwright.sync_api import expect
+
+    expect(page.locator("#link_said")).to_contain_text(text, ignore_case=True, timeout=PATIENCE_MS)
+
+
+def connect(page: Page, robot: PtyRobot) -> None:
+    page.click("#side_real")
+    page.click("#link_look")  # the list from before the robot was known has other ports first
+    page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
+    for _ in range(10):  # a page that was closed may not have said so: it has left after a while
+        page.click("#link_connect")
+        said(page, re.compile("Connected: |Another tab"))
+        if "Connected" in page.locator("#link_said").inner_text():
+            return
+        page.wait_for_timeout(500)
+    said(page, "Connected: ")
+
+
+@pytest.fixture
+def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+    """A page that has met its robot; many tests share it, and each connects."""
+    pages, found = first
+    found.set_viewport_size({"width": 1366, "height": 768})
+    speak(found, "en")
+    found.evaluate("for (const each of document.querySelectorAll('details')) each.open = false")
+    connect(found, robot)
+    yield found
+    found.click("#side_real")
+    found.locator("#link_leave").dispatch_event("click")  # seen or not: it may just have left
+    found.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def upload_until_it_runs(page: Page) -> None:
+    """Send it, again where a busy computer kept the page silent until its robot was stopped.
+
+    A short run may be over at once: the page says that in the stead of what it has sent.
+    """
+    word = page.locator("#link_said")
+    for _ in range(UPLOADS):
+        page.click("#link_upload")
+        word.filter(has_text=re.compile(r"The robot has the program|Done\.|Stopped: ")).wait_for()
+        if "Stopped: " not in word.inner_text():
+            return
+    raise AssertionError(f"stopped {UPLOADS} times")
+
+
+def events(page: Page) -> list[str]:
+    """Return what the page saves of the last run."""
+    page.click("#side_virtual")
+    page.click("#runs_open")
+    with page.expect_download() as saved:
+        page.locator("#runs_list li button", has_text="Save run").first.click()
+    page.click("#runs_close")
+    page.click("#side_real")
+    return [row.event for row in decode(saved.value.path().read_bytes()).rows]

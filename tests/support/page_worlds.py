@@ -1,0 +1,65 @@
+"""The world on the page: drawn, moved and saved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tiniscript.virtual import worlds
+from tiniscript.virtual.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from playwright.sync_api import Page
+
+
+Place = tuple[float, float]
+
+
+def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
+    """Return where a place on the floor, in centimetres, is on the screen."""
+    box = page.locator("#arena").bounding_box()
+    assert box is not None
+    scale = min(box["width"] / (floor[0] + 8), box["height"] / (floor[1] + 8))
+    return (
+        box["x"] + box["width"] / 2 + (place[0] - floor[0] / 2) * scale,
+        box["y"] + box["height"] / 2 - (place[1] - floor[1] / 2) * scale,
+    )
+
+
+def drag(page: Page, way: Sequence[Place]) -> None:
+    """Go along a way on the floor with the mouse down."""
+    page.mouse.move(*on_screen(page, way[0]))
+    page.mouse.down()
+    for place in way[1:]:
+        page.mouse.move(*on_screen(page, place), steps=4)
+    page.mouse.up()
+
+
+def said(page: Page, text: str) -> None:
+    page.locator("#doing").filter(has_text=text).wait_for()
+
+
+def saved(page: Page) -> World:
+    """Save the world as a person does, and read it as `tsc robot --world` does."""
+    with page.expect_download() as download:
+        page.click("#world_save")
+    path = Path(download.value.path())
+    named = path.with_suffix(".toml")
+    path.rename(named)
+    assert download.value.suggested_filename in ("world.toml", "mundo.toml")
+    return worlds.load(str(named))
+
+
+def read_start(page: Page) -> Place:
+    page.click("#world_draw")
+    start = saved(page).start
+    page.click("#world_done")
+    return start.x_cm, start.y_cm
+
+
+def put(page: Page, data: bytes, name: str = "own.toml") -> None:
+    page.set_input_files(
+        "#world_file", {"name": name, "mimeType": "application/toml", "buffer": data}
+    )

@@ -1,0 +1,181 @@
+"""Texts, and how the readers of Python and C++ are compared."""
+
+from __future__ import annotations
+
+import random
+import re
+from functools import lru_cache
+
+from tests.machines import Senses
+from tests.machines.python import lists_of
+from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
+from tests.oracle import programs
+from tests.support.kits import KITS
+from tiniscript import compile_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Unreadable, decode
+from tiniscript.base.words import WORDS
+from tiniscript.bytecode.verify import verify
+from tiniscript.codegen.text.line import plain_code
+from tiniscript.codegen.text.memory import Reader as Model
+from tiniscript.diagnostics.codes import LEVEL_VALUES
+from tiniscript.library.compiling import analyze
+from tiniscript.library.text_fitting import find_misfits
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD_WORDS
+from tiniscript.syntax.lexer import scan
+from tiniscript.vm.runner import run
+
+BACKSPACE = re.compile(rb"[A-Za-z_][\b\x7f]")
+SENSOR_BYTES = LEVELS["mega"].sensor_bytes  # as this computer has them
+TOKENS = (*WORDS, "X", "Y", "Z", "DISTANCE", "LIGHT_R", "LINE", "TOUCH", "LED", "GRIPPER", "GO",
+          *"0123456789", "0.5", ".5", "5.", "12.7", "12.8", "-12.8", "-12.9", "32767", "32768",
+          "-32768", "-32769", "32.767", "32.768", "-32.768", "255", "256", "2147483.647",
+          "-2147483.648", "2147483.648", "100.4", "20001", "31", "0.0005", "0.9999", "9.9996",
+          *"()(),;|=<>+-*/%", "<=", ">=", "<>", "\n", "//", " ", "\u00a0", "\u2013", "\ufeff",
+          "20cm", ".5deg", "90°", "90º", "20 CM,", "90 DEG,", "5CMX", "5.cm", "5D",
+          )  # fmt: skip
+
+
+@lru_cache(maxsize=8)
+def reader_of(kit: Kit, room: int = LARGEST_ROOM) -> TextReader:
+    return TextReader(kit, room)
+
+
+def is_right(data: bytes, kit: Kit) -> bool:
+    """Whether the compiler takes these bytes for a program."""
+    try:
+        return analyze(decode(data), kit).is_right  # what it says of a wrong one takes longest
+    except Unreadable:
+        return False
+
+
+# What a robot says of a right text whose DEFs have yes/no values, or values for several tasks.
+NO_VALUES = ("ONE_TASK", "WANTS_NUMBER", "WANTS_YES_NO", "KIND", "COMPARE", "FULL")
+CONTROL = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
+
+
+def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | None:
+    """The reader says of a text what the compiler says; None: it is too long for a robot."""
+    answer = reader_of(kit, room).read(data)
+    right = is_right(data, kit)
+    if right and CONTROL.search(data):  # on a wire it is noise
+        assert not answer.is_program, f"{answer}\n{data!r}"
+        return None
+    if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
+        # a word with fixed values is right where `line_of` writes it out
+        problems = ("FULL", "RESERVED", *(NO_VALUES if lacks_values(data, kit) else ()))
+        assert answer.problem in problems, f"{answer}\n{data!r}"
+        return None
+    if right and lacks_values(data, kit):
+        assert answer.problem in NO_VALUES, f"{answer}\n{data!r}"
+        return None
+    if right:
+        check_code(data, kit, answer, room)
+    if answer.problem == "FULL":
+        return None
+    if answer.is_program != right:
+        assert answer.is_program and takes_more(data, kit), f"{answer}\n{data!r}"
+    if answer.is_program:
+        verify(answer.code, len(kit.readings), len(kit.actuators))
+    return answer
+
+
+def lacks_values(data: bytes, kit: Kit) -> bool:
+    """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
+    found = compile_text(decode(data), kit)
+    assert found.program is not None
+    diagnostics = find_misfits(found.source, found.program, kit, LEVELS["mega"])
+    return any(diagnostic.code is LEVEL_VALUES for diagnostic in diagnostics)
+
+
+def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
+    """The code of a right text is the plain one, or what `text/memory.py` counts is too much."""
+    compiled = compile_text(decode(data), kit)
+    assert compiled.program is not None
+    plain = plain_code(compiled.program)
+    model = Model(scan(compiled.source.text).tokens, kit, SENSOR_BYTES)
+    model.program()
+    fits = (
+        plain.short_length <= CODE_BYTES
+        and model.most_bytes <= room
+        and model.extra_bracket_span is None
+    )
+    if fits and all(len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compiled.source.text)):
+        assert answer.code == plain.code, f"{answer} {model.most_bytes}\n{data!r}"
+    else:
+        assert answer.problem == "FULL", f"{answer} {model.most_bytes}\n{data!r}"
+
+
+def takes_more(data: bytes, kit: Kit) -> bool:
+    """Whether the reader takes a text that the compiler does not.
+
+    It only passes over the bytes of a comment, and a backspace after a letter takes that back.
+    """
+    text = data.decode("utf-8", "replace")
+    return ("\ufffd" in text and "//" in text) or (
+        bool(BACKSPACE.search(data)) and is_right(edited(data), kit)
+    )
+
+
+def edited(data: bytes) -> bytes:
+    """Return a text as it is when each backspace has taken back the letter of a word before it."""
+    while BACKSPACE.search(data):
+        data = BACKSPACE.sub(b"", data, count=1)
+    return data
+
+
+def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
+    """A right program does what the compiler's does."""
+    answer = check_bytes(data, kit)
+    if answer is None:
+        return
+    assert answer.is_program, f"{answer}\n{data.decode()}"
+    compiled = compile_text(decode(data), kit)
+    assert compiled.program is not None and compiled.program.start == answer.start
+    got, want = (trace(code, kit, senses) for code in (answer.code, compiled.code))
+    if any(each[-1].endswith("LIMIT") for each in (got, want)):
+        least = min(len(got), len(want)) - 1  # where steps cut a run is no part of the meaning
+        got, want = got[:least], want[:least]
+    assert got == want, data.decode()
+
+
+def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:
+    lists = lists_of(kit, senses)
+    events = run(code, kit, lists, senses.max_ms, senses.max_steps, senses.seed)
+    *lines, _ = map(str, events)  # the last one says where in its own code a run has ended
+    return lines
+
+
+def damaged(rng: random.Random, data: bytes) -> bytes:
+    """Return a text with one byte changed, lost or added, now and then."""
+    if not data or rng.random() < 0.6:
+        return data
+    at = rng.randrange(len(data))
+    byte = bytes((rng.choice((rng.randrange(256), *b"\x00\xc2\xa0\xe2\x80\x93~09AZ_.<>/=-\r\n")),))
+    return data[:at] + rng.choice((byte, b"", byte + data[at : at + 1])) + data[at + 1 :]
+
+
+def soup(seed: int) -> tuple[Kit, bytes]:
+    """Return a few tokens in any order: a short line, as people type it wrong."""
+    rng = random.Random(seed)
+    tokens = rng.choices(TOKENS, k=rng.randint(1, 9))
+    frame = rng.choice(("{}", "X=1;{}", "IF({});ENDIF", "F({})", "X={}", "SHOW({})",
+                        "LOOP(2);{};END_LOOP", "DEF GO;{};END_DEF;GO", "LED({})", "GRIPPER({})",
+                        "F(1,{})UNTIL(TOUCH)", "BEEP({})", "M({},{})", "F({} CM,60)", "R({}°,60)",
+                        "DEF GO(X);{};END_DEF;GO({})", "DEF GO({});END_DEF",
+                        "DEF GO(X,Y);F(X,Y);END_DEF;GO({},{})",
+                        "DEF A(X);END_DEF;DEF GO(Y,X);{};END_DEF",
+                        "TASK;{};END_TASK", "WHEN({});S;ENDWHEN", "TASK;ENDTASK;{}"))  # fmt: skip
+    text = frame.format(*(["".join(t + " " * rng.randint(0, 1) for t in tokens)] * 2))
+    return KITS[1][1], text.encode()
+
+
+def some_texts(soups: int, count: int) -> list[bytes]:
+    """Return so many lines of any tokens, and random programs with a slip of each."""
+    found = [soup(seed)[1] for seed in range(soups)]
+    for seed in range(count):
+        rng = random.Random(seed)
+        text = programs.program(rng, KITS[1][0])
+        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
+        found += [text.encode(), damaged(rng, slip)]
+    return found

@@ -1,0 +1,89 @@
+"""A whole robot on this computer, and what is sent to it."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.support.images import image_of
+from tiniscript import robots
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import SAVED_STORED
+from tiniscript.link.requests import OK, Reply
+from tiniscript.link.session import Session
+
+KIT = robots.load("tinibot").kit
+LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+AWAY = "SI|F(60, 80)"
+
+
+def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:
+    """Return a robot that has looked at what it keeps."""
+    robot = HostFirmware(KIT, memory, **options)  # type: ignore[arg-type]
+    robot.wait(200)
+    assert robot.did == []
+    assert robot.is_latched
+    return robot
+
+
+def computer(nonce: int = 1) -> Session:
+    return Session(nonce, 9600, KIT.fingerprint)
+
+
+def send(robot: HostFirmware, session: Session, text: str, **how: bool) -> None:
+    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+
+
+T = TypeVar("T")
+
+
+def outcome(request: PendingRequest[T]) -> Reply[T]:
+    assert request.outcome is not None
+    return request.outcome
+
+
+def held(robot: HostFirmware, session: Session) -> bytes:
+    return robot.done(session, session.fetch()).image
+
+
+def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
+    """Wait until the robot says that its program is saved; return how long that took."""
+    begun_ms = robot.now_ms
+    while robot.now_ms < begun_ms + limit_ms:
+        if robot.done(session, session.status()).saved == SAVED_STORED:
+            return robot.now_ms - begun_ms
+        robot.talk(session, 50)
+    raise AssertionError("the program is not saved")
+
+
+def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
+    """Return a robot that has saved a program, and its session."""
+    robot, session = switched_on(), computer()
+    send(robot, session, text)
+    stored(robot, session)
+    return robot, session
+
+
+def broken_upload(robot: HostFirmware, session: Session) -> None:
+    """Let the robot hold what is stored, and nothing of it in memory."""
+    request = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert request.outcome is None
+    robot.wait(3000)
+
+
+def happened(robot: HostFirmware) -> list[str]:
+    return [line.split(" ", 1)[1] for line in robot.did]
+
+
+def pushed(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
+    """Push the button; return what the robot does then."""
+    robot.did.clear()
+    robot.push()
+    robot.wait(milliseconds)
+    return happened(robot)
+
+
+def live(robot: HostFirmware, session: Session, text: str) -> None:
+    request = session.live(image_of(text).code)
+    assert robot.until(session, request) == OK

@@ -1,0 +1,186 @@
+"""Random bytes for the reader of text."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable
+
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.robot_on_host import computer, switched_on
+from tests.support.text_robot import holding
+from tiniscript.base.words import WORDS
+
+TURNS = 25
+SAVING = b"// Still saving. Send it again."
+MISTAKE = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
+LINE = b"SI|M(13,17);W(9)\n"
+LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HELP\n", "PING|\n",
+         "SI|LOOP(FOREVER);\n", "END_LOOP\n", "LOOP(2)\n", "  STOP\n", "IF(DISTANCE<10)\n",
+         "ENDIF\n", "SI|X=0;X=1/X\n", "SI|LOOP(FOREVER);SHOW(TIME);END_LOOP\n", "// no\n",
+         "\t\tS\n", "SI|F(2,80)~72CA4271\n", "SB|", "SI|", "OK\n", "+X\n", "DEF A\n", "END_DEF\n",
+         "A\n", ")\n",
+         )  # fmt: skip
+TOKENS = (*WORDS, "X", "DISTANCE", *"0123456789();,|=<>+-*/%~_. \t\r\n", "//", "é", "\ufeff")
+FRAMES = ("SI|F(1,80)", "SB|L(1,40)", "SI|LOOP(FOREVER);SHOW(1);END_LOOP", "SI|X=0;X=1/X")
+LONG = "SI|" + "F(0.1,80);B(0.1,60);" * 12
+
+
+class Fuzz:
+    """A robot at which anything is thrown, and what must be so of it."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+        self.robot: HostFirmware
+        if seed % 2:
+            self.robot, self.session = holding()
+        else:
+            self.robot, self.session = switched_on(), computer()
+
+    def step(self, data: bytes = b"", flags: int = 0) -> bytes:
+        """Let a millisecond pass; nothing moves while the robot is latched."""
+        robot = self.robot
+        robot.did.clear()
+        was_latched = robot.is_latched
+        sent = robot.step(data, flags)
+        self.check(was_latched, robot.is_latched, robot.did, has_data=bool(data))
+        return sent
+
+    def check(self, was_latched: bool, is_latched: bool, did: list[str], has_data: bool) -> None:
+        """Assert what must be so of a millisecond."""
+        for line in did:
+            assert "MARK" not in line and "MEASURED" not in line, line
+        moves = [line for line in did if " MOTORS " in line]
+        if not has_data:  # of several lines at once one may start what the next one stops
+            assert not (was_latched and is_latched and moves), did
+        if is_latched and moves:
+            assert moves[-1].endswith("MOTORS 0 0"), moves
+
+    def steps(self, milliseconds: int, data: bytes) -> bytes:
+        """Let milliseconds pass, in each of which a byte arrives, if there is one."""
+        robot = self.robot
+        robot.did.clear()
+        was_latched, begin_ms = robot.is_latched, robot.now_ms + 1
+        sent, latched = robot.latched_while(milliseconds, data, is_spread=True)
+        did: list[list[str]] = [[] for _ in latched]
+        for line in robot.did:
+            did[int(line.split()[0]) - begin_ms].append(line)
+        for number, is_latched in enumerate(latched):
+            self.check(was_latched, is_latched, did[number], has_data=number < len(data))
+            was_latched = is_latched
+        return sent
+
+    def wait(self, milliseconds: int) -> bytes:
+        return self.steps(milliseconds, b"")
+
+    def type(self, data: bytes) -> bytes:
+        return self.steps(len(data), data) if data else b""
+
+    # -- what is thrown -------------------------------------------------------------------------
+
+    def bytes_(self) -> None:
+        data = self.rng.randbytes(self.rng.randrange(1, 80))
+        if self.rng.random() < 0.5:
+            self.type(data)
+        else:
+            self.step(data, flags=16)
+
+    def line(self) -> None:
+        data = "".join(self.rng.choices(LINES, k=self.rng.randrange(1, 5))).encode()
+        if self.rng.random() < 0.3:
+            at = self.rng.randrange(len(data))
+            data = data[:at] + self.rng.randbytes(self.rng.randrange(2)) + data[at + 1 :]
+        if self.rng.random() < 0.8:
+            self.type(data)
+        else:
+            self.step(data)
+
+    def tokens(self) -> None:
+        self.type("".join(self.rng.choices(TOKENS, k=self.rng.randrange(1, 30))).encode())
+
+    def frames(self) -> None:
+        session, rng = self.session, self.rng
+        image = image_of(rng.choice(FRAMES))
+        asks: tuple[Callable[[], object], ...] = (
+            session.hello, session.ping, session.status, session.clear, session.start,
+            session.fetch, lambda: session.live(image.code), lambda: session.name(b"A"),
+            lambda: session.upload(image, saves=rng.random() < 0.5),
+            lambda: session.upload(image_of(LONG)),
+        )  # fmt: skip
+        rng.choice(asks)()
+        for _ in range(rng.choice((2, 10, 60, 300))):
+            data = session.poll(self.robot.now_ms)
+            if data and rng.random() < 0.1:
+                at = rng.randrange(len(data))
+                data = data[:at] + rng.choice((b"", b"\n", b"S\n", b"\0\0\0")) + data[at + 1 :]
+            session.receive(self.step(data), self.robot.now_ms)
+
+    def zeros(self) -> None:
+        self.step(bytes(self.rng.randrange(1, 10)))
+
+    def silence(self) -> None:
+        self.wait(self.rng.choice((1, 5, 30, 300, 998, 1001, 1100, 3000)))
+
+    def button(self) -> None:
+        self.step(flags=1)
+        self.wait(self.rng.choice((1, 40, 1200)))
+        self.step(flags=2)
+
+    def turn(self) -> None:
+        acts = (self.bytes_, self.line, self.line, self.line, self.tokens, self.frames, self.frames,
+                self.zeros, self.silence, self.silence, self.button)  # fmt: skip
+        self.rng.choice(acts)()
+
+    # -- what is so afterwards ------------------------------------------------------------------
+
+    def check_line(self) -> None:
+        """After anything and a second of silence the next whole line is answered.
+
+        A line or block that was open ends with it: then the one after it is done. The open one may
+        be right, as `SB|// no`, whose note swallows this one.
+        """
+        self.wait(3050)  # no client listens any more
+        was_open = False
+        for _ in range(20):
+            answers = self.type(LINE) + self.wait(1050)
+            lines = answers.split(b"\r\n")
+            is_taken = any(line.startswith(b"// OK") for line in lines)
+            if is_taken and self.moving():
+                return
+            if SAVING not in lines:
+                is_open = is_taken or any(MISTAKE.match(line) for line in lines)
+                assert is_open and not was_open, answers
+                was_open = True
+                self.wait(1050)  # `moving` has stopped it
+        raise AssertionError("it saves for ever")
+
+    def moving(self) -> bool:
+        """Whether the line of `check_line` has the motors: it stops them here."""
+        seen: list[str] = []
+        for _ in range(50):
+            self.step(b"\0" * 8)
+            seen += self.robot.did
+        return any(line.endswith("MOTORS 0 0") for line in seen)
+
+    def check_stop(self) -> None:
+        """After a stop nothing moves until a line with a SETUP word after a silent second."""
+        for _ in range(self.rng.randrange(1, 6)):
+            data = "".join(self.rng.choices((*LINES, *TOKENS), k=6)).encode()
+            self.type(data.replace(b"\0", b""))
+            self.wait(self.rng.choice((1, 100, 900)))
+            assert self.robot.is_latched, data
+        self.wait(1100)
+        without = [each for each in LINES if not each.lower().startswith(("si", "sb"))]
+        self.type("".join(self.rng.choices(without, k=6)).encode())
+        assert self.robot.is_latched
+
+
+def run(seed: int) -> None:
+    fuzz = Fuzz(seed)
+    for _ in range(TURNS):
+        fuzz.turn()
+    fuzz.check_line()
+    fuzz.check_stop()
+    fuzz.wait(1100)
+    fuzz.check_line()

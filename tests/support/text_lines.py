@@ -1,0 +1,43 @@
+"""A line of text as each reader takes it."""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript import compile_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
+from tiniscript.base.words import WORDS
+from tiniscript.codegen.text.line import line_of, plain_code
+from tiniscript.diagnostics import codes
+
+
+def written_out(word: re.Match[str]) -> str:
+    """Return what a word with fixed values stands for, and any other as it is."""
+    known = WORDS.get(word[0].upper())
+    return (known and known.stands_for) or word[0]
+
+
+def check_line(text: str, kit: Kit) -> None:
+    found = compile_text(text, kit)
+    line = line_of(found.source)
+    assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
+    assert "//" not in line and "  " not in line
+    assert line == line.upper()
+    longest = re.sub(r"\w+", written_out, text)
+    assert len(line) <= len(longest.encode()) + len("SI|~00000000")
+    again = compile_text(line, kit)
+    assert again.is_right and again.image == found.image, line
+    assert found.program is not None and again.program is not None
+    assert plain_code(again.program).code == plain_code(found.program).code, line
+    # A line has no notes, nor a block with nothing but a note inside.
+    told, then = (
+        sorted(
+            diagnostic.code.number
+            for diagnostic in one.diagnostics
+            if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
+        )
+        for one in (found, again)
+    )
+    assert told == then
+    assert line_of(Source(line)) == line

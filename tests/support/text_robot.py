@@ -1,0 +1,46 @@
+"""A robot that is typed to, and what it keeps."""
+
+from __future__ import annotations
+
+from tests.machines.host_firmware import HostFirmware
+from tests.support.robot_on_host import computer, send, stored, switched_on
+from tiniscript.link.payloads import StatusReply
+from tiniscript.link.session import Session
+
+SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
+LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+SAVED_MEMORY = 1
+
+
+def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
+    """Let bytes arrive at 9600 baud; return the lines that it answers."""
+    data = text if isinstance(text, bytes) else text.encode()
+    sent = b"".join(robot.step(bytes((byte,))) for byte in data)
+    return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
+
+
+def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
+    """Return a robot that holds a program, and whose client has gone."""
+    robot, session = switched_on(), computer()
+    send(robot, session, text, saves=saves)
+    if saves:
+        stored(robot, session)
+    robot.wait(4000)
+    robot.did.clear()
+    return robot, session
+
+
+def status(robot: HostFirmware, session: Session) -> StatusReply:
+    return robot.done(session, session.status())
+
+
+def fetched(robot: HostFirmware, session: Session) -> bytes:
+    return robot.done(session, session.fetch()).image
+
+
+def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:
+    """Return a robot that holds a program, and that program, when its client has gone."""
+    robot, session = holding(saves=saves)
+    before = fetched(robot, session)
+    robot.wait(4000)
+    return robot, session, before

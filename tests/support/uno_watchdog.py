@@ -1,0 +1,27 @@
+"""Firmware that hangs, on a simulated Uno."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.machines.uno import needed
+from tests.support.platformio import changed
+from tests.support.robot_on_uno import states
+from tools.uno import Uno
+
+PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
+WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
+HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
+TIMER_MS, WATCHDOG_MS = 110, 300
+
+
+def built(folder: Path, hang: str, environment: str = "uno") -> Path:
+    """Return the firmware that hangs when the button is pressed."""
+    needed()
+    hangs = f"if (press == Press::kPressed) {hang}"
+    return changed(folder, "main.cpp", PRESSED, hangs, environment)
+
+
+def is_on(uno: Uno) -> bool:
+    """Return whether a motor may turn. A chip that is being reset leaves all its pins alone."""
+    return any(state in ("high", "pwm") for state in states(uno).values())
