@@ -342,6 +342,36 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     assert state_of(table, mine) == STATE_RUNNING
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
+    """However often that was, and whoever stops, starts or presses in between."""
+    rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
+    table.claimed(teacher, KEY_TEACHER)
+    table.claimed(pupil)
+    mine = table.session(pupil, nonce=5)
+    assert table.outcome(mine, mine.upload(image_of("SB|F(200, 40)"), runs=False)) == "OK"
+    is_held_back = False
+    for nonce in range(10, 26):
+        act = rng.choice(("holds back", "releases", "stops", "starts", "starts", "presses"))
+        session = table.session(teacher if act in ("holds back", "releases") else pupil, nonce)
+        if act == "holds back":
+            assert table.outcome(session, session.hold_back()) == "OK"
+            is_held_back = True
+        elif act == "releases":
+            assert table.outcome(session, session.clear()) == "OK"
+            is_held_back = False
+        elif act == "stops":
+            session.stop(table.robot.now_ms)
+            table.pass_time(session, 100)
+        elif act == "presses":
+            table.hold(None, 200)
+            is_held_back = False
+        else:
+            wanted = "HELD_BACK" if is_held_back else "OK"
+            assert table.outcome(session, session.clear()) == wanted
+            assert table.outcome(session, session.start()) == wanted
+
+
 # -- forgetting, text, identifying -----------------------------------------------------------------
 
 
