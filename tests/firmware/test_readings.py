@@ -111,9 +111,11 @@ def test_a_line_that_is_too_slow_says_so() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_end_of_a_run_is_told_after_its_readings(seed: int) -> None:
-    text = "SI|LOOP(10);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.01);END_LOOP"
-    names = [event.name for event in ran(text, seed, True, BYTE_TICKS).events]
+@pytest.mark.parametrize("wait_s", [0.001, 0.005, 0.01])
+def test_the_end_of_a_run_is_told_after_its_readings(seed: int, wait_s: float) -> None:
+    """However many of them the line had no room for."""
+    text = f"SI|LOOP(40);X = LIGHT_L + LIGHT_R + DISTANCE;W({wait_s});END_LOOP"
+    names = [event.name for event in ran(text, seed, True, BYTE_TICKS, most_ms=5).events]
     assert names.count("DONE") == 1 and names[-1] == "DONE" and "READING" in names
 
 

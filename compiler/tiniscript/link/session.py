@@ -66,6 +66,7 @@ from tiniscript.link.payloads import (
     HelloReply,
     NextReply,
     PingReply,
+    ReadingEvent,
     ReceiptReply,
     SentReply,
     ShowEvent,
@@ -202,6 +203,7 @@ class Session(Requester):
         self._orphan_run: int | None = None  # the run of a client that has gone
         self._program_query: PendingExchange[PingReply] | None = None  # of values that wait for it
         self._told_stop_epoch: int | None = None  # that has begun with the stop that was told last
+        self._reading_count = 0  # of READING events
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -636,7 +638,9 @@ class Session(Requester):
             has_ended = self._state.take_reply(values, frame.epoch)
             if self.tells_places:
                 self._events += self._state.update_place(values)
-            if has_ended and not is_other_epoch and isinstance(values, StatusReply):
+            is_known = isinstance(values, StatusReply) and not self._reading_count
+            if has_ended and not is_other_epoch and is_known:
+                assert isinstance(values, StatusReply)
                 self._tell_end(values)
             elif has_ended or (is_other_epoch and self._handshake.is_open):
                 self._queue_requery(has_ended, is_other_epoch)
@@ -759,7 +763,16 @@ class Session(Requester):
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return as_refusal(hello)
-        reply = yield from self._handshake.with_key(status)
+        reading_count, reply = self._reading_count, (yield from self._handshake.with_key(status))
+        # What a run has read is told before its end, but after each reply.
+        while (
+            has_ended
+            and reply.status == OK
+            and reply.values.state != STATE_RUNNING
+            and self._reading_count != reading_count
+        ):
+            reading_count = self._reading_count
+            reply = yield from self._handshake.with_key(status)
         is_told = self._state.has_ended(run)  # by an event that has come meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:
             self._tell_end(reply.values)
@@ -796,6 +809,7 @@ class Session(Requester):
             self._take_show(UnresolvedShow(ShowEvent(**values), frame.epoch))
             return
         event = EVENTS[message.name](**values)
+        self._reading_count += isinstance(event, ReadingEvent)
         if isinstance(event, StoppedEvent):
             if not frame.is_sealed and self._handshake.is_unproven:
                 self._ask_for_proof(event)
