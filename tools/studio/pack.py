@@ -129,15 +129,16 @@ NO_LINES = 0xF8  # of instructions without a place in the source; their number l
 MOST_ENTRY_UNITS = 8  # the most of one entry
 
 
-def _without_lines(code: CodeType) -> CodeType:
-    """Return code without the lines of its source, which are a fifth of it and pack badly."""
+def _without_places(code: CodeType) -> CodeType:
+    """Return code without the lines of its source, which are a fifth of it and pack badly, and
+    without the names of what its functions are in."""
     entries, rest_units = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
     lines = bytes(
         [NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest_units - 1] * (rest_units > 0)
     )
-    constants = tuple(_without_lines(constant) if isinstance(constant, CodeType) else constant
+    constants = tuple(_without_places(constant) if isinstance(constant, CodeType) else constant
                       for constant in code.co_consts)  # fmt: skip
-    return code.replace(co_linetable=lines, co_consts=constants)
+    return code.replace(co_linetable=lines, co_consts=constants, co_qualname=code.co_name)
 
 
 def _without_types(source: bytes) -> ast.Module:
@@ -154,7 +155,7 @@ def _without_types(source: bytes) -> ast.Module:
 def compile_module(source: bytes, name: str) -> bytes:
     """Return the bytecode of a module, without docstrings, asserts and types of functions."""
     tree = _without_types(source)
-    code = _without_lines(compile(tree, name, "exec", dont_inherit=True, optimize=2))
+    code = _without_places(compile(tree, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
     pyc_data = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
     return bytes(pyc_data)
