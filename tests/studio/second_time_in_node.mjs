@@ -1434,7 +1434,9 @@ const PARTS = {
         await later(late());
         world = number;
       },
+      stop() {},
     };
+    page.byId('lesson_end').hidden = true;
     new Lessons({ python, simulatorPanel: driving, put() {} });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');

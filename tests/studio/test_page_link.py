@@ -16,6 +16,11 @@ from tests.support.page_link import (
     KIT,
     connect,
     events,
+    first,
+    first_robot,
+    page,
+    pages,
+    robot,
     said,
     upload_until_it_runs,
 )
@@ -43,6 +48,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
 drawn = pytest.mark.sampled(of="details of a link", keep=4)
+
+__all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 
 RUNS = 5
 VOID = "The robot was stopped first, so it"
@@ -258,9 +265,9 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     first, second = pages.visit(entrance), pages.visit(entrance)
     studio.noted(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
-    for page, has_robots in ((first, True), (second, False)):
-        page.click("#side_real")
-        assert page.locator("#link_ports").is_visible() is has_robots
+    for either, has_robots in ((first, True), (second, False)):
+        either.click("#side_real")
+        assert either.locator("#link_ports").is_visible() is has_robots
     connect(first, robot)
     drives(first, robot)
     began_ms = robot.robot_ms

@@ -68,7 +68,7 @@ IMAGE = """{ Image image;
         sink = (uint8_t)unpack(bytes, sink, &image); sink = image.start; }"""
 VERIFY_AND_RUN = """{ uint16_t devices;
         Verdict verdict = verify(bytes, sink, sink, sink, &devices, sink);
-        sink = (uint8_t)verdict.rule; sink = verdict.offset; sink = devices; }
+        sink = (uint8_t)verdict.rule; sink = verdict.offset(); sink = devices; }
       { static Machine machine; static int32_t readings[8];
         machine.start(bytes, sink, readings, sink, sink, sink);
         sink = (uint8_t)machine.tick(sink, sink); }"""
