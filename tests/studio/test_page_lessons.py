@@ -123,7 +123,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     write(page, "SI|F(5, 80)")
     page.select_option("#speed", "1")
     page.click("#lesson_check")
-    page.locator("#lesson_said", has_text="Watch what the robot does").wait_for()
+    page.locator("#lesson_said", has_text="Watch what the robot does").wait_for(state="attached")
     in_phase(page, "running")
     assert page.locator("#arena").is_visible()
     assert page.locator("#lesson_said[data-verdict]").count() == 0
