@@ -24,6 +24,7 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUSES,
 )
+from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.payloads import FaultEvent
 from tiniscript.link.requests import OK
 from tiniscript.vm.machine import Machine
@@ -224,6 +225,27 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
     assert drives(robot.did) == [], "no motor has turned"
     if way not in ("program", "start", "text", "hello", "live"):
         assert held(robot, it.session)[15:] == it.image.code
+
+
+@pytest.mark.parametrize("way", ["stop", "done", "start"])
+@pytest.mark.parametrize("halted_ms", [100, 3000])
+def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: int) -> None:
+    it = debugged("SI|W(0.5);SHOW(TIME)", 0)
+    assert it.halt() == Halt(0, MAIN)
+    it.talk(halted_ms)
+    if way == "stop":
+        it.session.stop(it.robot.now_ms)
+        assert it.until(lambda event: event.name == "STOPPED")
+        assert it.robot.until(it.session, it.session.clear()) == OK
+    elif way == "done":
+        it.go()
+        assert it.until(lambda event: event.name == "DONE")
+    assert it.places() == OK
+    began_ms = it.robot.now_ms
+    it.start()
+    shown = it.until(lambda event: event.name == "SHOW")
+    assert isinstance(shown, ShownEvent) and shown.value == 500
+    assert it.robot.now_ms - began_ms < 600
 
 
 def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
