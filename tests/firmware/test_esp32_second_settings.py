@@ -27,7 +27,7 @@ from tests.support.esp32_wifi import (
     state,
 )
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Ends, ended
+from tests.support.robot_on_esp32 import Ends, ended, uploaded
 from tiniscript.link import wifi
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS
@@ -208,6 +208,27 @@ def test_damaged_settings_are_none(key: bytes) -> None:
         assert ended(again, ends, owner.join(SCHOOL)) == "OK"
         assert ended(again, ends, owner.use_broker(BROKER)) == "OK"
         assert kept_settings(again) == whole
+
+
+@pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])
+def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
+    """Writing stops the chip for a while: it waits until the robot stands."""
+    robot, owner = joined(Keys())
+    ends: Ends = [(None, owner)]
+    if what == "uses none":
+        assert ended(robot, ends, owner.use_broker(BROKER)) == "OK"
+    assert uploaded(robot, ends, owner, "SI|F(2, 80);W(60)") == "OK"
+    before = kept_settings(robot)
+    ways: dict[str, Callable[[], PendingRequest[Any]]] = {
+        "joins": partial(owner.join, HOTSPOT),
+        "forgets": owner.forget_wifi,
+        "uses a broker": partial(owner.use_broker, BROKER),
+        "uses none": partial(owner.use_broker, None),
+    }
+    request = ways[what]()
+    talk(robot, ends, 1500)
+    assert request.outcome is None and kept_settings(robot) == before
+    assert ended(robot, ends, request) == "OK" and kept_settings(robot) != before
 
 
 # -- a broker's connection ----------------------------------------------------------------------
