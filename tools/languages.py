@@ -30,7 +30,7 @@ from tiniscript.base.languages import (
     NAMES_CATALOGUE,
     SOURCE_LANGUAGE,
     languages,
-    read_table,
+    read_language_file,
     source_files,
 )
 from tiniscript.base.translations import read_language
@@ -146,7 +146,7 @@ def check_lexicon(language: str) -> Iterator[str]:
 
 
 def _rows(language: str) -> list[str]:
-    rows = read_table(language, "lexicon.txt").split("\n")
+    rows = read_language_file(language, "lexicon.txt").split("\n")
     return [row for row in rows if row and not row.startswith("#")]
 
 

@@ -9,7 +9,13 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript.base.kit import REMOTE
-from tiniscript.base.languages import ABOUT_FILE, FOLDER, SOURCE_LANGUAGE, languages, read_table
+from tiniscript.base.languages import (
+    ABOUT_FILE,
+    FOLDER,
+    SOURCE_LANGUAGE,
+    languages,
+    read_language_file,
+)
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.recovery import rows, suggestion_rows
@@ -36,7 +42,9 @@ def test_no_code_asks_for_one_language() -> None:
 def _rows(language: str) -> list[tuple[str, list[str]]]:
     """What something means, and the words that mean it."""
     rows = [
-        row for row in read_table(language, "lexicon.txt").split("\n") if not row.startswith("#")
+        row
+        for row in read_language_file(language, "lexicon.txt").split("\n")
+        if not row.startswith("#")
     ]
     return [(meaning, words.split()) for meaning, _, words in (row.partition("|") for row in rows)]
 

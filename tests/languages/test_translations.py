@@ -441,9 +441,9 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
-    english = languages.read_table(SOURCE_LANGUAGE, "lexicon.txt")
+    english = languages.read_language_file(SOURCE_LANGUAGE, "lexicon.txt")
     tables = {SOURCE_LANGUAGE: english, "fr": "\n".join(rows)}
-    monkeypatch.setattr("tools.languages.read_table", lambda language, _: tables[language])
+    monkeypatch.setattr("tools.languages.read_language_file", lambda language, _: tables[language])
     assert [*check_lexicon("fr")] == rows[1:5]
 
 

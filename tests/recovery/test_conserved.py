@@ -10,7 +10,7 @@ import pytest
 from tests.pupils.corpus import check
 from tests.support.rows import go_through
 from tiniscript import robots
-from tiniscript.base.languages import languages, read_table
+from tiniscript.base.languages import languages, read_language_file
 from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
@@ -34,7 +34,7 @@ def units() -> list[tuple[str, str, float]]:
     """Return one word for each unit of the lexicons, which it is, and how much one is."""
     found = {}
     for language in languages():
-        for row in read_table(language, "lexicon.txt").split("\n"):
+        for row in read_language_file(language, "lexicon.txt").split("\n"):
             if row.startswith("unit ") and row.split()[1] in ("s", "cm", "°", "%", "Hz"):
                 _, unit, scale = row.partition("|")[0].split()
                 found[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
@@ -223,7 +223,7 @@ def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) 
 
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
-    rows = (read_table(language, "lexicon.txt").split("\n") for language in languages())
+    rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
     told = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
     signs = [(it[0].strip(), s) for it in told for s in it[2].split() if not s.isascii()]
     signs = [(word, sign) for word, sign in signs if len(sign) == 1 and not sign.isalpha()]

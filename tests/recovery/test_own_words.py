@@ -9,7 +9,7 @@ import pytest
 
 from tests.pupils.corpus import check
 from tests.support.rows import each_row
-from tiniscript.base.languages import languages, read_table
+from tiniscript.base.languages import languages, read_language_file
 from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.diagnostics.codes import Diagnostic
@@ -31,7 +31,9 @@ COMPARED = re.compile(r"(?:[<>]=?|=)\s*(\d+)")
 def words(meaning: str) -> list[str]:
     """Return the words of all lexicons with a meaning."""
     rows = (
-        row for language in languages() for row in read_table(language, "lexicon.txt").split("\n")
+        row
+        for language in languages()
+        for row in read_language_file(language, "lexicon.txt").split("\n")
     )
     told = (row.partition("|") for row in rows if not row.startswith("#"))
     return [word for what, _, said in told if what.strip() == meaning for word in said.split()]

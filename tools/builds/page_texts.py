@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.languages import Texts, language_info, read_table, texts
+from tiniscript.base.languages import Texts, language_info, read_language_file, texts
 from tiniscript.base.words import WORDS
 from tiniscript.robots import load, names
 
@@ -31,7 +31,7 @@ def looked_for(language: str) -> dict[str, str]:
     """
     wanted = {"turn", *WORDS, *(each for name in names() for each in load(name).kit.names)}
     result: dict[str, str] = {}
-    for row in read_table(language, "lexicon.txt").split("\n"):
+    for row in read_language_file(language, "lexicon.txt").split("\n"):
         meaning, bar, words = (part.strip() for part in row.partition("|"))
         if bar and meaning in wanted:
             result[f"words/{meaning}"] = words.lower().replace("_", " ")

@@ -77,8 +77,8 @@ def make_firmware(clone: Clone) -> list[Path]:
 
 def make_studio(clone: Clone) -> list[Path]:
     clone.python("-m", "tools.builds.studio")
-    make_page = clone.root / PAGE_FOLDER
-    if not (make_page / "licences.txt").is_file():
+    page_folder = clone.root / PAGE_FOLDER
+    if not (page_folder / "licences.txt").is_file():
         raise CannotMake("the page names no licences of the packages that are in it")
     return []
 

@@ -87,7 +87,7 @@ def find_language(locale_name: str) -> str:
     return code_by_name.get(language_name, SOURCE_LANGUAGE)
 
 
-def read_table(language: str, name: str) -> str:
+def read_language_file(language: str, name: str) -> str:
     """Return a file of a language's folder, which may lack it."""
     path = FOLDER / language / name
     return path.read_text(encoding="utf-8-sig") if path.is_file() else ""

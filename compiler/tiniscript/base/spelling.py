@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from tiniscript.base.languages import languages, read_table
+from tiniscript.base.languages import languages, read_language_file
 
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
@@ -70,7 +70,7 @@ _MOST_LETTERS = 24
 @cache
 def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
     """What sounds the same in each language that says so: patterns, and the sign for them."""
-    tables = (read_table(language, "sounds.txt").split("\n") for language in languages())
+    tables = (read_language_file(language, "sounds.txt").split("\n") for language in languages())
     rows_by_language = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
     return tuple(
         tuple((re.compile(pattern.strip()), sign.strip()) for pattern, _, sign in rows)

@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, ONE
-from tiniscript.base.languages import SOURCE_LANGUAGE, languages, read_table
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, read_language_file
 
 
 class Argument(NamedTuple):
@@ -181,7 +181,7 @@ def lexicon() -> dict[str, list[LexiconEntry]]:
     """What each word means: all that the languages say of it, English last."""
     entries_by_word: dict[str, list[LexiconEntry]] = {}
     for language in (*languages()[1:], SOURCE_LANGUAGE):
-        for row in read_table(language, "lexicon.txt").split("\n"):
+        for row in read_language_file(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():

@@ -323,7 +323,7 @@ MESSAGES = (
     _message(37, "HALTED", False, "", "run:u8 at:u16 task:u8",
              "The program is halted before a statement. Repeated: it still is."),
     _message(38, "READING", False, "", "run:u8 sensor:u8 value:i32 ms:u16",
-             "The program has read another value than before from a sensor. `ms`: since the start."),
+             "A reading has changed. `ms`: the low 16 bits of the time since the run's start."),
 )
 FIRST_ACTING = 6
 RETIRED_NUMBERS = (10, 13)  # a request that is LF or CR on the wire could be the end of a line

@@ -183,7 +183,7 @@ class HaltedEvent(NamedTuple):
 
 
 class ReadingEvent(NamedTuple):
-    """The program has read another value than before from a sensor. `ms`: since the start."""
+    """A reading has changed. `ms`: the low 16 bits of the time since the run's start."""
 
     run: int
     sensor: int

@@ -220,12 +220,12 @@ class PortConnection(LinkConnection):
                 request for request in self._pending_requests if request.outcome is None
             ]
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in timed_events)
-        own_events = [
+        queued_events = [
             timed_event
             for timed_event in timed_events
             if self._takes_places or timed_event[1].name != "PLACE"
         ]
-        self._events.add_events(own_events)
+        self._events.add_events(queued_events)
         self._bell.ring()
         if self._listener is not None and (timed_events or finished_requests):
             self._listener(timed_events)

@@ -175,7 +175,7 @@ class Matching:
             return self.read_closing_brace()
         elif kind == "arm":
             return bool(self.open_blocks) and self.open_blocks[-1].word == "IF"
-        elif kind == "end" and not self.is_before_arm():
+        elif kind == "end" and not self.drop_early_end():
             return self.read_bare_end() if self.item.word == ANY_END else self.read_end()
         return True
 
@@ -248,8 +248,8 @@ class Matching:
         self.edit_item(1, *((";", block.end, ";") if block.word else ()))
         return True
 
-    def is_before_arm(self) -> bool:
-        """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
+    def drop_early_end(self) -> bool:
+        """Drop an end before the ELSE of its IF; return whether there was one."""
         item = self.item
         is_end_of_if = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
         if not (

@@ -113,7 +113,7 @@ enum class Message : uint8_t {
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
   kDone = 35,  // The program has ended.
   kHalted = 37,  // The program is halted before a statement. Repeated: it still is.
-  kReading = 38,  // The program has read another value than before from a sensor. `ms`: since the start.
+  kReading = 38,  // A reading has changed. `ms`: the low 16 bits of the time since the run's start.
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.

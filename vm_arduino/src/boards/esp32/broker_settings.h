@@ -41,7 +41,7 @@ Answer broker_forget();
 void broker_has_memory(bool is_so);
 
 // The broker's task: whether the settings have changed since the last call; then they are in
-// `*found`.
+// `*broker_settings`.
 bool broker_changed(BrokerSettings* broker_settings);
 
 // The broker's task says whether the robot is connected, or why not.

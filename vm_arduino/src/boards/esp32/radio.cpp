@@ -41,8 +41,8 @@ RadioName name;
 bool has_begun;
 uint32_t rested_ms;
 bool has_broker;
-bool has_failed;  // to begin the broker's task
-uint32_t failed_ms;
+bool has_broker_failed;  // to begin its task
+uint32_t broker_failed_ms;
 
 // A task: what the radio makes it wait for, it waits for alone.
 void run(void* of) {
@@ -73,10 +73,10 @@ void begin_bluetooth() {
 void begin_broker() {
   if (!has_begun || has_broker || !broker_is_set()) return;
   const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (has_failed && now_ms - failed_ms < kAgainMs) return;
+  if (has_broker_failed && now_ms - broker_failed_ms < kAgainMs) return;
   has_broker = begin(kBrokerRadio);
-  has_failed = !has_broker;
-  failed_ms = now_ms;
+  has_broker_failed = !has_broker;
+  broker_failed_ms = now_ms;
   broker_has_memory(has_broker);
 }
 

@@ -79,7 +79,7 @@ void listen() {
 // A place for a new client: a free one, or that of who has shown no key, the one first that has not
 // said yet what it is; so nobody keeps out an owner's stop. Owners keep theirs while they speak.
 Client* free_place() {
-  Client* found = nullptr;
+  Client* evicted = nullptr;
   uint32_t most = 0;
   for (Client& client : clients) {
     if (client.socket == kNoSocket) return &client;
@@ -89,11 +89,11 @@ Client* free_place() {
     const uint32_t worth = client.has_key() ? 1 : client.is_admitted ? 2 + silent_ms : UINT32_MAX;
     if (worth > most) {
       most = worth;
-      found = &client;
+      evicted = &client;
     }
   }
-  if (found != nullptr) close_client(found);
-  return found;
+  if (evicted != nullptr) close_client(evicted);
+  return evicted;
 }
 
 void accept_next() {
