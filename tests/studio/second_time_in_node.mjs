@@ -475,7 +475,7 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Flashing } = await page.load('robot/flashing.js');
-    const speech = { say: (key) => notes.push(key), fail: (why) => notes.push(why.reason) };
+    const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
     let isFree = true;
     new Flashing({ speech, port: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, meet: () => failed('meet') });
     return async (chance, isGood) => {
