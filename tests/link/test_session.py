@@ -525,20 +525,45 @@ def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() 
     assert 3000 <= lost_at(session, at) - at < 3500
 
 
+AT_REST: dict[str, int | bytes] = {
+    "state": 0, "run": 1, "program": 0, "length": 0, "slot": 0, "saved": 0, "fault": 0,
+    "fault_at": 0, "fault_program": 0, "damaged": 0, "dropped": 0, "framing": 0, "overrun": 0,
+    "noise": b"",
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may tell of it in the same moment as its event."""
     session, at = over()
-    status: dict[str, int | bytes] = {
-        "state": 0, "run": 1, "program": 0, "length": 0, "slot": 0, "saved": 0, "fault": 0,
-        "fault_at": 0, "fault_program": 0, "damaged": 0, "dropped": 0, "framing": 0, "overrun": 0,
-        "noise": b"",
-    }  # fmt: skip
-    told = [answer(session.poll(at), status),
+    told = [answer(session.poll(at), AT_REST),
             event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
     for each in reversed(told) if is_event_first else told:
         session.receive(each, at)
     assert [each.name for each in session.events()] == ["DONE"]
+
+
+@pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
+def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_count: int) -> None:
+    """Its event is lost; a robot that never has enough of readings still does what it is asked."""
+    session, at = over()
+    values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
+    told_count, request = 0, session.name(b"Ana")
+    for _ in range(100):
+        at += 20
+        data = session.poll(at)
+        if told_count < reading_count:
+            session.receive(event("READING", told_count, values, epoch=10), at)
+            told_count += 1
+        if data:
+            frame = decode_frame(data.strip(b"\0"))
+            assert frame
+            asked_for = messages.BY_NUMBER[frame.number].reply
+            reply = {field.name: AT_REST.get(field.name, b"") for field in asked_for}
+            session.receive(answer(data, reply), at)
+    assert request.outcome and request.outcome.status == 0
+    names = [each.name for each in session.events()]
+    assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
 
 
 def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:

@@ -638,9 +638,8 @@ class Session(Requester):
             has_ended = self._state.take_reply(values, frame.epoch)
             if self.tells_places:
                 self._events += self._state.update_place(values)
-            is_known = isinstance(values, StatusReply) and not self._reading_count
-            if has_ended and not is_other_epoch and is_known:
-                assert isinstance(values, StatusReply)
+            is_end_known = has_ended and not is_other_epoch and not self._reading_count
+            if is_end_known and isinstance(values, StatusReply):
                 self._tell_end(values)
             elif has_ended or (is_other_epoch and self._handshake.is_open):
                 self._queue_requery(has_ended, is_other_epoch)
@@ -753,26 +752,25 @@ class Session(Requester):
     def _queue_requery(self, has_ended: bool, is_other_epoch: bool) -> None:
         if is_other_epoch:
             self._handshake.is_open = False  # if this is lost, what is asked next finds out
-        exchange = self._query_again(has_ended, is_other_epoch)
+        exchange = self._query_again(has_ended, is_other_epoch, self._state.run)
         self._queue.appendleft(PendingExchange(exchange, DEAF_MS, is_own=True))
 
-    def _query_again(self, has_ended: bool, is_other_epoch: bool) -> Exchange[StatusReply]:
+    def _query_again(
+        self, has_ended: bool, is_other_epoch: bool, run: int | None
+    ) -> Exchange[StatusReply]:
         """Ask who the robot is now that another epoch has begun, and how a run has ended."""
-        run = self._state.run
         if is_other_epoch:
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return as_refusal(hello)
-        reading_count, reply = self._reading_count, (yield from self._handshake.with_key(status))
-        # What a run has read is told before its end, but after each reply.
-        while (
-            has_ended
-            and reply.status == OK
-            and reply.values.state != STATE_RUNNING
-            and self._reading_count != reading_count
-        ):
-            reading_count = self._reading_count
-            reply = yield from self._handshake.with_key(status)
+        reading_count = self._reading_count
+        reply = yield from self._handshake.with_key(status)
+        is_at_rest = reply.status == OK and reply.values.state != STATE_RUNNING
+        if has_ended and is_at_rest and self._reading_count != reading_count:
+            # What a run has read comes before its end, but after each reply: others ask first.
+            again = self._query_again(has_ended, False, run)
+            self._queue.append(PendingExchange(again, DEAF_MS, is_own=True))
+            return reply
         is_told = self._state.has_ended(run)  # by an event that has come meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:
             self._tell_end(reply.values)
