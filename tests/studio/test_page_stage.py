@@ -94,12 +94,9 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     hears(page, lambda: page.evaluate(AREA) == small, "as before")
 
 
-@pytest.mark.sampled("size")
-@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
-    page: Page, size: tuple[int, int]
-) -> None:
-    """The step comes back by the lesson's own buttons, the check is in reach all the time."""
+def see_last_step(page: Page, size: tuple[int, int]) -> float:
+    """Open the task of a lesson, with a program that drives on; return how many px of the page the
+    arena is to have at least while it does."""
     page.reload()  # whoever has chosen a camera keeps it
     checked(page)
     page.set_viewport_size({"width": size[0], "height": size[1]})
@@ -111,8 +108,17 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     page.select_option("#lesson", "3")
     page.locator("#lesson_page[data-lesson='3']").wait_for()
     page.locator("#lesson_steps button").last.click()
+    return size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
+
+
+@pytest.mark.sampled("size")
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
+def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
+    page: Page, size: tuple[int, int]
+) -> None:
+    """The step comes back by the lesson's own buttons, the check is in reach all the time."""
+    large = see_last_step(page, size)
     small = page.evaluate(AREA)
-    large = size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
     for is_ended in (False, True):
         page.click("#run")
         in_phase(page, "running")
@@ -140,18 +146,7 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
 def test_a_run_that_is_judged_is_as_large_until_it_is_told(
     page: Page, size: tuple[int, int]
 ) -> None:
-    page.reload()  # whoever has chosen a camera keeps it
-    checked(page)
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    turn(page, "program")
-    write(page, FOREVER)
-    turn(page, "robot")
-    page.click("#side_lessons")
-    page.locator("#lesson:enabled").wait_for()
-    page.select_option("#lesson", "3")
-    page.locator("#lesson_page[data-lesson='3']").wait_for()
-    page.locator("#lesson_steps button").last.click()
-    large = size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
+    large = see_last_step(page, size)
     for is_still in (False, True):
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
         page.click("#lesson_check")
