@@ -1,22 +1,26 @@
 """A word with an instruction of its own is a row of few tables: every stage takes it from there.
 
-CONTRIBUTING.md names the files of these tables, and four that no test can stand in for: what the
-C++ machine does, the page of the bytecode, the language reference and what the block says.
+CONTRIBUTING.md names the files of these tables, and three that no test can stand in for: what the
+C++ machine does, the language reference and what the block says.
 """
 
 from __future__ import annotations
 
 import inspect
+import shutil
+import subprocess
 from pathlib import Path
 from struct import Struct
 from types import ModuleType
 
 import pytest
 
+from tests.machines import avr
 from tests.oracle import text as oracle_text
 from tests.oracle import words as oracle
 from tests.oracle.interpreter import run as run_by_reference
 from tests.support.casefile import ROOT
+from tests.support.needs import need
 from tests.support.new_word import CHEEP
 from tiniscript import compile_text, robots
 from tiniscript.base import words
@@ -101,6 +105,17 @@ def test_the_tables_of_the_machine_in_c_have_its_instruction(
     assert "case Op::kCheep" in header and f"code == 0x5f ? {NEXT_MINOR}" in header
     assert header.count("  kCheep = ") == len(("Op", "Family"))
     assert "\nop_cheep:\n" in avr_header.header("a test")
+
+
+def test_a_machine_with_its_instruction_compiles_for_a_chip(
+    tables: list[ModuleType], tmp_path: Path
+) -> None:
+    """`image.cpp` asks which version a verdict needs; the GCC of an AVR is the strictest."""
+    need(avr.missing())
+    shutil.copytree(avr.SOURCES / "src" / "vm", tmp_path, dirs_exist_ok=True)
+    (tmp_path / "bytecode.h").write_text(cpp_header.header("a test"), encoding="utf-8")
+    flags = ("-mmcu=atmega328p", *avr.FLAGS, *avr.WARNINGS, "-fsyntax-only")
+    subprocess.run(["avr-g++", *flags, tmp_path / "image.cpp"], check=True)
 
 
 def test_contributing_names_their_files(tables: list[ModuleType]) -> None:

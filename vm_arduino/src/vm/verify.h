@@ -26,7 +26,7 @@ struct Verdict {
   uint16_t offset() const { return offset_or_needs; }
   uint8_t needs() const { return static_cast<uint8_t>(offset_or_needs); }
   uint8_t minor() const {  // of its image: the lowest that has what it has and needs
-    const uint8_t of_ops = kOpsHaveMinors ? static_cast<uint8_t>(offset_or_needs >> 8) : 0;
+    const uint8_t of_ops = static_cast<uint8_t>(kOpsHaveMinors ? offset_or_needs >> 8 : 0);
     return minor_of_needs(needs()) > of_ops ? minor_of_needs(needs()) : of_ops;
   }
 };
