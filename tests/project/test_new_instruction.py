@@ -16,6 +16,7 @@ from types import ModuleType
 import pytest
 
 from tests.machines import avr
+from tests.machines.host import SOURCES, WARNINGS
 from tests.oracle import text as oracle_text
 from tests.oracle import words as oracle
 from tests.oracle.interpreter import run as run_by_reference
@@ -112,9 +113,9 @@ def test_a_machine_with_its_instruction_compiles_for_a_chip(
 ) -> None:
     """`image.cpp` asks which version a verdict needs; the GCC of an AVR is the strictest."""
     need(avr.missing())
-    shutil.copytree(avr.SOURCES / "src" / "vm", tmp_path, dirs_exist_ok=True)
+    shutil.copytree(SOURCES / "src" / "vm", tmp_path, dirs_exist_ok=True)
     (tmp_path / "bytecode.h").write_text(cpp_header.header("a test"), encoding="utf-8")
-    flags = ("-mmcu=atmega328p", *avr.FLAGS, *avr.WARNINGS, "-fsyntax-only")
+    flags = ("-mmcu=atmega328p", *avr.FLAGS, *WARNINGS, "-fsyntax-only")
     subprocess.run(["avr-g++", *flags, tmp_path / "image.cpp"], check=True)
 
 

@@ -11,7 +11,8 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript.base.languages import languages, read_language_file
 from tiniscript.base.source import Edit, Source, apply_edits
-from tiniscript.base.words import VERSION_OF_WORD, WORDS
+from tiniscript.base.spelling import Speller
+from tiniscript.base.words import VERSION_OF_WORD, WORDS, lexicon
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
@@ -299,3 +300,14 @@ def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str
     assert any({name: it.values.get(name) for name in told} == told for it in diagnostics), (
         diagnostics
     )
+
+
+def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:
+    """A pattern of `sounds.txt` reads all words at once, so none may reach into the next line."""
+    all_words = [*WORDS, *lexicon()]
+    sounds_in_list = Speller(all_words)._word_by_sound
+    word_by_sound: dict[tuple[int, str], str] = {}
+    for word in all_words:
+        for sound in Speller([word])._word_by_sound:
+            word_by_sound.setdefault(sound, word)
+    assert sounds_in_list == word_by_sound

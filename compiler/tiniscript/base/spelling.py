@@ -7,7 +7,7 @@ what is wrong needs them.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 
 from tiniscript.base.languages import languages, read_language_file
@@ -73,7 +73,7 @@ def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
     tables = (read_language_file(language, "sounds.txt").split("\n") for language in languages())
     rows_by_language = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
     return tuple(
-        tuple((re.compile(pattern.strip()), sign.strip()) for pattern, _, sign in rows)
+        tuple((re.compile(pattern.strip(), re.M), sign.strip()) for pattern, _, sign in rows)
         for rows in rows_by_language
         if rows
     )
@@ -85,9 +85,11 @@ class Speller:
     def __init__(self, words: Iterable[str]) -> None:
         self._word_by_sound: dict[tuple[int, str], str] = {}
         self._words_by_deletion: dict[str, list[str]] = {}
+        words = [word for word in words if len(word) >= _LEAST_SOUND_LETTERS]
+        for language_number, sounds in enumerate(_sounds_of(words)):
+            for sound, word in zip(sounds, words, strict=True):
+                self._word_by_sound.setdefault((language_number, sound), word)
         for word in words:
-            for sound_key in _sound_keys(word) if len(word) >= _LEAST_SOUND_LETTERS else ():
-                self._word_by_sound.setdefault(sound_key, word)
             if len(word) >= _LEAST_SWAP_LETTERS:
                 for deletion in _deletions(word):
                     self._words_by_deletion.setdefault(deletion, []).append(word)
@@ -96,7 +98,8 @@ class Speller:
         """Return the word that sounds like `word`, or None."""
         if not _LEAST_SOUND_LETTERS <= len(word) <= _MOST_LETTERS:
             return None
-        return next(filter(None, map(self._word_by_sound.get, _sound_keys(word))), None)
+        sound_keys = ((k, sounds[0]) for k, sounds in enumerate(_sounds_of([word])))
+        return next(filter(None, map(self._word_by_sound.get, sound_keys)), None)
 
     def find_near_miss(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
@@ -109,13 +112,13 @@ class Speller:
         return None
 
 
-def _sound_keys(word: str) -> Iterator[tuple[int, str]]:
-    """Give how a word sounds in each language, beside the language's number."""
-    for k, rows in enumerate(_sounds()):
-        sound = word
+def _sounds_of(words: Sequence[str]) -> Iterator[list[str]]:
+    """Yield how words sound in each language. A pattern reads all words at once, a line each."""
+    for rows in _sounds():
+        sounds = "".join(f"{word}\n" for word in words)
         for pattern, sign in rows:
-            sound = pattern.sub(sign, sound)
-        yield k, sound
+            sounds = pattern.sub(sign, sounds)
+        yield sounds.splitlines()
 
 
 def _deletions(word: str) -> Iterator[str]:

@@ -146,7 +146,9 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    words = (word for word in lexicon() if lexicon_meaning(word, *kinds))
+    words = (
+        word for word, entries in lexicon().items() if any(entry.kind in kinds for entry in entries)
+    )
     return f"(?:{'|'.join(map(re.escape, sorted(words, key=len, reverse=True)))})"
 
 
