@@ -16,6 +16,7 @@ from tiniscript.base.words import VERSION_OF_WORD, WORDS, lexicon
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
+from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
 OWN = "37"  # a number that is in no example
 CONDITIONS = (
@@ -311,3 +312,19 @@ def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:
         for sound in Speller([word])._word_by_sound:
             word_by_sound.setdefault(sound, word)
     assert sounds_in_list == word_by_sound
+
+
+@pytest.mark.parametrize("sign", sorted(COMPARISONS - {"="}))
+def test_the_sign_beside_a_light_without_its_side_is_kept(sign: str) -> None:
+    """Of `IF LUZ < 20` no message asks what is brighter than 20."""
+    mirrored_sign = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}.get(sign, sign)
+    for word in words("light"):
+        for condition, kept_sign in (
+            (f"{word} {sign} {OWN}", sign),
+            (f"{OWN} {sign} {word}", mirrored_sign),
+            (f"NOT {word} {sign} {OWN}", OPPOSITES[sign]),
+        ):
+            text = f"SI|\nIF {condition}\nS\nENDIF"
+            shown_text = " ".join(shown(diagnostic, text) for diagnostic in check(text))
+            signs = set(re.findall(rf"LIGHT_[LR] (\S+) {OWN}", shown_text))
+            assert signs == {kept_sign}, (condition, shown_text)

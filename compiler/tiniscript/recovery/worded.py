@@ -20,13 +20,14 @@ from tiniscript.recovery.meanings import (
     make_token,
 )
 from tiniscript.syntax.lexer import NUMBER
-from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
 _EMPTY_WORD = make_token("THE")  # a word that asks nothing: one alone may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
 _SAMPLE_CM = 10  # centimetres, as in every example
 _SAMPLE_NUMBER = 50  # of what a variable holds
+_MIRRORED_SIGNS = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 _ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 
 
@@ -38,6 +39,7 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     and `aside` is what looks ahead alone.
     """
     is_compared = any(token.text == "=" for token in tokens)  # `DISTANCE = NEAR`
+    sign = _written_sign(tokens)
     tokens = [token for token in tokens if token.text != "="]
     texts = [token.text for token in tokens]
     if mixed_values := _mixed_condition(tokens, names):
@@ -67,7 +69,7 @@ def condition_values(tokens: Sequence[Lexeme], names: Names) -> dict[str, str] |
     if is_bare_name or is_button or (numbers and not kinds_mentioned & {"ahead", "light", "none"}):
         return None
     question = [
-        f"{name} {_sign(name, kinds_mentioned)} "
+        f"{name} {_sign(name, sign if number else '', kinds_mentioned)} "
         f"{number or _example(names.number_readings.get(name), name)}"
         for name in _subjects(own_names, texts, kinds_mentioned, names)
     ]
@@ -193,9 +195,22 @@ def _lights(names: Names) -> list[str]:
     )
 
 
-def _sign(name: str, kinds_said: set[str]) -> str:
+def _written_sign(tokens: Sequence[Lexeme]) -> str:
+    """Return the sign that a sensor is compared with, as it is on the left: `>` of `20 < LUZ`."""
+    indexes = [k for k, token in enumerate(tokens) if token.text in COMPARISONS]
+    if len(indexes) != 1:
+        return ""
+    sign = tokens[indexes[0]].text
+    is_mirrored = any(token.kind is NUMBER for token in tokens[: indexes[0]])
+    return _MIRRORED_SIGNS.get(sign, sign) if is_mirrored else sign
+
+
+def _sign(name: str, written_sign: str, kinds_said: set[str]) -> str:
+    is_negated = bool(kinds_said & {"no", "without", "none"})
+    if written_sign:
+        return OPPOSITES[written_sign] if is_negated else written_sign
     is_below = "little" in kinds_said or (name == "DISTANCE" and "much" not in kinds_said)
-    return "<" if is_below != bool(kinds_said & {"no", "without", "none"}) else ">"
+    return "<" if is_below != is_negated else ">"
 
 
 def _example(device: Device | None, name: str) -> int:
