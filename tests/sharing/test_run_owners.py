@@ -8,13 +8,14 @@ from typing import Any, cast
 
 import pytest
 
+from tests.support.images import image_of
 from tests.support.link_events import event
 from tests.support.waiting import until
 from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, TimedEvent
+from tiniscript.link.outcomes import CANCELLED, Event, TimedEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.requests import OK, Reply
@@ -102,6 +103,32 @@ def heard(command: SharedConnection, name: str) -> None:
 def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
     command.begin(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
+
+
+STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
+    lambda requests: requests.start(),
+    lambda requests: requests.start(is_detached=True),
+    lambda requests: requests.live(image_of("S").code),
+    lambda requests: requests.upload(image_of("SI|F(1, 80)")),
+    lambda requests: requests.upload(image_of("SB|F(1, 80)"), runs=False),
+]
+
+
+@pytest.mark.parametrize("asked", range(len(STARTS)))
+def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
+    line: FakeLine, asked: int
+) -> None:
+    """It is over, and what comes after it and starts nothing is asked for."""
+    with (
+        closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
+        closing(cast(SharedConnection, join(PORT, "upload"))) as command,
+    ):
+        request = command.begin(STARTS[asked])
+        assert command.wait(request).status == CANCELLED
+        command.begin(lambda requests: requests.status())
+        until(lambda: bool(line.asked), "the request arrives")
+        assert [cast(ClientRequest[Any], one).message["do"] for one in line.asked] == ["status"]
+        assert not server.may_have_run
 
 
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
