@@ -7,6 +7,7 @@ How much text it takes, in which pieces, and that no part of a program is run al
 
 from __future__ import annotations
 
+import random
 import re
 
 import pytest
@@ -102,6 +103,33 @@ def test_every_sentence_in_its_language(language: str) -> None:
         answers = typed(robot, line + "\n", 1100)
         assert answers[0] == f"// {spanish if language == 'es' else english}", line
         robot.wait(4000)
+
+
+SAID_AGAIN = ("HELP", "FOO(1)", "PING|CHECK_CONNECTION", "F(1,500)", "SI|W(0)", "SI|W(1/0)")
+STOPS = {
+    "zeros": lambda robot: robot.wait(1, bytes(8)),
+    "a typed stop": lambda robot: robot.wait(1, b"\nS\n"),
+    "a frame": lambda robot: robot.wait(1, STOP_MESSAGE),
+    "the button": lambda robot: robot.push(),
+}
+
+
+@pytest.mark.parametrize("stop", STOPS)
+def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str) -> None:
+    """At whatever moment of an answer it comes."""
+    robot, fresh = switched_on(), switched_on()
+    rng = random.Random(stop)
+    for line in SAID_AGAIN:
+        for byte in line.encode():
+            robot.step(bytes((byte,)))
+        robot.step(b"\n", ticks=rng.randrange(1, 6))  # each is a line of an answer
+        said = []
+        for each in (robot, fresh):
+            STOPS[stop](each)
+            each.wait(2500)
+            said.append(typed(each, line + "\n", 1500))
+            each.wait(2500)
+        assert said[0] == said[1] != [], line
 
 
 @pytest.mark.sampled(of="other builds of the firmware")
