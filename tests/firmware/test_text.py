@@ -677,6 +677,28 @@ def test_text_at_once_after_power_on() -> None:
 # -- what must not be run in parts ----------------------------------------------------------------
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> None:
+    """Wherever they were: in a line that opens a block, before it, or after it."""
+    rng = random.Random(seed)
+    robot = switched_on()
+    typed(robot, "SI|W(0)\n", 200)  # from now on a line needs no SETUP word
+    times_lost = 0
+    for _ in range(12):
+        robot.wait(1500)
+        robot.did.clear()
+        rows = ["// before it"] * rng.randrange(6) + ["LOOP(2)"]
+        rows += [f"F(0.01,{rng.randrange(20, 90)})" for _ in range(rng.randrange(1, 6))]
+        text = "\n".join([*rows, "END_LOOP", ""]).encode()
+        at_once = rng.randrange(len(text))
+        said = robot.step(text[:at_once], flags=16)
+        said += "\n".join(typed(robot, text[at_once:], 300)).encode()
+        is_lost = b"// Bytes were lost. Begin again." in said
+        times_lost += is_lost
+        assert not is_lost or not robot.did, text
+    assert 0 < times_lost < 12
+
+
 @pytest.mark.parametrize("between", ["zero", "frame", "button", "two tabs"])
 def test_the_rest_of_a_program_that_was_lost_is_not_run(between: str) -> None:
     """Its lines are whole ones, and mean something else alone."""
