@@ -132,6 +132,22 @@ def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str)
         assert said[0] == said[1] != [], line
 
 
+@pytest.mark.parametrize("ignored", ["LOOP(2)", "SI|IF(TRUE)", "DEF A", "F(1,", "FOO(1)", "HELP"])
+def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored: str) -> None:
+    robot, fresh = switched_on(), switched_on()
+    for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *SAID_AGAIN):
+        said = []
+        for each in (robot, fresh):
+            typed(each, "S\n", 20)
+            if each is robot:
+                typed(each, ignored + "\n", 20)
+            each.wait(2500)
+            each.did.clear()
+            said.append((typed(each, line + "\n", 1200), happened(each)))
+            each.wait(2500)
+        assert said[0] == said[1], line
+
+
 @pytest.mark.sampled(of="other builds of the firmware")
 @pytest.mark.parametrize(
     "language, says",
