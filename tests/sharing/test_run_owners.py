@@ -155,6 +155,15 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
+    with closing(cast(SharedConnection, join(PORT, "upload"))) as other:
+        other.begin(lambda requests: requests.start())
+        until(lambda: len(line.asked) == 3, "its request arrives")
+        line.begin_run()  # of a robot that was reset, and counts its runs anew
+        line.post_event(event("SHOW"))
+        heard(other, "SHOW")
+        line.post_event(event("SHOW"))
+        heard(other, "SHOW")
+        assert line.halted == [7], "the next run is not its"
 
 
 def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
