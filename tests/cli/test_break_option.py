@@ -69,6 +69,11 @@ def test_without_a_terminal_it_tells_each_halt_and_goes_on(
     assert pty_robot.did[-1] == "FINISHED"
 
 
+def test_a_fault_after_a_halt_is_the_exit_code(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "upload", "-e", "SI|X = 0;SHOW(1 / X)", "--break", "1").gives(1)
+    assert "Halted before line 1" in done.out
+
+
 def test_json_has_the_values_in_their_types(pty_robot: PtyRobot, program: Path) -> None:
     done = on(pty_robot, "upload", program, "--no-save", "--json", "--break", "7").gives(0, "")
     rows = [json.loads(line) for line in done.out.splitlines()]

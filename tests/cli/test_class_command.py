@@ -255,12 +255,13 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
 
 
-@pytest.mark.parametrize("code", [0, 2, 3])
+@pytest.mark.parametrize("code", [0, 1, 2, 3])
 @pytest.mark.parametrize("verb", ["list", "show", "show for a second", "upload", "stop"])
 def test_what_became_of_the_robots_is_the_exit_code(
     monkeypatch: pytest.MonkeyPatch, verb: str, code: int
 ) -> None:
-    """Ctrl-C is the usual end of `class show`, and of nothing else."""
+    """Ctrl-C is the usual end of `class show`, and of nothing else. 1 is a program with a mistake,
+    which no robot gets."""
     own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
                           robot=None)  # fmt: skip
     room = cast(Classroom, SimpleNamespace(
@@ -271,8 +272,9 @@ def test_what_became_of_the_robots_is_the_exit_code(
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
     monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
-    monkeypatch.setattr("tiniscript.cli.images.ready_program", lambda *_, **__: "a program")
-    monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code)
+    program = None if code == 1 else "a program"
+    monkeypatch.setattr("tiniscript.cli.images.ready_program", lambda *_, **__: program)
+    monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code if program else 0)
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
     assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)

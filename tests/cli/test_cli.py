@@ -15,6 +15,27 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli import main
 from tiniscript.cli.texts import has_text
 
+WAYS = (
+    "check", "compile", "compile -o a.bin", "compile --text", "compile --text -o a.txt", "fmt",
+    "fmt --check", "show", "show --json", "show --arduino", "show --arduino -o a.ino", "run",
+    "run --machine cpp", "run --record a.tsr", "run --record a.tsr --world line", "upload --port a",
+    "upload --all", "upload --port virtual",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
+    tsc: Tsc, here: Path, way: str
+) -> None:
+    """And nothing of it is written, run or sent."""
+    program = here / "drive.ts"
+    program.write_text("SI|S = 5")
+    verb, *options = way.split()
+    tsc(verb, program, *options).gives(1)
+    assert [path.name for path in here.glob("*.*")] == ["drive.ts"]
+    assert program.read_text() == "SI|S = 5"
+
+
 # -- compile ------------------------------------------------------------------------------------
 
 

@@ -252,10 +252,11 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> No
     """By a process of its own: what makes a wheel knows nothing of this package."""
     clone.has_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
-    person = begin(command)
-    person.sees("[y/N]")
-    person.types("n")
-    assert person.ended() == 2 and "nothing was downloaded" in person.seen
+    for no, said in (("n\n", "nothing was downloaded"), ("\x03", "")):
+        person = begin(command)
+        person.sees("[y/N]")
+        person.type(no)
+        assert person.ended() == 2 and said in person.seen and not clone.page.exists()
     person = begin(command)
     person.sees("[y/N]")
     person.types("y")

@@ -227,6 +227,15 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     )
 
 
+@pytest.mark.parametrize("start", ["SI", "SB"])
+@pytest.mark.parametrize(("text", "code"), [("SHOW(1)", 0), ("X = 0;SHOW(1 / X)", 1)])
+def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
+    start: str, text: str, code: int
+) -> None:
+    done = inside("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(code)
+    assert "Saved." in done.out
+
+
 def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
     done = inside("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
     assert done.code == 1

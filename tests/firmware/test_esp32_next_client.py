@@ -10,6 +10,7 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
+    LEAST_MTU,
     Bytes,
     End,
     LowEnergy,
@@ -191,6 +192,18 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
         assert [answer and answer.seq for answer in answers] == [ASKED_PING], moment_ms
         rests += len(first.heard) < len(other.heard)
     assert rests or most == 1000
+
+
+def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
+    """Whatever the one before has: who agrees to nothing gets 20 bytes."""
+    robot, keys = owned(Keys())
+    for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
+        end, who = LowEnergy(robot, mtu), session(mtu, robot)
+        assert ended(robot, [(end, who)], who.status()) == "OK"
+        assert ended(robot, [(end, who)], who.hello()) == "OK"
+        assert 0 < max(end.lengths) <= mtu - 3
+        end.leave()
+        talk(robot, [], 5)
 
 
 # -- who is silent ------------------------------------------------------------------------------

@@ -6,6 +6,8 @@ there is a stop all the same.
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 from tests.machines.esp32 import Esp32Robot
@@ -254,3 +256,32 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
             assert stopped[1] or not stopped[0], f"{name} {spelling!r}"
             count += stopped[0]
     assert count > len(ALL)
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) -> None:
+    """However much waits before it, of whichever of two clients it is, and whenever they go."""
+    robot = booted()
+    rng = random.Random(make.__name__)
+    for number in range(30):
+        waiting = LINES[: 8 * rng.randrange(1, 120)]
+        left_ms = rng.randrange(4)
+        first, second = rng.choice(
+            ((b"S\n", b""), (b"", b"S\n"), (b"S\n", b"S\n"), (bytes(4), b"S\n"))
+        )
+        (end := make(robot)).send(waiting + first)
+        talk(robot, [(end, Bytes())], left_ms)
+        end.leave()
+        (end := make(robot)).send(second)
+        talk(robot, [(end, Bytes())], left_ms)
+        end.leave()
+        talk(robot, [], 300)  # until all of that is read
+        who = session(100 + number, robot)
+        end = make(robot)
+        assert uploaded(robot, [(end, who)], who) == "OK"
+        talk(robot, [(end, who)], 20)
+        said = (len(waiting), first, second, left_ms)
+        assert moves(robot)[-1] == "MOTORS 80 80", said
+        end.leave()
+        talk(robot, [], 20)
+        assert moves(robot)[-1] == "MOTORS 0 0", said

@@ -25,7 +25,9 @@ from tiniscript.link.authority import FREE, OWNED_BY_OTHER, OWNED_BY_YOU, RobotK
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
+    AUTHORITY_MS,
     BY_NAME,
+    KEY_BYTES,
     KEY_OWNER,
     KEY_TEACHER,
     OWNERS,
@@ -263,6 +265,33 @@ def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> 
         session = table.session(keys, nonce=8)
     before = table.robot.memory()
     request = session.claim(second)
+    table.pass_time(session, 3000)
+    assert request.outcome is None and table.robot.memory() == before
+    table.hold(session, 2200)
+    assert table.outcome(session, request) == "OK"
+
+
+@pytest.mark.parametrize("silent_ms", [0, AUTHORITY_MS + 100])
+@pytest.mark.parametrize("has_pressed", [False, True])
+@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+def test_a_press_for_who_has_gone_confirms_nobody_else(
+    which: int, has_pressed: bool, silent_ms: int
+) -> None:
+    """Nor does what he has asked for make the next press one of somebody else."""
+    table, keys = Owned(), Keys()
+    first = table.session()
+    assert table.outcome(first, first.hello()) == "OK"
+    answer = table.asked(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
+    assert answer[0] == STATUSES["HOLD_BUTTON"]
+    if has_pressed:
+        table.hold(first, 2200)
+    table.robot.wait(max(1, silent_ms))
+    before = table.robot.memory()
+    session = table.session(keys, nonce=8)
+    assert table.outcome(session, session.hello()) == "OK"
+    if not has_pressed:
+        table.hold(session, 2200)  # for nothing
+    request = session.claim(which)
     table.pass_time(session, 3000)
     assert request.outcome is None and table.robot.memory() == before
     table.hold(session, 2200)

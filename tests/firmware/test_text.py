@@ -7,6 +7,7 @@ How much text it takes, in which pieces, and that no part of a program is run al
 
 from __future__ import annotations
 
+import random
 import re
 
 import pytest
@@ -102,6 +103,49 @@ def test_every_sentence_in_its_language(language: str) -> None:
         answers = typed(robot, line + "\n", 1100)
         assert answers[0] == f"// {spanish if language == 'es' else english}", line
         robot.wait(4000)
+
+
+SAID_AGAIN = ("HELP", "FOO(1)", "PING|CHECK_CONNECTION", "F(1,500)", "SI|W(0)", "SI|W(1/0)")
+STOPS = {
+    "zeros": lambda robot: robot.wait(1, bytes(8)),
+    "a typed stop": lambda robot: robot.wait(1, b"\nS\n"),
+    "a frame": lambda robot: robot.wait(1, STOP_MESSAGE),
+    "the button": lambda robot: robot.push(),
+}
+
+
+@pytest.mark.parametrize("stop", STOPS)
+def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str) -> None:
+    """At whatever moment of an answer it comes."""
+    robot, fresh = switched_on(), switched_on()
+    rng = random.Random(stop)
+    for line in SAID_AGAIN:
+        for byte in line.encode():
+            robot.step(bytes((byte,)))
+        robot.step(b"\n", ticks=rng.randrange(1, 6))  # each is a line of an answer
+        said = []
+        for each in (robot, fresh):
+            STOPS[stop](each)
+            each.wait(2500)
+            said.append(typed(each, line + "\n", 1500))
+            each.wait(2500)
+        assert said[0] == said[1] != [], line
+
+
+@pytest.mark.parametrize("ignored", ["LOOP(2)", "SI|IF(TRUE)", "DEF A", "F(1,", "FOO(1)", "HELP"])
+def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored: str) -> None:
+    robot, fresh = switched_on(), switched_on()
+    for line in ("F(0.1,50)", "END_LOOP", "SI|F(0.1,50)", "F(0.1,50)", *SAID_AGAIN):
+        said = []
+        for each in (robot, fresh):
+            typed(each, "S\n", 20)
+            if each is robot:
+                typed(each, ignored + "\n", 20)
+            each.wait(2500)
+            each.did.clear()
+            said.append((typed(each, line + "\n", 1200), happened(each)))
+            each.wait(2500)
+        assert said[0] == said[1], line
 
 
 @pytest.mark.sampled(of="other builds of the firmware")
@@ -647,6 +691,28 @@ def test_text_at_once_after_power_on() -> None:
 
 
 # -- what must not be run in parts ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> None:
+    """Wherever they were: in a line that opens a block, before it, or after it."""
+    rng = random.Random(seed)
+    robot = switched_on()
+    typed(robot, "SI|W(0)\n", 200)  # from now on a line needs no SETUP word
+    times_lost = 0
+    for _ in range(12):
+        robot.wait(1500)
+        robot.did.clear()
+        rows = ["// before it"] * rng.randrange(6) + ["LOOP(2)"]
+        rows += [f"F(0.01,{rng.randrange(20, 90)})" for _ in range(rng.randrange(1, 6))]
+        text = "\n".join([*rows, "END_LOOP", ""]).encode()
+        at_once = rng.randrange(len(text))
+        said = robot.step(text[:at_once], flags=16)
+        said += "\n".join(typed(robot, text[at_once:], 300)).encode()
+        is_lost = b"// Bytes were lost. Begin again." in said
+        times_lost += is_lost
+        assert not is_lost or not robot.did, text
+    assert 0 < times_lost < 12
 
 
 @pytest.mark.parametrize("between", ["zero", "frame", "button", "two tabs"])

@@ -152,5 +152,55 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
         assert until(session, robot, line, ASKED["a long program"](session), 20_000) == OK, seed
 
 
+def lost_after_ms(session: Session, robot: HostFirmware) -> int:
+    """Return how long a line is dead until the session tells that."""
+    began_ms = robot.now_ms
+    while "LOST" not in [event.name for event in session.events()]:
+        session.poll(robot.now_ms)
+        robot.wait(10)
+        assert robot.now_ms - began_ms < 3 * DEAF_MS, "it is never told"
+    return robot.now_ms - began_ms
+
+
+HEARD: dict[str, Callable[[Session, HostFirmware], object]] = {
+    "a stop": lambda session, robot: session.stop(robot.now_ms),
+    "an answer": lambda session, robot: session.status(),
+    "keys": lambda session, robot: session.press(1),
+}
+
+
+@pytest.mark.parametrize("heard", HEARD)
+def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
+    """However near to its end it was, while something runs and while nothing does."""
+    robot, session = switched_on(), computer()
+    for dead_ms in range(0, DEAF_MS, 215):
+        assert robot.until(session, session.hello()) == OK
+        if dead_ms % 2:
+            upload = session.upload(image_of("SI|W(99)"), saves=False, is_detached=True)
+            assert robot.until(session, upload) == OK
+        session.events()
+        for _ in range(dead_ms // 10):
+            session.poll(robot.now_ms)
+            robot.wait(10)
+        HEARD[heard](session, robot)
+        robot.talk(session, 500)
+        assert "LOST" not in [event.name for event in session.events()]
+        assert lost_after_ms(session, robot) >= DEAF_MS, dead_ms
+        robot.wait(DEAF_MS)
+
+
+@pytest.mark.parametrize("late_ms", range(0, 700, 100))
+def test_answers_to_keys_that_come_late_keep_the_line(late_ms: int) -> None:
+    """Later than the next word is said."""
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.hello()) == OK
+    under_way = deque[bytes](b"" for _ in range(late_ms // 10))
+    for _ in range(3 * DEAF_MS // 10):
+        session.press(1)
+        under_way.append(robot.wait(10, session.poll(robot.now_ms)))
+        session.receive(under_way.popleft(), robot.now_ms)
+    assert session.events() == []
+
+
 if __name__ == "__main__":
     each_seed(check, wanted(1000, 10_000))

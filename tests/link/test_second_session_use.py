@@ -1,8 +1,9 @@
 """What a session does after anything is what a fresh one does with the same robot.
 
 Random requests, losses of the line, stops, a reset and a silence come first, the same for two
-robots. Then the one robot is asked by the session that has seen all that, the other one by a fresh
-session: both are answered and told the same, and about as soon.
+robots. The end of a run is told once meanwhile. Then the one robot is asked by the session that has
+seen all that, the other one by a fresh session: both are answered and told the same, and about as
+soon.
 
 `python -m tests.link.test_second_session_use 2000` tries more.
 """
@@ -24,7 +25,15 @@ from tests.support.images import TINIBOT, image_of
 from tests.support.queued_requests import ACTING, LONG, NOTHING, OTHERS, STOPS, Losses, Wire
 from tests.support.robot_on_host import computer
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.outcomes import MissedEvent
+from tiniscript.link.outcomes import (
+    Event,
+    LostEvent,
+    MissedEvent,
+    PlaceEvent,
+    RestartedEvent,
+    StartedEvent,
+)
+from tiniscript.link.payloads import StoppedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -41,6 +50,7 @@ class Said(NamedTuple):
 def first(rng: random.Random) -> Wire:
     """Return both ends when the first story is over."""
     wire = Wire(rng)
+    wire.session.tells_starts = True
     if rng.random() < 0.7:  # it is open, and heartbeats go on
         wire.session.hello()
         wire.turns(300)
@@ -119,6 +129,18 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
                 took_ms)  # fmt: skip
 
 
+def ends_are_told_once(events: list[Event]) -> bool:
+    """Whether nothing that is inferred of a run's end follows what has told that end."""
+    is_told = False
+    for event in events:
+        if isinstance(event, StartedEvent):
+            is_told = False
+        elif is_told and (isinstance(event, RestartedEvent) or event == StoppedEvent(0)):
+            return False
+        is_told = is_told or isinstance(event, (LostEvent, RestartedEvent, StoppedEvent))
+    return True
+
+
 def check(seed: int) -> str:
     used, other = first(random.Random(seed)), first(random.Random(seed))
     for wire in (used, other):
@@ -126,8 +148,10 @@ def check(seed: int) -> str:
         if not wire.robot.is_latched:  # what runs detached goes on
             wire.session.stop(wire.robot.now_ms)
             wire.robot.talk(wire.session, 300)
-    used.session.events()
+    told = used.session.events()
+    assert ends_are_told_once(told), f"seed {seed} {told}"
     session = computer(77)
+    session.tells_starts = True
     assert other.robot.until(session, session.hello()) == OK
     did = second(random.Random(seed), used.session, used.robot)
     want = second(random.Random(seed), session, other.robot)
@@ -169,6 +193,51 @@ def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(how: str) 
     STOPS[how](wire.robot, wire.session)  # nobody hears of it
     wire.robot.until(wire.session, wire.session.fetch())
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
+
+
+@pytest.mark.parametrize("fate", ["nothing", "a reset", *STOPS])
+def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
+    rng = random.Random(fate)
+    wire = met(rng)
+    wire.session.tells_starts = wire.session.tells_places = True
+    assert wire.robot.until(wire.session, wire.session.live(image_of("F(60, 50)").code)) == OK
+    wire.robot.talk(wire.session, 500)
+    assert is_lost(wire)
+    if fate in STOPS:
+        STOPS[fate](wire.robot, wire.session)
+    elif fate == "a reset":
+        restart(rng, wire)
+    wire.robot.wait(1000)
+    assert wire.robot.until(wire.session, wire.session.hello()) == OK
+    wire.robot.talk(wire.session, QUIET_MS)
+    assert wire.session.events() == []
+
+
+def test_who_is_found_again_tells_where_its_program_is() -> None:
+    """Though that is where it was before."""
+    wire = met(random.Random(1))
+    wire.session.tells_places = True
+    program = image_of("SI|W(100)")
+    upload = wire.session.upload(program, saves=False, is_detached=True)
+    assert wire.robot.until(wire.session, upload) == OK
+    places = []
+    for _ in range(2):
+        wire.robot.talk(wire.session, 1500)
+        places.append([event for event in wire.session.events() if isinstance(event, PlaceEvent)])
+        assert is_lost(wire)
+        assert wire.robot.until(wire.session, wire.session.hello()) == OK
+    assert places[0] == places[1] != []
+
+
+def is_lost(wire: Wire) -> bool:
+    """Let nobody hear the other until the session has told that."""
+    wire.session.events()
+    told: list[Event] = []
+    for _ in range(800):
+        wire.session.poll(wire.robot.now_ms)
+        wire.robot.wait(10)
+        told += wire.session.events()
+    return [event.name for event in told] == ["LOST"]
 
 
 @pytest.mark.sampled("part")

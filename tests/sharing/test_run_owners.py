@@ -8,13 +8,14 @@ from typing import Any, cast
 
 import pytest
 
+from tests.support.images import image_of
 from tests.support.link_events import event
 from tests.support.waiting import until
 from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, TimedEvent
+from tiniscript.link.outcomes import CANCELLED, Event, TimedEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.requests import OK, Reply
@@ -104,6 +105,32 @@ def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -
     until(lambda: bool(line.asked), "the request arrives")
 
 
+STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
+    lambda requests: requests.start(),
+    lambda requests: requests.start(is_detached=True),
+    lambda requests: requests.live(image_of("S").code),
+    lambda requests: requests.upload(image_of("SI|F(1, 80)")),
+    lambda requests: requests.upload(image_of("SB|F(1, 80)"), runs=False),
+]
+
+
+@pytest.mark.parametrize("asked", range(len(STARTS)))
+def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
+    line: FakeLine, asked: int
+) -> None:
+    """It is over, and what comes after it and starts nothing is asked for."""
+    with (
+        closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
+        closing(cast(SharedConnection, join(PORT, "upload"))) as command,
+    ):
+        request = command.begin(STARTS[asked])
+        assert command.wait(request).status == CANCELLED
+        command.begin(lambda requests: requests.status())
+        until(lambda: bool(line.asked), "the request arrives")
+        assert [cast(ClientRequest[Any], one).message["do"] for one in line.asked] == ["status"]
+        assert not server.may_have_run
+
+
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     line.address = "socket://127.0.0.1:7007"
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
@@ -128,6 +155,15 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
+    with closing(cast(SharedConnection, join(PORT, "upload"))) as other:
+        other.begin(lambda requests: requests.start())
+        until(lambda: len(line.asked) == 3, "its request arrives")
+        line.begin_run()  # of a robot that was reset, and counts its runs anew
+        line.post_event(event("SHOW"))
+        heard(other, "SHOW")
+        line.post_event(event("SHOW"))
+        heard(other, "SHOW")
+        assert line.halted == [7], "the next run is not its"
 
 
 def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(

@@ -631,21 +631,22 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
 
 @pytest.mark.parametrize("seed", range(100))
 def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> None:
-    """Wherever in connects and runs of the others it arrives: no robot that was there drives on."""
+    """Wherever in connects and runs of the others it arrives, and however often a page was opened
+    anew, which counts from 1 again: no robot that was there drives on."""
     chance = Random(seed)
     members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
     school.here(members[0].token, True)
     for member in members:
         school.here(member.token)
     school.connects(members[0].token)
-    stops = 0
-    for _ in range(12):
+    presses = dict.fromkeys(members, 0)
+    for _ in range(20):
         member = chance.choice(members)
         turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
         before = robot.stopped
-        deed = chance.choice(("stop", "connect", "beat"))
+        deed = chance.choice(("stop", "stop", "connect", "beat", "reload"))
         if deed == "connect":
             if turn.pupil.token != member.token:
                 request = {"do": "connect", "page": "x", "port": "y"}
@@ -660,9 +661,12 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                 assert robot.left == "group_other"  # that stops what it does
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
+        elif deed == "reload":
+            member.joins("Red", before=member.page.name)
+            presses[member] = 0
         else:
-            stops += 1
-            member.asks("stop", group_stops=stops, stops=stops)
+            presses[member] += 1
+            member.asks("stop", group_stops=presses[member], stops=presses[member])
             is_own = turn.pupil.token == member.token
             asked = school.hosting.asked[-1]
             assert (asked["do"], asked["page"]) == ("stop", page_of(school, member))

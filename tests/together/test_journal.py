@@ -5,9 +5,11 @@ from __future__ import annotations
 import errno
 import json
 import os
+from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -93,6 +95,42 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
     there = Journal(path).resume("e2")
     assert there is not None
     assert (there.number, text_of(there.tree)) == (2, text_of(program.tree))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    path, chance, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
+    journal, program = begun(path)
+    monkeypatch.setattr(journals, "MOST_BYTES", 2000)
+
+    def look() -> None:
+        again = Journal(path)
+        there = again.resume("e2")
+        again.close()
+        assert there is not None and there.number >= kept_number
+
+    def on_disk(call: Callable[..., Any]) -> Callable[..., Any]:
+        def made(*arguments: Any, **more: Any) -> Any:
+            look()
+            if is_full:
+                raise OSError(errno.ENOSPC, "full")
+            return call(*arguments, **more)
+
+        return made
+
+    monkeypatch.setattr(os, "write", on_disk(os.write))
+    monkeypatch.setattr(journals, "replace", on_disk(journals.replace))
+    for value in range(1, 40):
+        is_full = chance.random() < (0.8 if is_full else 0.2)
+        assert changed(program, value)
+        kept_number = kept_number if journal.is_incomplete else program.number
+        look()
+    is_full = False
+    assert changed(program, 99) and not journal.is_incomplete
+    there = Journal(path).resume("e3")
+    assert there is not None and same(there, program)
 
 
 def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(

@@ -206,6 +206,7 @@ class Groups:
                 for page in list(group.owner_of_page)[:-MOST_PAGES]:
                     del group.owner_of_page[page]
             member.page, member.heard_s, member.name = old_page, now_s, name
+            member.stop_count = 0  # a page that was opened anew counts from 1
             group.name_of_page[old_page] = name
             _notify(group)
             return {"group": group.name, "page": member.page,

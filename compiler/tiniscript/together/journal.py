@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from tiniscript.base.files import read_limited, replace
@@ -34,30 +35,34 @@ class Journal:
     def begin(self, tree: Tree, epoch: str) -> SharedProgram:
         """Return the program that begins with a tree, and is kept from now on."""
         program = SharedProgram(tree, epoch)
-        program.keep = lambda row: self._add(program, row)
+        program.keep = partial(self._add, program)
         self._begin(program)
         return program
 
     def resume(self, epoch: str) -> SharedProgram | None:
-        """Return the program that the file has, and go on with it; None where it has none."""
-        if self.path is None:
-            return None
-        try:
-            data = read_limited(self.path, 2 * MOST_BYTES)
-            complete_rows = data[: data.rfind(b"\n") + 1]
-            rows = [json.loads(row) for row in complete_rows.splitlines()]
-            program = program_of(rows[0])
-        except (OSError, ValueError, IndexError, RecursionError, Refused, AttributeError):
-            return None
-        program.replay([row for row in rows[1:] if isinstance(row, dict)])
-        program.epoch = epoch
-        program.keep = lambda row: self._add(program, row)
-        self._open()
-        if self._file is not None and len(complete_rows) < len(data):
-            with suppress(OSError):
-                os.truncate(self.path, len(complete_rows))
-                self._size = len(complete_rows)
-        return program
+        """Return the program that the file has, and go on with it; None where it has none. Where a
+        crash or a full disk has kept the file from beginning anew, the one before has it."""
+        for path in (self.path, self._old_path) if self.path is not None else ():
+            try:
+                data = read_limited(path, 2 * MOST_BYTES)
+                complete_rows = data[: data.rfind(b"\n") + 1]
+                rows = [json.loads(row) for row in complete_rows.splitlines()]
+                program = program_of(rows[0])
+            except (OSError, ValueError, IndexError, RecursionError, Refused, AttributeError):
+                continue
+            program.replay([row for row in rows[1:] if isinstance(row, dict)])
+            program.epoch = epoch
+            program.keep = partial(self._add, program)
+            if path == self.path:
+                self._open()
+                if self._file is not None and len(complete_rows) < len(data):
+                    with suppress(OSError):
+                        os.truncate(path, len(complete_rows))
+                        self._size = len(complete_rows)
+            else:
+                self.is_incomplete = True
+            return program
+        return None
 
     def close(self) -> None:
         if self._file is not None:

@@ -12,6 +12,12 @@
 
 namespace tiniscript {
 
+namespace {
+
+bool is_awaited[kTransports];  // a stop whose bytes are still to come has a mark in the receiver
+
+}  // namespace
+
 void begin_link(uint8_t epoch) { link.begin(epoch); }
 
 void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t time_ms) {
@@ -26,7 +32,6 @@ bool firmware_has_room(Transport transport) { return link.receiver(transport).ha
 
 // It counts as a mark until its bytes are there.
 void firmware_await_stop(Transport transport, bool is_there) {
-  static bool is_awaited[kTransports];
   bool* const its = &is_awaited[static_cast<uint8_t>(transport)];
   Receiver& receiver = link.receiver(transport);
   if (is_there) port_end();
@@ -42,6 +47,7 @@ bool port_may_press() { return link.may_press(); }
 bool firmware_has_key(Transport transport) { return link.has_key(transport); }
 
 void firmware_on_part(Transport transport) {
+  is_awaited[static_cast<uint8_t>(transport)] = false;  // the mark goes with what has waited
   if (!link.part(transport) || !is_running()) return;
   end_run(State::kStopped);
   link.stopped(Cause::kCable);
