@@ -863,8 +863,7 @@ const PARTS = {
     let failure = '';
     let ways = [];
     const page = freshPage({
-      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      fetchPorts: async () => [],
+      ...REAL_SIDE,
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -1052,8 +1051,7 @@ const PARTS = {
     let started = 0;
     let robot = null;
     const page = freshPage({
-      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      fetchPorts: async () => [],
+      ...REAL_SIDE,
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -1138,6 +1136,263 @@ const PARTS = {
       stop(chance);
       await passes(1500);
       return { ends: [end], seen: [] };
+    };
+  },
+
+  // One robot after another, with all that each can tell and be asked: what is seen of the next one is what is seen of a
+  // first one. What starts halts where it is to, values are those of the newest halt, the sensors come back after a program
+  // and not after a STOP, and that it waits is said only while it does.
+  async robots() {
+    let robot = null;
+    let info = {};
+    let late = () => 5;
+    let plotted = [];
+    let wrong = '';
+    const own = { program: 'ff', is_program: true };
+    const page = freshPage({
+      ...REAL_SIDE,
+      Plot: class {
+        begin() { plotted = []; }
+        add(at_ms, values) { plotted.push([Math.round(at_ms), ...values.map(({ value }) => value)]); }
+        draw() {}
+      },
+      HostRobot: class {
+        constructor(heard) {
+          this.heard = heard;
+          this.ended = new Promise((_, reject) => { this.rejects = reject; });
+          this.ended.catch(() => {});
+          this.way = this.ended; // one thing after the other
+          this.open = new Set(); // when each that has no answer was asked
+          this.halts = this.stops = 0;
+          robot = this;
+        }
+        async connect() {
+          await Promise.race([later(late()), this.ended]);
+          this.isMet = true;
+          this.isBusy = info.is_running; // as far as the page has heard
+          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, has_remote: true, ...info };
+        }
+        async ask(request) {
+          if (this.isBusy && /FOREVER/.test(request.image)) wrong = 'sensors are watched in the place of a program';
+          this.isBusy ||= request.do === 'upload' || request.do === 'start';
+          const asked = { at_ms: now(), request };
+          const { wanted, stops } = this;
+          this.open.add(asked);
+          const before = this.way;
+          this.way = (async () => {
+            await Promise.race([before === this.ended ? null : before, this.ended]);
+            await Promise.race([later(late()), this.ended]);
+            const answer = stops === this.stops ? this.does(request, wanted) : { failure: 'stopped_elsewhere' };
+            await Promise.race([later(late()), this.ended]);
+            return answer;
+          })();
+          this.way.catch(() => {});
+          try {
+            return await this.way;
+          } finally {
+            this.open.delete(asked);
+          }
+        }
+        does({ do: what, image, places, runs }, wanted) {
+          if (what === 'upload' || what === 'live') this.points = '';
+          if (what === 'upload') this.isOurs = true;
+          if (['upload', 'live', 'start', 'resume'].includes(what)) this.isHalted = false;
+          if (['upload', 'live', 'start'].includes(what)) this.watches = /FOREVER/.test(image);
+          if (what === 'break') this.points = places.filter((offset) => offset).join();
+          if ((what === 'start' || runs) && this.isOurs && info.has_breakpoints && this.points !== wanted) wrong = `it is to halt at '${wanted}', and halts at '${this.points}'`;
+          if (what === 'start' || runs) this.tell(this.isOurs ? { event: 'STARTED', ...own } : { event: 'STARTED', program: 'dd', is_program: false });
+          if (what === 'live') {
+            this.line = image;
+            this.tell({ event: 'STARTED', program: image, is_program: false });
+          }
+          if (what === 'variables') return { ok: true, variables: [this.halts] };
+          if (what === 'tasks') return { ok: true, tasks: [['ENDED', 0], ['WAITING', 3]] };
+          return { ok: true, program: 'ff', saved: 'MEMORY' };
+        }
+        stop() {
+          this.stops += 1;
+          this.watches = this.isBusy = false;
+        }
+        tell(event) {
+          const isOther = !['SHOW', 'READING'].includes(event.event) && event.program !== this.line; // than a line that is on its way
+          if (!this.isMet || this.isOver || (isOther && [...this.open].some(({ request }) => request.do === 'live'))) return;
+          if (event.event === 'HALTED') {
+            if (this.isHalted) return;
+            this.isHalted = true;
+            this.halts += 1;
+          } else if (event.event === 'PLACE') this.watches = false; // it was begun by its button
+          else if (!['SHOW', 'READING'].includes(event.event)) {
+            this.isHalted = false;
+            this.watches &&= event.program === this.line;
+            this.isBusy = event.event === 'STARTED' && event.program !== this.line;
+          }
+          this.heard.onEvent(event);
+        }
+        end(why) {
+          if (this.isOver) return;
+          this.isOver = true;
+          this.rejects(new ConnectionFailure(why));
+          this.heard.onEnd(new ConnectionFailure(why));
+        }
+        leave() { this.end('left'); }
+      },
+    });
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { ConnectionFailure } = await page.load('robot/transport.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
+    const { RunningPlace } = await page.load('robot/place.js');
+    const { Recorder } = await page.load('robot/recorder.js');
+    const { Runs } = await page.load('virtual/runs.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    let said = '';
+    Object.defineProperty(page.byId('link_said'), 'textContent', { get: () => said, set(sentence) {
+      said = sentence;
+      if (sentence === text('say_waits') && ![...robot?.open ?? []].some(({ at_ms }) => now() - at_ms >= 2000)) throw new Error('it says that it waits, and does not');
+    } });
+    pageState.robotName.set('tinibot');
+    pageState.sideId.set('side_real');
+    pageState.programText.set('X = DISTANCE;\nSHOW(X)');
+    const program = { ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1, 1, 1, 13], [3, 2, 1, 2, 8]], halts: [0, 3], findings: [], start: 'SI' };
+    pageState.checkResult.set(program);
+    const checks = async (_, bytes) => {
+      const image = new TextDecoder().decode(bytes);
+      await later(late());
+      const shows = [...image.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
+      return { image, program: image, places: shows.map(([offset]) => [offset]), shows, findings: [], variables: [], remote: [] };
+    };
+    const runs = new Runs();
+    const panel = new RobotPanel({ python: { tryAgain() {}, ask: checks }, goTo() {}, recorder: new Recorder({ runs, play() {} }), place: new RunningPlace(), pad: noting([], 'pad') });
+    await passes(10);
+    page.byId('senses').hidden = page.byId('link_doing').hidden = true; // as in index.html
+    const presses = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
+    const acts = {
+      starts: () => { robot.isOwn ||= robot.isOurs; robot.tell({ event: 'STARTED', ...own }); },
+      others: () => robot.tell({ event: 'STARTED', program: 'dd', is_program: false }),
+      place: (chance) => robot.tell({ event: 'PLACE', at: chance.of([0, 3]), program: 'ff' }),
+      halts: (chance) => robot.tell({ event: 'HALTED', at: chance.of([0, 3, 1]), task: 0, ...own }),
+      shows: (chance) => robot.tell({ event: 'SHOW', at: chance.below(3), value: String(chance.below(9)), program: chance() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
+      reads: (chance) => robot.tell({ event: 'READING', rows: [[chance.below(99), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
+      ends: (chance) => robot.tell({ event: chance.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: chance.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
+      upload: () => presses('link_upload'),
+      start: () => presses('link_start'),
+      step: () => presses('link_step'),
+      goesOn: () => presses('link_go_on'),
+      identify: () => presses('link_identify'),
+      watch: () => robot.open.size || presses('link_watch'),
+      stop: () => page.byId('stop').click(),
+      points(chance) {
+        const breakpoints = chance() < 0.4 ? [] : [{ line: 2, column: 1, point: {} }];
+        robot.wanted = breakpoints.length ? '3' : '';
+        pageState.breakpoints.set(breakpoints);
+      },
+      async line() {
+        if (robot.open.size) return;
+        page.byId('link_line').value = 'F(1, 80)';
+        page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
+        await passes(late());
+      },
+      async twice(chance) {
+        if (robot.open.size) return;
+        presses('link_watch');
+        await passes(chance.below(20));
+        presses('link_watch');
+      },
+      again(chance) { // it halts, ends and halts, and nobody had time to look
+        acts.halts(chance);
+        robot.tell({ event: 'DONE' });
+        acts.starts();
+        acts.halts(chance);
+      },
+      senses() {
+        robot.tell({ event: 'SHOW', at: 0, value: '9', program: robot.line });
+        acts.starts();
+        robot.tell({ event: 'READING', rows: [[5, 'READ DISTANCE 5']] });
+      },
+      waits: () => passes(2500),
+    };
+    const isWatched = () => page.byId('link_watch').attributes['aria-pressed'] === 'true';
+    const gauges = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
+    const values = () => page.byId('link_values').hidden || page.byId('link_values').children.map((row) => row.children[1].textContent);
+    const seen = () => [
+      said, page.byId('link_doing').hidden || page.byId('link_doing').textContent, document.documentElement.dataset['halt'], structuredClone(pageState.robotRun.value),
+      values(), ['link_step', 'link_go_on', 'link_breakpoints'].map((id) => [page.byId(id).hidden, page.byId(id).disabled]),
+      gauges(), isWatched(), [...plotted], robot?.isOwn && [page.byId('record_lacks').hidden || page.byId('record_lacks').textContent, runs.newestFirst[0]?.rows],
+    ];
+    /** The sensors are watched, and a program comes first, whatever was before. */
+    const watchesAgain = async (byHand) => {
+      const is = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
+      robot.tell({ event: 'DONE' });
+      await passes(100);
+      if (!isWatched()) acts.watch();
+      await passes(1500);
+      is(true, 'where somebody wants it');
+      acts.identify();
+      await passes(1500);
+      is(true, 'after something else was asked');
+      acts.upload();
+      acts.starts();
+      is(false, 'beside a program');
+      await passes(1500);
+      is(false, 'beside a program');
+      robot.tell({ event: 'DONE' });
+      await passes(1500);
+      is(true, 'after a program');
+      robot.tell({ event: 'SHOW', at: 0, value: '4', program: robot.line });
+      await passes(50);
+      if (gauges()[0][0] !== '4') throw new Error(`the gauges say ${gauges()} and not what is watched`);
+      if (byHand) acts.stop();
+      robot.tell({ event: 'STOPPED', cause: byHand ? 'SEQUENCE' : 'BUTTON' });
+      await passes(3000);
+      is(false, 'after a STOP');
+      acts.upload();
+      acts.starts();
+      await passes(100);
+      robot.tell({ event: 'DONE' });
+      await passes(3000);
+      is(false, 'since a STOP');
+    };
+    return async (chance, isGood) => {
+      const slow = () => (chance() < 0.1 ? 2500 : chance.below(300));
+      late = isGood ? () => 5 : slow;
+      robot = null;
+      window.localStorage.removeItem('tiniscript.watches');
+      if (chance() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
+      pageState.breakpoints.set([]);
+      info = { has_breakpoints: chance() < 0.8, has_readings: chance() < 0.5, ...chance.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
+      panel.connectByHost('p');
+      const all = [seen()];
+      await settles();
+      robot.points = robot.wanted = '';
+      let end = '';
+      await passes(isGood ? 50 : chance.below(400));
+      if (chance() < 0.6) acts.upload();
+      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
+        end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        await acts[end](chance);
+        all.push([seen(), page.byId('link_shown').textContent]);
+        await passes(chance.below(chance.of([50, 400])));
+        const { halt } = document.documentElement.dataset;
+        if (wrong) throw new Error(wrong);
+        if (halt === 'read' && values()[0] !== String(robot.halts)) throw new Error(`its values are ${values()} at halt ${robot.halts}`);
+        if (pageState.robotRun.value.isHeld && halt !== 'read' && halt !== 'halted') throw new Error('it is seen as halted, and goes on');
+      }
+      await passes(8000);
+      if (wrong) throw new Error(wrong);
+      if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
+      all.push(seen());
+      if (isGood) await watchesAgain(chance() < 0.5);
+      else { // it is gone before the answer
+        robot.tell({ event: 'DONE' });
+        if (!isWatched() && chance() < 0.7) acts.watch();
+        await passes(6000);
+        await acts[chance.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](chance);
+      }
+      robot.end(chance.of(['left', 'unheard']));
+      await passes(isGood ? 50 : chance.below(200));
+      return { ends: [end], seen: all };
     };
   },
 
@@ -1848,6 +2103,12 @@ const PARTS = {
       return { ends: [end], seen: [] };
     };
   },
+};
+
+/** What the side with a real robot imports, where a part plays the robot. */
+const REAL_SIDE = {
+  replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+  fetchPorts: async () => [],
 };
 
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });

@@ -39,6 +39,7 @@ ENDS = {
     "sharing": {"share_line", "share_link"},
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
+    "robots": {"again", "identify", "line", "senses", "step", "twice", "watch"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
