@@ -1041,6 +1041,50 @@ const PARTS = {
     };
   },
 
+  // What a page of a group hears from its class, which has begun anew: each event of the robot once, in its order, whatever
+  // answers are lost or late; who else is here is as the class has it; and who has heard all says so, or the class would
+  // answer at once, again and again.
+  async news() {
+    const page = freshPage();
+    const { HeardNews } = await page.load('class/heard.js');
+    const heard = new HeardNews();
+    let classes = 0;
+    return async (chance, isGood) => {
+      const key = `class ${(classes += 1)}`;
+      const told = [];
+      const taken = [];
+      let version = 0;
+      let others = 0; // as of this version
+      let isLost = () => chance() < 0.3;
+      const asks = async () => {
+        const [known, number] = heard.position.ran;
+        const answer = { saw: version, ran: [key, told.length], runs: told.filter((each) => known !== key || each > number).map((each) => ({ number: each })) };
+        await later(chance.below(200));
+        if (isLost()) return;
+        others = answer.saw;
+        taken.push(...heard.take(answer).map((each) => each.number));
+      };
+      const acts = { asks, tells: () => told.push(told.length + 1), moves: () => { version += 1; } };
+      let end = '';
+      for (let k = 2 + chance.below(30); k > 0; k -= 1) {
+        end = chance.of(['asks', ...Object.keys(acts)]);
+        acts[end]();
+        await passes(chance.below(100));
+      }
+      await passes(200); // a class that has ended answers no more
+      if (!isGood) return { ends: [end], seen: false };
+      isLost = () => false;
+      const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, told.length] });
+      for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
+        acts.asks();
+        await passes(200);
+      }
+      if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${told.length}`);
+      if (`${taken}` !== `${told}` || others !== version) throw new Error(`it takes ${taken}, ${others} of ${told}, ${version}`);
+      return { ends: [end], seen: taken };
+    };
+  },
+
   // What is pressed for a real robot, with breakpoints and without: after STOP the page starts nothing before somebody presses
   // anew, however late its answers come, and what is pressed then starts.
   async orders() {

@@ -264,7 +264,6 @@ export class RobotPanel {
       transport = this.#transport = connection.transport; // STOP reaches it from now on
       this.#show();
       const robotInfo = await connection.connected;
-      clearTimeout(noticeTimer);
       this.#robotInfo = robotInfo;
       this.#onConnected(robotInfo);
     } catch (error) {
@@ -338,7 +337,6 @@ export class RobotPanel {
     const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
       const answer = await this.#transport.ask(request);
-      clearTimeout(noticeTimer);
       if (answer.ok) onDone(answer);
       else if (!isQuiet) this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
       return answer.ok ? answer : null;
