@@ -100,7 +100,7 @@ const PARTS = {
       notes = [];
       robot = virtualRobot(chance, isGood);
       simulator.speed = chance.of([0.1, 0.5, 1, 4]);
-      simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3);
+      simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3, isGood ? 0 : chance.of([0, 20])); // also of a run of a lesson
       await passes(50);
       const setPoints = () => {
         const breakpoints = [chance.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
@@ -572,6 +572,12 @@ const PARTS = {
         }
         await passes(isGood ? 1000 : chance.below(400));
         ends.push(document.documentElement.dataset['state']);
+        if (!isGood && chance() < 0.1) {
+          checking.markFailed();
+          await settles();
+          if (open) throw new Error('they wait for a compiler that cannot be had');
+          checking.markBeginning();
+        }
       }
       if (!isGood) await passes(1000); // a try that fails ends, too
       if (open) throw new Error(`${open} wait for ever`);
@@ -758,7 +764,8 @@ const PARTS = {
   },
 
   // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
-  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed.
+  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed; a run is played,
+  // though an earlier one never came.
   async wall() {
     const page = freshPage({
       generate: () => ({ toCanvas() {} }), correction: {},
@@ -785,7 +792,8 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Teacher } = await page.load('class/teacher.js');
     const python = { ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } };
-    new Teacher({ python, openRun: async () => {} });
+    let played = 0;
+    new Teacher({ python, openRun: async () => { played += 1; } });
     await passes(10);
     const wall = page.byId('class').children.at(-2);
     const large = document.body.children.find(({ id }) => id === 'big_pupil');
@@ -805,6 +813,7 @@ const PARTS = {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
+        if (request.do === 'class_run') return answers({ run: isLate() ? chance.of(['', null, null]) : 'its file' });
         if (request.do === 'class_text') {
           const [, found] = [...pupils, ...works].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === request.key)) ?? [];
           return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0 });
@@ -820,7 +829,8 @@ const PARTS = {
         goes: () => { here.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
         speaks: () => { languages += 1; pageState.language.set('en'); },
-        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-4).click(); },
+        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.find(({ className }) => className === 'see').click(); },
+        plays: () => chance.of([...wall.children, null])?.children.find(({ className }) => className === 'play').click(),
         closes: () => large.close(),
         gives: () => giving.showModal(),
         waits: () => {},
@@ -832,7 +842,7 @@ const PARTS = {
       if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
       isLate = () => false;
       const isLarge = large.open;
-      await passes(12_000);
+      await passes(16_000); // also what nobody answers is over
       const all = [...here, ...kept].sort(([one], [other]) => one.localeCompare(other));
       const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
       const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
@@ -846,6 +856,10 @@ const PARTS = {
       if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
       if (own && own[1].text && (big[1] !== own[1].text || big[2] !== wanted[all.indexOf(own)][1])) throw new Error(`${big} is seen large in place of ${own[1].text}`);
       if (giving.open && !kept.size) throw new Error('there is nothing to give');
+      const tile = wall.children[all.findIndex(([, { number }]) => number)], before = played;
+      tile?.children.find(({ className }) => className === 'play').click();
+      await passes(500);
+      if (tile && played === before) throw new Error('a run is not played');
       here.clear();
       kept.clear();
       large.close();
@@ -1449,6 +1463,7 @@ const PARTS = {
     await learns(page);
     playsFetch((_, { body }) => room(JSON.parse(body)));
     const { stopAll } = await page.load('robot/stops.js');
+    const { text } = await page.load('page/texts.js');
     const place = page.byId('stops');
     const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((each) => each.textContent ?? each)];
     return async (chance, isGood) => {
@@ -1459,13 +1474,16 @@ const PARTS = {
         await later(late_ms);
         if (!isGood && chance() < 0.2) throw new Broken();
         if (request.do === 'stop_all') began_ms = now();
+        isAnswered = true;
         return answers({ robots: robots.map((each) => ({ name: each.name, stop: now() - began_ms < each.late_ms ? 'asked' : 'confirmed' })) });
       };
+      let isAnswered = false;
       stopAll();
       const seen = [];
       for (let k = isGood ? 60 : chance.below(20); k > 0; k -= 1) {
         await passes(100);
         if (k < 55) seen.push(shown()); // the answer is there
+        if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
       return { ends: [isGood ? 'over' : robots.some((each) => each.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
@@ -2101,7 +2119,7 @@ const PARTS = {
           begun += 1;
         }
         const asked = robot;
-        worker = worker.then(() => later(late())).then(() => asked.answer(request));
+        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? PROGRAM : asked.answer(request)));
         return worker;
       },
     };
@@ -2111,13 +2129,13 @@ const PARTS = {
       return PROGRAM;
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
+    page.byId('arena').checkVisibility = () => true;
+    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : chance.below(150));
-      robot = virtualRobot(chance, false);
-      while (robot.does !== 'runs') robot = virtualRobot(chance, false);
+      robot = runningRobot(chance);
       const ways = {
         run: () => page.byId('run').click(),
         step: () => page.byId('step').click(),
@@ -2144,6 +2162,31 @@ const PARTS = {
       await passes(1500);
       if (startsAfterStop) throw new Error('it starts after a STOP');
       if (dataset['phase'] === 'running' || dataset['phase'] === 'paused') throw new Error('it goes on');
+      let open = 0;
+      const tries = async (isToRun) => {
+        const before = begun;
+        open += 1;
+        panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
+        await passes(1500);
+        if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
+      };
+      wants = true;
+      await tries(true);
+      ways.stop();
+      await passes(1500);
+      if (open) throw new Error('a block that was tried never ends');
+      ways.edits();
+      ways.run();
+      await passes(8000); // until its end
+      await tries(true);
+      await passes(8000);
+      robot = runningRobot(chance);
+      ways.run();
+      await passes(500);
+      if (dataset['phase'] === 'running') await tries(false);
+      ways.stop();
+      wants = false;
+      await passes(1500);
       return { ends: [end], seen: [] };
     };
   },
@@ -2158,6 +2201,14 @@ const REAL_SIDE = {
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
 const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
+
+/** @returns one that runs */
+function runningRobot(chance) {
+  for (;;) {
+    const robot = virtualRobot(chance, false);
+    if (robot.does === 'runs') return robot;
+  }
+}
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
 function virtualRobot(chance, isGood) {
