@@ -2092,6 +2092,108 @@ const PARTS = {
     };
   },
 
+  // What is asked of a robot at a cable, and STOP: nothing that was asked before a STOP reaches the session after it, each ask
+  // ends once, in its order, and the session gets each byte once.
+  async queue() {
+    const page = freshPage();
+    playsNavigator({});
+    const { DirectRobot } = await page.load('robot/direct.js');
+    let late = () => 5;
+    let breaks = () => false;
+    let given = []; // to the session
+    let bytes = [];
+    const python = {
+      async ask({ do: what, asked = [] }, data) {
+        given.push(...asked);
+        if (what === 'link') bytes.push(...data);
+        await later(late());
+        if (breaks()) throw new Broken();
+        return what === 'connect' ? {} : { send: '', keys: '', news: asked.map(({ id }) => ({ id, ok: true, robot: { name: 'TINI' } })), wakes_ms: null };
+      },
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(400));
+      breaks = () => false;
+      [given, bytes] = [[], []];
+      let hears = () => {};
+      const port = { isRadio: true, goneBy: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
+      const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, () => {});
+      robot.connect('tinibot', 'en', '').catch(() => {});
+      await passes(1000);
+      const came = [];
+      const ended = [];
+      let asks = 0;
+      let stopped = 0; // asks before the newest STOP
+      breaks = () => !isGood && chance() < 0.02;
+      const acts = {
+        asks() {
+          const number = (asks += 1);
+          robot.ask({ do: 'start', number }).then(() => ended.push(number), () => ended.push(number));
+        },
+        hears() {
+          came.push(came.length % 256);
+          hears(new Uint8Array(came.slice(-1)));
+        },
+        stops() {
+          robot.stop();
+          given = [];
+          stopped = asks;
+        },
+        waits: () => {},
+      };
+      let end = '';
+      for (let k = 3 + chance.below(20); k > 0; k -= 1) {
+        end = chance.of(['asks', ...Object.keys(acts)]);
+        acts[end]();
+        await passes(chance.below(chance.of([3, 300])));
+        const old = given.find(({ number }) => number <= stopped);
+        if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
+        if (new Set(given).size < given.length) throw new Error('something is done twice');
+      }
+      await passes(3000);
+      if ([...ended].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${ended} have ended`);
+      if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
+      if (robot.isOver) end = 'broken';
+      robot.leave();
+      await passes(100);
+      return { ends: [end], seen: isGood && ended };
+    };
+  },
+
+  // One language after another is chosen, over a connection that may fail: the last one is seen, or what was seen before it.
+  async languages() {
+    const page = freshPage();
+    playsNavigator({});
+    await learns(page);
+    const { setLanguage, text } = await page.load('page/texts.js');
+    const { pageState } = await page.load('page/page_state.js');
+    let late = () => 5;
+    let fails = () => false;
+    playsFetch(async (where) => {
+      await later(late());
+      if (fails()) throw new Broken();
+      return { ok: true, json: async () => ({ stop: where }) };
+    });
+    return async (chance, isGood) => {
+      late = () => 5 + chance.below(isGood ? 10 : 900);
+      fails = () => !isGood && chance() < 0.3;
+      let chosen = '';
+      const kept = [];
+      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
+        chosen = chance.of(['en', 'es', 'pt']);
+        const own = setLanguage(chosen);
+        own.then((language) => kept.push(language));
+        await passes(chance.below(chance.of([50, 1200])));
+      }
+      await passes(1000);
+      const seen = pageState.language.value;
+      if (text('stop').startsWith('./') && text('stop') !== `./texts.${seen}.json`) throw new Error(`it says ${text('stop')} in ${seen}`);
+      if (kept.at(-1) !== seen) throw new Error(`${kept.at(-1)} is chosen, and ${seen} seen`);
+      if (isGood && seen !== chosen) throw new Error(`${chosen} is chosen, and ${seen} seen`);
+      return { ends: [seen], seen: isGood && [seen, document.documentElement.lang, text('stop')] };
+    };
+  },
+
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };

@@ -53,6 +53,8 @@ ENDS = {
     "giving": {"chosen", "gone", "alike", "nobody"},
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
+    "queue": {"asks", "hears", "stops", "waits", "broken"},
+    "languages": {"en", "es", "pt"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},
 }
