@@ -100,7 +100,7 @@ const PARTS = {
       notes = [];
       robot = virtualRobot(chance, isGood);
       simulator.speed = chance.of([0.1, 0.5, 1, 4]);
-      simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3);
+      simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3, isGood ? 0 : chance.of([0, 20])); // also of a run of a lesson
       await passes(50);
       const setPoints = () => {
         const breakpoints = [chance.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
@@ -572,6 +572,12 @@ const PARTS = {
         }
         await passes(isGood ? 1000 : chance.below(400));
         ends.push(document.documentElement.dataset['state']);
+        if (!isGood && chance() < 0.1) {
+          checking.markFailed();
+          await settles();
+          if (open) throw new Error('they wait for a compiler that cannot be had');
+          checking.markBeginning();
+        }
       }
       if (!isGood) await passes(1000); // a try that fails ends, too
       if (open) throw new Error(`${open} wait for ever`);
@@ -758,7 +764,8 @@ const PARTS = {
   },
 
   // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
-  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed.
+  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed; a run is played,
+  // though an earlier one never came.
   async wall() {
     const page = freshPage({
       generate: () => ({ toCanvas() {} }), correction: {},
@@ -785,7 +792,8 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Teacher } = await page.load('class/teacher.js');
     const python = { ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } };
-    new Teacher({ python, openRun: async () => {} });
+    let played = 0;
+    new Teacher({ python, openRun: async () => { played += 1; } });
     await passes(10);
     const wall = page.byId('class').children.at(-2);
     const large = document.body.children.find(({ id }) => id === 'big_pupil');
@@ -805,6 +813,7 @@ const PARTS = {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
+        if (request.do === 'class_run') return answers({ run: isLate() ? chance.of(['', null, null]) : 'its file' });
         if (request.do === 'class_text') {
           const [, found] = [...pupils, ...works].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === request.key)) ?? [];
           return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0 });
@@ -820,7 +829,8 @@ const PARTS = {
         goes: () => { here.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
         speaks: () => { languages += 1; pageState.language.set('en'); },
-        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-4).click(); },
+        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.find(({ className }) => className === 'see').click(); },
+        plays: () => chance.of([...wall.children, null])?.children.find(({ className }) => className === 'play').click(),
         closes: () => large.close(),
         gives: () => giving.showModal(),
         waits: () => {},
@@ -832,7 +842,7 @@ const PARTS = {
       if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
       isLate = () => false;
       const isLarge = large.open;
-      await passes(12_000);
+      await passes(16_000); // also what nobody answers is over
       const all = [...here, ...kept].sort(([one], [other]) => one.localeCompare(other));
       const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
       const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
@@ -846,6 +856,10 @@ const PARTS = {
       if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
       if (own && own[1].text && (big[1] !== own[1].text || big[2] !== wanted[all.indexOf(own)][1])) throw new Error(`${big} is seen large in place of ${own[1].text}`);
       if (giving.open && !kept.size) throw new Error('there is nothing to give');
+      const tile = wall.children[all.findIndex(([, { number }]) => number)], before = played;
+      tile?.children.find(({ className }) => className === 'play').click();
+      await passes(500);
+      if (tile && played === before) throw new Error('a run is not played');
       here.clear();
       kept.clear();
       large.close();
@@ -863,8 +877,7 @@ const PARTS = {
     let failure = '';
     let ways = [];
     const page = freshPage({
-      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      fetchPorts: async () => [],
+      ...REAL_SIDE,
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -1042,6 +1055,50 @@ const PARTS = {
     };
   },
 
+  // What a page of a group hears from its class, which has begun anew: each event of the robot once, in its order, whatever
+  // answers are lost or late; who else is here is as the class has it; and who has heard all says so, or the class would
+  // answer at once, again and again.
+  async news() {
+    const page = freshPage();
+    const { HeardNews } = await page.load('class/heard.js');
+    const heard = new HeardNews();
+    let classes = 0;
+    return async (chance, isGood) => {
+      const key = `class ${(classes += 1)}`;
+      const told = [];
+      const taken = [];
+      let version = 0;
+      let others = 0; // as of this version
+      let isLost = () => chance() < 0.3;
+      const asks = async () => {
+        const [known, number] = heard.position.ran;
+        const answer = { saw: version, ran: [key, told.length], runs: told.filter((each) => known !== key || each > number).map((each) => ({ number: each })) };
+        await later(chance.below(200));
+        if (isLost()) return;
+        others = answer.saw;
+        taken.push(...heard.take(answer).map((each) => each.number));
+      };
+      const acts = { asks, tells: () => told.push(told.length + 1), moves: () => { version += 1; } };
+      let end = '';
+      for (let k = 2 + chance.below(30); k > 0; k -= 1) {
+        end = chance.of(['asks', ...Object.keys(acts)]);
+        acts[end]();
+        await passes(chance.below(100));
+      }
+      await passes(200); // a class that has ended answers no more
+      if (!isGood) return { ends: [end], seen: false };
+      isLost = () => false;
+      const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, told.length] });
+      for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
+        acts.asks();
+        await passes(200);
+      }
+      if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${told.length}`);
+      if (`${taken}` !== `${told}` || others !== version) throw new Error(`it takes ${taken}, ${others} of ${told}, ${version}`);
+      return { ends: [end], seen: taken };
+    };
+  },
+
   // What is pressed for a real robot, with breakpoints and without: after STOP the page starts nothing before somebody presses
   // anew, however late its answers come, and what is pressed then starts.
   async orders() {
@@ -1052,8 +1109,7 @@ const PARTS = {
     let started = 0;
     let robot = null;
     const page = freshPage({
-      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
-      fetchPorts: async () => [],
+      ...REAL_SIDE,
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
@@ -1141,6 +1197,263 @@ const PARTS = {
     };
   },
 
+  // One robot after another, with all that each can tell and be asked: what is seen of the next one is what is seen of a
+  // first one. What starts halts where it is to, values are those of the newest halt, the sensors come back after a program
+  // and not after a STOP, and that it waits is said only while it does.
+  async robots() {
+    let robot = null;
+    let info = {};
+    let late = () => 5;
+    let plotted = [];
+    let wrong = '';
+    const own = { program: 'ff', is_program: true };
+    const page = freshPage({
+      ...REAL_SIDE,
+      Plot: class {
+        begin() { plotted = []; }
+        add(at_ms, values) { plotted.push([Math.round(at_ms), ...values.map(({ value }) => value)]); }
+        draw() {}
+      },
+      HostRobot: class {
+        constructor(heard) {
+          this.heard = heard;
+          this.ended = new Promise((_, reject) => { this.rejects = reject; });
+          this.ended.catch(() => {});
+          this.way = this.ended; // one thing after the other
+          this.open = new Set(); // when each that has no answer was asked
+          this.halts = this.stops = 0;
+          robot = this;
+        }
+        async connect() {
+          await Promise.race([later(late()), this.ended]);
+          this.isMet = true;
+          this.isBusy = info.is_running; // as far as the page has heard
+          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, has_remote: true, ...info };
+        }
+        async ask(request) {
+          if (this.isBusy && /FOREVER/.test(request.image)) wrong = 'sensors are watched in the place of a program';
+          this.isBusy ||= request.do === 'upload' || request.do === 'start';
+          const asked = { at_ms: now(), request };
+          const { wanted, stops } = this;
+          this.open.add(asked);
+          const before = this.way;
+          this.way = (async () => {
+            await Promise.race([before === this.ended ? null : before, this.ended]);
+            await Promise.race([later(late()), this.ended]);
+            const answer = stops === this.stops ? this.does(request, wanted) : { failure: 'stopped_elsewhere' };
+            await Promise.race([later(late()), this.ended]);
+            return answer;
+          })();
+          this.way.catch(() => {});
+          try {
+            return await this.way;
+          } finally {
+            this.open.delete(asked);
+          }
+        }
+        does({ do: what, image, places, runs }, wanted) {
+          if (what === 'upload' || what === 'live') this.points = '';
+          if (what === 'upload') this.isOurs = true;
+          if (['upload', 'live', 'start', 'resume'].includes(what)) this.isHalted = false;
+          if (['upload', 'live', 'start'].includes(what)) this.watches = /FOREVER/.test(image);
+          if (what === 'break') this.points = places.filter((offset) => offset).join();
+          if ((what === 'start' || runs) && this.isOurs && info.has_breakpoints && this.points !== wanted) wrong = `it is to halt at '${wanted}', and halts at '${this.points}'`;
+          if (what === 'start' || runs) this.tell(this.isOurs ? { event: 'STARTED', ...own } : { event: 'STARTED', program: 'dd', is_program: false });
+          if (what === 'live') {
+            this.line = image;
+            this.tell({ event: 'STARTED', program: image, is_program: false });
+          }
+          if (what === 'variables') return { ok: true, variables: [this.halts] };
+          if (what === 'tasks') return { ok: true, tasks: [['ENDED', 0], ['WAITING', 3]] };
+          return { ok: true, program: 'ff', saved: 'MEMORY' };
+        }
+        stop() {
+          this.stops += 1;
+          this.watches = this.isBusy = false;
+        }
+        tell(event) {
+          const isOther = !['SHOW', 'READING'].includes(event.event) && event.program !== this.line; // than a line that is on its way
+          if (!this.isMet || this.isOver || (isOther && [...this.open].some(({ request }) => request.do === 'live'))) return;
+          if (event.event === 'HALTED') {
+            if (this.isHalted) return;
+            this.isHalted = true;
+            this.halts += 1;
+          } else if (event.event === 'PLACE') this.watches = false; // it was begun by its button
+          else if (!['SHOW', 'READING'].includes(event.event)) {
+            this.isHalted = false;
+            this.watches &&= event.program === this.line;
+            this.isBusy = event.event === 'STARTED' && event.program !== this.line;
+          }
+          this.heard.onEvent(event);
+        }
+        end(why) {
+          if (this.isOver) return;
+          this.isOver = true;
+          this.rejects(new ConnectionFailure(why));
+          this.heard.onEnd(new ConnectionFailure(why));
+        }
+        leave() { this.end('left'); }
+      },
+    });
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { ConnectionFailure } = await page.load('robot/transport.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
+    const { RunningPlace } = await page.load('robot/place.js');
+    const { Recorder } = await page.load('robot/recorder.js');
+    const { Runs } = await page.load('virtual/runs.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    let said = '';
+    Object.defineProperty(page.byId('link_said'), 'textContent', { get: () => said, set(sentence) {
+      said = sentence;
+      if (sentence === text('say_waits') && ![...robot?.open ?? []].some(({ at_ms }) => now() - at_ms >= 2000)) throw new Error('it says that it waits, and does not');
+    } });
+    pageState.robotName.set('tinibot');
+    pageState.sideId.set('side_real');
+    pageState.programText.set('X = DISTANCE;\nSHOW(X)');
+    const program = { ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1, 1, 1, 13], [3, 2, 1, 2, 8]], halts: [0, 3], findings: [], start: 'SI' };
+    pageState.checkResult.set(program);
+    const checks = async (_, bytes) => {
+      const image = new TextDecoder().decode(bytes);
+      await later(late());
+      const shows = [...image.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
+      return { image, program: image, places: shows.map(([offset]) => [offset]), shows, findings: [], variables: [], remote: [] };
+    };
+    const runs = new Runs();
+    const panel = new RobotPanel({ python: { tryAgain() {}, ask: checks }, goTo() {}, recorder: new Recorder({ runs, play() {} }), place: new RunningPlace(), pad: noting([], 'pad') });
+    await passes(10);
+    page.byId('senses').hidden = page.byId('link_doing').hidden = true; // as in index.html
+    const presses = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
+    const acts = {
+      starts: () => { robot.isOwn ||= robot.isOurs; robot.tell({ event: 'STARTED', ...own }); },
+      others: () => robot.tell({ event: 'STARTED', program: 'dd', is_program: false }),
+      place: (chance) => robot.tell({ event: 'PLACE', at: chance.of([0, 3]), program: 'ff' }),
+      halts: (chance) => robot.tell({ event: 'HALTED', at: chance.of([0, 3, 1]), task: 0, ...own }),
+      shows: (chance) => robot.tell({ event: 'SHOW', at: chance.below(3), value: String(chance.below(9)), program: chance() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
+      reads: (chance) => robot.tell({ event: 'READING', rows: [[chance.below(99), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
+      ends: (chance) => robot.tell({ event: chance.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: chance.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
+      upload: () => presses('link_upload'),
+      start: () => presses('link_start'),
+      step: () => presses('link_step'),
+      goesOn: () => presses('link_go_on'),
+      identify: () => presses('link_identify'),
+      watch: () => robot.open.size || presses('link_watch'),
+      stop: () => page.byId('stop').click(),
+      points(chance) {
+        const breakpoints = chance() < 0.4 ? [] : [{ line: 2, column: 1, point: {} }];
+        robot.wanted = breakpoints.length ? '3' : '';
+        pageState.breakpoints.set(breakpoints);
+      },
+      async line() {
+        if (robot.open.size) return;
+        page.byId('link_line').value = 'F(1, 80)';
+        page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
+        await passes(late());
+      },
+      async twice(chance) {
+        if (robot.open.size) return;
+        presses('link_watch');
+        await passes(chance.below(20));
+        presses('link_watch');
+      },
+      again(chance) { // it halts, ends and halts, and nobody had time to look
+        acts.halts(chance);
+        robot.tell({ event: 'DONE' });
+        acts.starts();
+        acts.halts(chance);
+      },
+      senses() {
+        robot.tell({ event: 'SHOW', at: 0, value: '9', program: robot.line });
+        acts.starts();
+        robot.tell({ event: 'READING', rows: [[5, 'READ DISTANCE 5']] });
+      },
+      waits: () => passes(2500),
+    };
+    const isWatched = () => page.byId('link_watch').attributes['aria-pressed'] === 'true';
+    const gauges = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
+    const values = () => page.byId('link_values').hidden || page.byId('link_values').children.map((row) => row.children[1].textContent);
+    const seen = () => [
+      said, page.byId('link_doing').hidden || page.byId('link_doing').textContent, document.documentElement.dataset['halt'], structuredClone(pageState.robotRun.value),
+      values(), ['link_step', 'link_go_on', 'link_breakpoints'].map((id) => [page.byId(id).hidden, page.byId(id).disabled]),
+      gauges(), isWatched(), [...plotted], robot?.isOwn && [page.byId('record_lacks').hidden || page.byId('record_lacks').textContent, runs.newestFirst[0]?.rows],
+    ];
+    /** The sensors are watched, and a program comes first, whatever was before. */
+    const watchesAgain = async (byHand) => {
+      const is = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
+      robot.tell({ event: 'DONE' });
+      await passes(100);
+      if (!isWatched()) acts.watch();
+      await passes(1500);
+      is(true, 'where somebody wants it');
+      acts.identify();
+      await passes(1500);
+      is(true, 'after something else was asked');
+      acts.upload();
+      acts.starts();
+      is(false, 'beside a program');
+      await passes(1500);
+      is(false, 'beside a program');
+      robot.tell({ event: 'DONE' });
+      await passes(1500);
+      is(true, 'after a program');
+      robot.tell({ event: 'SHOW', at: 0, value: '4', program: robot.line });
+      await passes(50);
+      if (gauges()[0][0] !== '4') throw new Error(`the gauges say ${gauges()} and not what is watched`);
+      if (byHand) acts.stop();
+      robot.tell({ event: 'STOPPED', cause: byHand ? 'SEQUENCE' : 'BUTTON' });
+      await passes(3000);
+      is(false, 'after a STOP');
+      acts.upload();
+      acts.starts();
+      await passes(100);
+      robot.tell({ event: 'DONE' });
+      await passes(3000);
+      is(false, 'since a STOP');
+    };
+    return async (chance, isGood) => {
+      const slow = () => (chance() < 0.1 ? 2500 : chance.below(300));
+      late = isGood ? () => 5 : slow;
+      robot = null;
+      window.localStorage.removeItem('tiniscript.watches');
+      if (chance() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
+      pageState.breakpoints.set([]);
+      info = { has_breakpoints: chance() < 0.8, has_readings: chance() < 0.5, ...chance.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
+      panel.connectByHost('p');
+      const all = [seen()];
+      await settles();
+      robot.points = robot.wanted = '';
+      let end = '';
+      await passes(isGood ? 50 : chance.below(400));
+      if (chance() < 0.6) acts.upload();
+      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
+        end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+        await acts[end](chance);
+        all.push([seen(), page.byId('link_shown').textContent]);
+        await passes(chance.below(chance.of([50, 400])));
+        const { halt } = document.documentElement.dataset;
+        if (wrong) throw new Error(wrong);
+        if (halt === 'read' && values()[0] !== String(robot.halts)) throw new Error(`its values are ${values()} at halt ${robot.halts}`);
+        if (pageState.robotRun.value.isHeld && halt !== 'read' && halt !== 'halted') throw new Error('it is seen as halted, and goes on');
+      }
+      await passes(8000);
+      if (wrong) throw new Error(wrong);
+      if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
+      all.push(seen());
+      if (isGood) await watchesAgain(chance() < 0.5);
+      else { // it is gone before the answer
+        robot.tell({ event: 'DONE' });
+        if (!isWatched() && chance() < 0.7) acts.watch();
+        await passes(6000);
+        await acts[chance.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](chance);
+      }
+      robot.end(chance.of(['left', 'unheard']));
+      await passes(isGood ? 50 : chance.below(200));
+      return { ends: [end], seen: all };
+    };
+  },
+
   // STOP for all robots, pressed again and again.
   async stops() {
     const page = freshPage();
@@ -1150,6 +1463,7 @@ const PARTS = {
     await learns(page);
     playsFetch((_, { body }) => room(JSON.parse(body)));
     const { stopAll } = await page.load('robot/stops.js');
+    const { text } = await page.load('page/texts.js');
     const place = page.byId('stops');
     const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((each) => each.textContent ?? each)];
     return async (chance, isGood) => {
@@ -1160,13 +1474,16 @@ const PARTS = {
         await later(late_ms);
         if (!isGood && chance() < 0.2) throw new Broken();
         if (request.do === 'stop_all') began_ms = now();
+        isAnswered = true;
         return answers({ robots: robots.map((each) => ({ name: each.name, stop: now() - began_ms < each.late_ms ? 'asked' : 'confirmed' })) });
       };
+      let isAnswered = false;
       stopAll();
       const seen = [];
       for (let k = isGood ? 60 : chance.below(20); k > 0; k -= 1) {
         await passes(100);
         if (k < 55) seen.push(shown()); // the answer is there
+        if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
       return { ends: [isGood ? 'over' : robots.some((each) => each.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
@@ -1775,6 +2092,108 @@ const PARTS = {
     };
   },
 
+  // What is asked of a robot at a cable, and STOP: nothing that was asked before a STOP reaches the session after it, each ask
+  // ends once, in its order, and the session gets each byte once.
+  async queue() {
+    const page = freshPage();
+    playsNavigator({});
+    const { DirectRobot } = await page.load('robot/direct.js');
+    let late = () => 5;
+    let breaks = () => false;
+    let given = []; // to the session
+    let bytes = [];
+    const python = {
+      async ask({ do: what, asked = [] }, data) {
+        given.push(...asked);
+        if (what === 'link') bytes.push(...data);
+        await later(late());
+        if (breaks()) throw new Broken();
+        return what === 'connect' ? {} : { send: '', keys: '', news: asked.map(({ id }) => ({ id, ok: true, robot: { name: 'TINI' } })), wakes_ms: null };
+      },
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(400));
+      breaks = () => false;
+      [given, bytes] = [[], []];
+      let hears = () => {};
+      const port = { isRadio: true, goneBy: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
+      const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, () => {});
+      robot.connect('tinibot', 'en', '').catch(() => {});
+      await passes(1000);
+      const came = [];
+      const ended = [];
+      let asks = 0;
+      let stopped = 0; // asks before the newest STOP
+      breaks = () => !isGood && chance() < 0.02;
+      const acts = {
+        asks() {
+          const number = (asks += 1);
+          robot.ask({ do: 'start', number }).then(() => ended.push(number), () => ended.push(number));
+        },
+        hears() {
+          came.push(came.length % 256);
+          hears(new Uint8Array(came.slice(-1)));
+        },
+        stops() {
+          robot.stop();
+          given = [];
+          stopped = asks;
+        },
+        waits: () => {},
+      };
+      let end = '';
+      for (let k = 3 + chance.below(20); k > 0; k -= 1) {
+        end = chance.of(['asks', ...Object.keys(acts)]);
+        acts[end]();
+        await passes(chance.below(chance.of([3, 300])));
+        const old = given.find(({ number }) => number <= stopped);
+        if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
+        if (new Set(given).size < given.length) throw new Error('something is done twice');
+      }
+      await passes(3000);
+      if ([...ended].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${ended} have ended`);
+      if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
+      if (robot.isOver) end = 'broken';
+      robot.leave();
+      await passes(100);
+      return { ends: [end], seen: isGood && ended };
+    };
+  },
+
+  // One language after another is chosen, over a connection that may fail: the last one is seen, or what was seen before it.
+  async languages() {
+    const page = freshPage();
+    playsNavigator({});
+    await learns(page);
+    const { setLanguage, text } = await page.load('page/texts.js');
+    const { pageState } = await page.load('page/page_state.js');
+    let late = () => 5;
+    let fails = () => false;
+    playsFetch(async (where) => {
+      await later(late());
+      if (fails()) throw new Broken();
+      return { ok: true, json: async () => ({ stop: where }) };
+    });
+    return async (chance, isGood) => {
+      late = () => 5 + chance.below(isGood ? 10 : 900);
+      fails = () => !isGood && chance() < 0.3;
+      let chosen = '';
+      const kept = [];
+      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
+        chosen = chance.of(['en', 'es', 'pt']);
+        const own = setLanguage(chosen);
+        own.then((language) => kept.push(language));
+        await passes(chance.below(chance.of([50, 1200])));
+      }
+      await passes(1000);
+      const seen = pageState.language.value;
+      if (text('stop').startsWith('./') && text('stop') !== `./texts.${seen}.json`) throw new Error(`it says ${text('stop')} in ${seen}`);
+      if (kept.at(-1) !== seen) throw new Error(`${kept.at(-1)} is chosen, and ${seen} seen`);
+      if (isGood && seen !== chosen) throw new Error(`${chosen} is chosen, and ${seen} seen`);
+      return { ends: [seen], seen: isGood && [seen, document.documentElement.lang, text('stop')] };
+    };
+  },
+
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
@@ -1802,7 +2221,7 @@ const PARTS = {
           begun += 1;
         }
         const asked = robot;
-        worker = worker.then(() => later(late())).then(() => asked.answer(request));
+        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? PROGRAM : asked.answer(request)));
         return worker;
       },
     };
@@ -1812,13 +2231,13 @@ const PARTS = {
       return PROGRAM;
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
+    page.byId('arena').checkVisibility = () => true;
+    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : chance.below(150));
-      robot = virtualRobot(chance, false);
-      while (robot.does !== 'runs') robot = virtualRobot(chance, false);
+      robot = runningRobot(chance);
       const ways = {
         run: () => page.byId('run').click(),
         step: () => page.byId('step').click(),
@@ -1845,14 +2264,53 @@ const PARTS = {
       await passes(1500);
       if (startsAfterStop) throw new Error('it starts after a STOP');
       if (dataset['phase'] === 'running' || dataset['phase'] === 'paused') throw new Error('it goes on');
+      let open = 0;
+      const tries = async (isToRun) => {
+        const before = begun;
+        open += 1;
+        panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
+        await passes(1500);
+        if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
+      };
+      wants = true;
+      await tries(true);
+      ways.stop();
+      await passes(1500);
+      if (open) throw new Error('a block that was tried never ends');
+      ways.edits();
+      ways.run();
+      await passes(8000); // until its end
+      await tries(true);
+      await passes(8000);
+      robot = runningRobot(chance);
+      ways.run();
+      await passes(500);
+      if (dataset['phase'] === 'running') await tries(false);
+      ways.stop();
+      wants = false;
+      await passes(1500);
       return { ends: [end], seen: [] };
     };
   },
 };
 
+/** What the side with a real robot imports, where a part plays the robot. */
+const REAL_SIDE = {
+  replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+  fetchPorts: async () => [],
+};
+
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
 const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
+
+/** @returns one that runs */
+function runningRobot(chance) {
+  for (;;) {
+    const robot = virtualRobot(chance, false);
+    if (robot.does === 'runs') return robot;
+  }
+}
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
 function virtualRobot(chance, isGood) {

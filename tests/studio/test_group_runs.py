@@ -76,7 +76,7 @@ class Robot:
 
 
 class Page:
-    """A page that looks now and then, as `together.js` does."""
+    """A page that looks now and then, as `heard.js` has it."""
 
     def __init__(self, runs: GroupRuns, name: str) -> None:
         self.runs, self.name = runs, name

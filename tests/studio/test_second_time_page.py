@@ -39,6 +39,8 @@ ENDS = {
     "sharing": {"share_line", "share_link"},
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
+    "robots": {"again", "identify", "line", "senses", "step", "twice", "watch"},
+    "news": {"asks", "tells", "moves"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
@@ -51,6 +53,8 @@ ENDS = {
     "giving": {"chosen", "gone", "alike", "nobody"},
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
+    "queue": {"asks", "hears", "stops", "waits", "broken"},
+    "languages": {"en", "es", "pt"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},
 }

@@ -6,6 +6,7 @@
 import { Annotation, ChangeSet, StateEffect, StateField, Transaction } from '@codemirror/state';
 import { Decoration, EditorView, WidgetType } from '@codemirror/view';
 import { makeElement } from '../page/made.js';
+import { HeardNews } from './heard.js';
 import { post } from '../robot/host.js';
 import { ConnectionFailure, pause } from '../robot/transport.js';
 
@@ -131,9 +132,7 @@ export class SharedEditor {
   /** @type {Promise<unknown>} */
   #lastStep = Promise.resolve();
   #isSending = false;
-  #seenNumber = 0;
-  /** Until where it is known what the robot has told. @type {[string, number]} */
-  #seenRunEvents = ['', 0];
+  #heardNews = new HeardNews();
   /** @type {Other[]} */
   #otherPupils = [];
   /** @type {PythonAnswer} */
@@ -306,7 +305,7 @@ export class SharedEditor {
 
   #request() {
     const { since, epoch, kept: storedPage } = this.#pythonState;
-    return { do: 'group', page: storedPage.name, since, epoch, saw: this.#seenNumber, ran: this.#seenRunEvents };
+    return { do: 'group', page: storedPage.name, since, epoch, ...this.#heardNews.position };
   }
 
   /** Hears what is new, for as long as this page is in the group. */
@@ -352,9 +351,8 @@ export class SharedEditor {
   /** @param {any} news */
   async #takeNews(news) {
     const haveOthersChanged = JSON.stringify(news.others) !== JSON.stringify(this.#otherPupils);
-    this.#seenNumber = Math.max(this.#seenNumber, news.saw);
     this.#otherPupils = news.others;
-    this.#takeRunEvents(news);
+    for (const event of this.#heardNews.take(news)) this.#listener.runs(event);
     if (haveOthersChanged) {
       this.#showOthers();
       this.#listener.others(news.others);
@@ -362,13 +360,6 @@ export class SharedEditor {
     if (!news.whole && !news.changes.length && !this.#pythonState.pending.length) return;
     this.#pendingNews.push(news);
     await this.#takeStep();
-  }
-
-  /** Two answers may tell the same. @param {{ran: [string, number], runs?: import('../robot/panel.js').GroupRobotEvent[]}} news */
-  #takeRunEvents({ ran: [key, newestNumber], runs = [] }) {
-    const knownNumber = key === this.#seenRunEvents[0] ? this.#seenRunEvents[1] : 0;
-    this.#seenRunEvents = [key, Math.max(knownNumber, newestNumber)];
-    for (const event of runs) if (event.number > knownNumber) this.#listener.runs(event);
   }
 
   /** Tells the others where the caret is, now and then. */

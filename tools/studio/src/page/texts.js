@@ -31,9 +31,9 @@ export function languageOf(locale) {
 
 /** @param {string} chosenLanguage @returns {Promise<string>} the language that is seen now: without a connection it may be the one before */
 export async function setLanguage(chosenLanguage) {
-  let language = currentLanguage();
+  let language = '';
   wantedLanguage = chosenLanguage;
-  for (const code of [chosenLanguage, ...(language ? [] : LANGUAGES.map(([languageCode]) => languageCode))]) {
+  for (const code of [chosenLanguage, ...(currentLanguage() ? [] : LANGUAGES.map(([languageCode]) => languageCode))]) {
     const catalogue = await watchedFetch(`./texts.${code}.json`).then((response) => (response.ok ? response.json() : null)).catch(() => null);
     if (chosenLanguage !== wantedLanguage) return currentLanguage(); // another one was chosen meanwhile
     if (!catalogue) continue;
@@ -41,6 +41,7 @@ export async function setLanguage(chosenLanguage) {
     language = code;
     break;
   }
+  language ||= currentLanguage(); // as it is now: the same one may have been chosen twice
   storeLanguage(language);
   document.documentElement.lang = language;
   for (const element of document.querySelectorAll('[data-text]')) {

@@ -264,7 +264,6 @@ export class RobotPanel {
       transport = this.#transport = connection.transport; // STOP reaches it from now on
       this.#show();
       const robotInfo = await connection.connected;
-      clearTimeout(noticeTimer);
       this.#robotInfo = robotInfo;
       this.#onConnected(robotInfo);
     } catch (error) {
@@ -318,8 +317,9 @@ export class RobotPanel {
    * @returns {Promise<Answer | null>} null if it failed
    */
   async #ask(request, onDone = () => {}, isQuiet = false) {
-    const pausing = this.#robotInfo && this.#sensorWatch.pauseFor(request);
+    const transport = this.#transport, pausing = this.#robotInfo && this.#sensorWatch.pauseFor(request);
     if (pausing) await pausing;
+    if (transport !== this.#transport) return null; // it was asked of the robot before
     const answer = await this.#askNow(request, onDone, isQuiet);
     this.#sensorWatch.resumeAfter(request);
     return answer;
@@ -337,7 +337,6 @@ export class RobotPanel {
     const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
       const answer = await this.#transport.ask(request);
-      clearTimeout(noticeTimer);
       if (answer.ok) onDone(answer);
       else if (!isQuiet) this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
       return answer.ok ? answer : null;
@@ -394,12 +393,12 @@ export class RobotPanel {
   /** Runs a line now. @param {string} line */
   async #runLine(line) {
     if (!line.trim() || !this.#robotInfo) return;
-    const stopCount = this.#stopCount;
+    const stopCount = this.#stopCount, transport = this.#transport;
     const robotName = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
     /** @type {CheckResult} */
     const checkResult = await this.#page.python.ask({ do: 'check', robot: robotName, language: currentLanguage() }, data);
-    if (stopCount !== this.#stopCount) return; // STOP was pressed since
+    if (stopCount !== this.#stopCount || transport !== this.#transport) return; // STOP was pressed since, or this is another robot
     const mistake = checkResult.findings.find((finding) => finding.severity === 'mistake');
     if (mistake) {
       this.#speech.saySentence(messageWithFix(mistake));

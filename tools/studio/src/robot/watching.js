@@ -44,7 +44,8 @@ export class SensorWatch {
   #isFree = false; // nothing else runs, or was asked for, or has stopped the robot
   #isBusy = false; // something else runs
   #isOn = false;
-  #isBeginning = false;
+  /** With which it begins. @type {RobotInfo | null} */
+  #beginningRobot = null;
   #isOwnLine = false; // what runs, or ran last
   #isProgramWaiting = false; // the robot's program, for its button
   #beginTimer = 0;
@@ -169,6 +170,10 @@ export class SensorWatch {
     this.#beginTimer = window.setTimeout(() => this.#startWatching(), PAUSE_MS);
   }
 
+  get #isBeginning() {
+    return this.#robotInfo !== null && this.#beginningRobot === this.#robotInfo;
+  }
+
   get #canBegin() {
     return this.#robotInfo !== null && this.#isWanted && this.#isFree && !this.#isProgramWaiting && pageState.sideId.value === 'side_real';
   }
@@ -176,7 +181,7 @@ export class SensorWatch {
   async #startWatching(isQuiet = true) {
     const robotInfo = this.#robotInfo;
     if (!this.#canBegin || this.#isOn || this.#isBeginning) return;
-    this.#isBeginning = true;
+    this.#beginningRobot = robotInfo;
     try {
       const line = await this.#checkLine(this.#lineText);
       if (!line.image || !this.#canBegin || robotInfo !== this.#robotInfo) return;
@@ -188,7 +193,7 @@ export class SensorWatch {
       if (this.#isOn) this.#page.tell(true);
       else if (answer && this.#isFree) await this.#giveWay(); // nobody wants it any more
     } finally {
-      this.#isBeginning = false;
+      if (this.#beginningRobot === robotInfo) this.#beginningRobot = null;
       this.#show();
     }
   }
@@ -196,8 +201,8 @@ export class SensorWatch {
   /** Its line makes room. */
   async #giveWay() {
     this.#stopWatching();
-    const line = await this.#checkLine(EMPTY_LINE);
-    if (this.#isOwnLine) await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, true);
+    const robotInfo = this.#robotInfo, line = await this.#checkLine(EMPTY_LINE);
+    if (this.#isOwnLine && robotInfo === this.#robotInfo) await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, true);
   }
 
   #stopWatching() {
