@@ -13,7 +13,7 @@ from tiniscript.lessons import catalogue
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.forms import BLOCKS, TEXT, in_form
 from tiniscript.lessons.sentences import EXAMPLES, sentence
-from tiniscript.studio import page_lessons
+from tiniscript.studio import block_speech, page_lessons
 from tiniscript.studio.checking import profile_of
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
@@ -89,7 +89,7 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
             assert not re.search(r"`|\[\[|\]\]", terminal)
             is_line_on_floor = "follows" in key
             assert of_text(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], on_blocks
-            spoken = page_lessons.blocks_of(CODE.findall(on_blocks), kit)
+            spoken = block_speech.blocks_of(CODE.findall(on_blocks), kit)
             for code in CODE.findall(on_blocks):
                 assert is_on_a_block(code, spoken), (code, on_blocks)
 

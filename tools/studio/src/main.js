@@ -176,12 +176,19 @@ pageState.checkResult.subscribe((answer) => {
     return;
   }
   editor.showFindings(answer.findings, repair);
-  showMessages(messageList, answer.findings, (finding) => views.goTo(finding));
+  showFindings(answer.findings);
   showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
 pageState.offeredFindingIndex.subscribe((findingIndex) => {
   const finding = pageState.checkResult.value?.findings[findingIndex];
   if (finding) showRepair(messageList, findingIndex, finding, repair);
+});
+for (const observable of [pageState.view, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
+  const { findings = [] } = pageState.checkResult.value ?? {};
+  showFindings(findings);
+  findings.forEach((finding, findingIndex) => {
+    if (finding.repair?.length) showRepair(messageList, findingIndex, finding, repair);
+  });
 });
 if (entryFailure) pageState.note.set(text(textKey(`why_${entryFailure}`)));
 editor.replace(work.text);
@@ -214,6 +221,11 @@ function showStatus(sentence, className) {
   staleTimer = 0;
   statusElement.textContent = sentence;
   statusElement.className = className;
+}
+
+/** @param {Finding[]} findings */
+function showFindings(findings) {
+  showMessages(messageList, findings, (finding) => views.goTo(finding));
 }
 
 /** @param {Finding} finding */

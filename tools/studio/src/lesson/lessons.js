@@ -6,13 +6,14 @@
 import { element } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { bugSentence } from '../page/faults.js';
-import { labelOfBlock, labelOfWord } from '../blocks/said.js';
+import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
-import { makeBlockElement, makeTextElement } from './page.js';
+import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
 import { storeDone, storeStars, loadDoneLessons, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
+import { makeTextElement } from '../page/sentences.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 
@@ -270,10 +271,7 @@ export class Lessons {
         this.#page.put(this.#lendProgram(lesson, programText));
         pageState.note.set(text('lesson_used'));
       },
-      labelOfCode: (code) => {
-        const spokenBlock = this.#spokenBlocks[code];
-        return this.#areBlocks ? spokenBlock ? withNamesAsWritten(labelOfBlock(spokenBlock), code) : labelOfWord(code) : null;
-      },
+      labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
       drawProgram: this.#areBlocks ? (programText, onDone) => {
         this.#pictures.request(programText, { text: programText, robot: pageState.robotName.value }, onDone);
       } : null,
@@ -425,10 +423,4 @@ export class Lessons {
     }
     if (hadFocus) (this.#nextButton.hidden ? this.#checkButton : this.#nextButton).focus();
   }
-}
-
-/** Names that a sentence has in small letters. @param {import('../blocks/said.js').Label} label @param {string} code */
-function withNamesAsWritten({ text: labelText, colour }, code) {
-  const names = code.match(/[\p{Ll}_]{2,}/gu) ?? [];
-  return { text: names.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
 }
