@@ -56,6 +56,8 @@ const work = storedWork ?? {
   world: 'obstacles',
   language: languageOf(navigator.language),
   name: '',
+  lesson: '',
+  own: null,
   view: /** @type {const} */ ('blocks'),
   level: /** @type {const} */ ('few'),
   words: false,
@@ -254,18 +256,20 @@ robotSelect.addEventListener('change', async () => {
   pageState.robotName.set(robotName);
 });
 
-/** @param {{text: string, robot: string, name: string}} program */
+/** @param {{text: string, robot: string, name: string, lesson?: string}} program */
 function putProgram(program) {
   showScreen('program');
   phone.show('program');
   openProgram(program);
 }
 
-/** @param {{text: string, robot: string, name: string}} program begins anew, whatever is seen */
+/** @param {{text: string, robot: string, name: string, lesson?: string}} program begins anew, whatever is seen; `lesson` whose it is */
 function openProgram(program) {
   pageState.note.set('');
   if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
+  work.lesson = program.lesson ?? '';
+  if (!work.lesson) work.own = null;
   views.beginProgram();
   editor.replace(program.text);
   simulatorPanel.beginAnew();
