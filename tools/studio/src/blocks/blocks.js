@@ -360,10 +360,14 @@ export class Blocks {
 
   resize() {
     if (!this.#container.clientWidth) return; // hidden: Blockly would forget what was seen
-    Blockly.svgResize(this.#workspace);
-    this.#search?.fitWidth();
-    if (!this.isBusy) makeRoom(this.#workspace, true);
-    this.#scrollToBeginning();
+    const resize = () => {
+      Blockly.svgResize(this.#workspace);
+      this.#search?.fitWidth();
+      if (!this.isBusy) makeRoom(this.#workspace, true);
+      this.#scrollToBeginning();
+    };
+    if (this.#runFollower) this.#runFollower.resizeBy(resize);
+    else resize();
     this.#runFollower?.keepInView();
     for (const [id] of this.#places) if (!this.#placeBubble(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
