@@ -488,11 +488,14 @@ def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     choose(page, 1)
     noted(page, "Here is your program for this lesson again.")
     assert editor.inner_text() == first
+    choose(page, 3)
+    assert not page.locator("#note").is_visible()  # which has none yet
     page.click("#home")
     page.click("#start_write")
     editor.filter(has_text=own).wait_for()
     page.click("#home")
     page.click("#start_lessons")
+    choose(page, 1)
     editor.filter(has_text=first).wait_for()
     choose(page, 2)
     editor.filter(has_text=second).wait_for()

@@ -226,7 +226,7 @@ export class Lessons {
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
-    if (pageState.note.value === text('lesson_used')) pageState.note.set(''); // it was said of the step before
+    if ([text('lesson_used'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
