@@ -13,7 +13,7 @@ from tiniscript.lessons import catalogue
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.forms import BLOCKS, TEXT, in_form
 from tiniscript.lessons.sentences import EXAMPLES, sentence
-from tiniscript.studio import page_lessons
+from tiniscript.studio import block_speech, page_lessons
 from tiniscript.studio.checking import profile_of
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
@@ -60,6 +60,27 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
             assert is_on_a_block(code, spoken), (code, each)
 
 
+# A question, or what a pupil is told to do.
+ASKS = {
+    "en": r"\?|\b(Build|Change|Find|Follow|Guess|Invent|Press|Put|Read|Say|Think|Try|Write)\b",
+    "es": r"\?|\b(Arma|Busca|Cambia|Di|Dilo|Escribe|Inventa|Junta|Lee|Piensa|Pon|Prueba|Pruébalo"
+    r"|Pulsa|Sigue)\b",
+    "pt": r"\?|\b(Ache|Aperte|Diga|Escreva|Invente|Junte|Leia|Monte|Mude|Pense|Ponha|Siga|Teste)\b",
+}
+
+
+@pytest.mark.parametrize("form", [TEXT, BLOCKS])
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_each_step_has_something_to_do(language: str, form: str) -> None:
+    for number in LESSONS:
+        for k, step in enumerate(page_lessons.steps(number, language, form)[:-1], 1):
+            said = " ".join(
+                row[0] for block in step["blocks"] if block["kind"] != "program"
+                for row in block["rows"]
+            )  # fmt: skip
+            assert re.search(ASKS[language], said, re.IGNORECASE), (number, k, said)
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", LESSONS)
 def test_both_forms_have_the_same_programs_and_hints(number: int, language: str) -> None:
@@ -89,7 +110,7 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
             assert not re.search(r"`|\[\[|\]\]", terminal)
             is_line_on_floor = "follows" in key
             assert of_text(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], on_blocks
-            spoken = page_lessons.blocks_of(CODE.findall(on_blocks), kit)
+            spoken = block_speech.blocks_of(CODE.findall(on_blocks), kit)
             for code in CODE.findall(on_blocks):
                 assert is_on_a_block(code, spoken), (code, on_blocks)
 

@@ -7,14 +7,13 @@ import { freshPage, learns } from './page_in_node.mjs';
 const page = freshPage();
 await learns(page);
 const { pageState } = await page.load('page/page_state.js');
-const { labelOfBlock, labelOfWord } = await page.load('blocks/said.js');
+const { labelOfCode } = await page.load('blocks/said.js');
 for (const line of readFileSync(0, 'utf-8').split('\n').filter(Boolean)) {
   const { robot, sentence, spoken } = JSON.parse(line);
   pageState.robotName.set(robot);
   console.log(JSON.stringify(sentence.split(/(`[^`]+`)/).filter(Boolean).map((part) => {
     if (!part.startsWith('`')) return [false, part];
-    const code = part.slice(1, -1), block = spoken[code];
-    const label = block ? labelOfBlock(block) : labelOfWord(code);
+    const code = part.slice(1, -1), label = labelOfCode(code, spoken);
     return [label !== null, label?.text ?? code];
   })));
 }

@@ -290,6 +290,7 @@ def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
 
 
 def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
+    """And names code as blocks do, where blocks are seen."""
     start(page, "SI|S;\nLOOP(2);\n  F(-2, 80);\nEND_LOOP;\n")
     icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
     assert icons.count() == 1
@@ -300,13 +301,22 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     icons.first.click()  # puts it away
     bubble.wait_for(state="detached")
     page.click("#view_text")
+    row, first = page.locator("#messages li"), page.locator("#first_message")
+    for place in (row, first):
+        told = place.text_content() or ""
+        assert message.message in told and message.fix in told
+    page.locator("#messages .repair").wait_for()
     page.click("#view_blocks")
     shown(page)
     assert bubble.count() == 0
     icons.first.click()
     bubble.wait_for()
+    named, mended = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
     whole = "".join((bubble.text_content() or "").split())
-    assert "".join(message.message.split()) in whole and "".join(message.fix.split()) in whole
+    assert "".join(named.split()) in whole and "".join(mended.split()) in whole
+    assert named in (first.text_content() or "")
+    assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
+    assert page.locator("#messages .repair").count() == 1
     page.locator("#messages .place").click()
     focused = page.evaluate("document.activeElement.closest('.blocklyDraggable')?.textContent")
     assert "back" in focused or "forward" in focused.replace("\xa0", " ")

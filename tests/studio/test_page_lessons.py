@@ -38,6 +38,7 @@ PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 @pytest.fixture
 def page(page: Page) -> Page:
     page.select_option("#speed", "20")
+    page.evaluate("localStorage.removeItem('tiniscript.lesson_programs')")
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     return page
@@ -470,6 +471,44 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
     versions = page.locator("#versions button", has_text=catalogue.load(FOLDERS[0]).title("en"))
     versions.first.click()  # a slow page may have kept what it had before, too
     page.locator(".cm-content", has_text=of_lesson).wait_for()
+
+
+@drawn
+def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
+    """From another lesson, from the start and after a reload; one's own comes back after it."""
+    own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
+    editor = page.locator(".cm-content")
+    write(page, own)
+    choose(page, 1)
+    page.locator("#lesson_steps button").first.click()
+    page.locator("#lesson_page .program button").first.click()
+    write(page, first)
+    choose(page, 2)
+    write(page, second)  # in the program that was there
+    choose(page, 1)
+    noted(page, "Here is your program for this lesson again.")
+    assert editor.inner_text() == first
+    choose(page, 3)
+    assert not page.locator("#note").is_visible()  # which has none yet
+    page.click("#home")
+    page.click("#start_write")
+    editor.filter(has_text=own).wait_for()
+    page.click("#home")
+    page.click("#start_lessons")
+    choose(page, 1)
+    editor.filter(has_text=first).wait_for()
+    choose(page, 2)
+    editor.filter(has_text=second).wait_for()
+    page.reload()
+    checked(page)
+    assert editor.inner_text() == second
+    page.click("#side_lessons")
+    page.locator("#lesson_page[data-lesson='2']").wait_for()
+    choose(page, 1)
+    editor.filter(has_text=first).wait_for()
+    page.click("#home")
+    page.click("#start_write")
+    editor.filter(has_text=own).wait_for()
 
 
 def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:

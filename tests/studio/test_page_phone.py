@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import SETTLED, Pages, axe, in_phase, shown, speak, turn, write
+from tests.support.studio import SETTLED, Pages, axe, checked, in_phase, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -226,6 +227,40 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
 
 
+# What can be tapped and lies under STOP; what is scrolled away at the top lies under nothing.
+UNDER_STOP = """() => {
+  const stop = document.querySelector('#stop').getBoundingClientRect();
+  const top = document.querySelector('body > header').getBoundingClientRect().bottom;
+  return [...document.querySelectorAll('button, select')].filter((each) => {
+    if (each.id === 'stop' || !each.checkVisibility()) return false;
+    const box = each.getBoundingClientRect();
+    const from = each.closest('header') ? box.top : Math.max(box.top, top);
+    return box.left < stop.right && box.right > stop.left
+      && from < stop.bottom && box.bottom > stop.top;
+  }).map((each) => each.id || each.textContent);
+}"""
+
+
+@drawn
+def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
+    """Beside all else that the bar has, in one row, whatever the language."""
+    bar = phone.locator("body > header")
+    for language in ("en", "es", "pt"):
+        speak(phone, language)
+        boxes = bar.locator("button:visible, select:visible").evaluate_all(
+            "all => all.map((e) => e.getBoundingClientRect().toJSON())"
+        )
+        assert len({box["top"] for box in boxes}) == 1 and boxes[-1]["right"] <= 390
+        assert all(a["right"] <= b["left"] for a, b in pairwise(boxes))
+        name = phone.locator("#language")
+        assert name.evaluate("e => e.scrollWidth <= e.clientWidth"), language
+    speak(phone, "en")
+    write(phone, "SI|F(1, 80)")
+    phone.click("#bar_new")
+    checked(phone)
+    assert phone.locator(".cm-content").inner_text().strip() == ""
+
+
 @drawn
 def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, view="start")
@@ -236,6 +271,9 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
         return float(box["width"])
 
     assert width() < 130
+    assert page.evaluate(UNDER_STOP) == []
+    page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
+    assert page.evaluate(UNDER_STOP) == []
     page.evaluate("document.querySelector('#link_connected').hidden = false")
     assert width() > 360
     page.evaluate("document.querySelector('#link_connected').hidden = true")

@@ -202,6 +202,11 @@ UNSEEN = """() => {
     return box.left < left || box.right > seen.right || box.top < seen.top || box.top + 24 > seen.bottom;
   }).map((each) => each.textContent);
 }"""  # noqa: E501
+# Of all stacks, those whose hat is cut off.
+CUT = UNSEEN.replace("'#blocks .running'", "`${PROGRAM} > .blocklyBlock`").replace(
+    "PROGRAM", "'#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas'"
+)
+AFTER_RUN_MS = 700  # after which the blocks are as large as before
 HATS = """SI|LOOP(FOREVER);
   F(1, 60);
 END_LOOP;
@@ -234,7 +239,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         assert box
         page.mouse.move(box["x"] + 10, box["y"] + 20)
         page.mouse.down()
-        page.mouse.move(640, 330, steps=8)
+        page.mouse.move(560, 330, steps=8)
         page.mouse.up()
         shown(page)
 
@@ -242,13 +247,18 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         transform = canvas.get_attribute("transform") or ""
         return [round(100 * float(each)) for each in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
-    whole = place()
+    whole, cut = place(), page.evaluate(CUT)
+    assert size[0] != 1366 or cut == []
     page.click("#run")
     in_phase(page, "running")
     hears(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
     hears(page, lambda: not page.evaluate(UNSEEN), "all are seen")
     page.click("#stop")
     in_phase(page, "ended")
+    page.locator("#blocks .running").first.wait_for(state="detached")
+    assert page.locator("html[data-big]").count()  # whoever looks at the robot leaves it so
+    page.wait_for_timeout(AFTER_RUN_MS)
+    assert page.evaluate(CUT) == cut, "what was seen before the run is seen"
     page.hover("#blocks")
     hears(page, lambda: place() == whole, "as before")
     page.click("#view_text")

@@ -11,15 +11,18 @@ from typing import Any
 
 import pytest
 
+from tests.lessons.test_forms import CAPITALS
 from tests.studio.test_second_time_page import made
 from tests.support.node import in_node
 from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
+from tiniscript.base.words import WORDS
+from tiniscript.diagnostics.codes import CODES
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.forms import BLOCKS, TEXT
 from tiniscript.lessons.sentences import EXAMPLES, sentence
-from tiniscript.studio import page_lessons
+from tiniscript.studio import block_speech, page_lessons, worker
 from tiniscript.studio.checking import profile_of
 from tools.builds.page_texts import page_texts
 
@@ -96,7 +99,7 @@ def seen(made: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
 
 
 def spoken_in(found: str) -> dict[str, dict[str, Any]]:
-    return page_lessons.blocks_of(CODE.findall(found), profile_of("tinibot").kit)
+    return block_speech.blocks_of(CODE.findall(found), profile_of("tinibot").kit)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -114,6 +117,40 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language:
     wrong = {"".join(f"[{said}]" if is_block else said for is_block, said in row): found
              for row in parts if (found := twice(row))}  # fmt: skip
     assert wrong == {}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_warning_names_its_code_as_blocks_do(made: Path, language: str) -> None:
+    """Of each code the program that its explanation has; the end of a block has no name."""
+    learn = json.dumps({"do": "check", "robot": "tinibot", "language": language})
+    warned = [code for code, about in CODES.items() if not about.is_mistake]
+    programs = [texts("messages", "en").get(f"{code}/wrong", "") for code in warned]
+    findings = [
+        finding
+        for program in programs
+        for finding in json.loads(worker.answer(learn, str(program).encode()))["findings"]
+    ]
+    said = [finding["on_blocks"] for finding in findings]
+    rows = [{"robot": "tinibot", "sentence": each[part], "spoken": each["spoken"]}
+            for each in said for part in ("message", "fix")]  # fmt: skip
+    parts = seen(made, language, rows)
+    assert {finding["code"] for finding in findings} > set(warned[:5])
+    assert sum(is_block for row in parts for is_block, _ in row) > len(warned)
+    plain = [part for row in parts for is_block, part in row if not is_block]
+    left = [part for part in plain for word in CAPITALS.findall(part)
+            if word in WORDS and not word.startswith("END")]  # fmt: skip
+    assert left == []
+
+
+@pytest.mark.parametrize("sentence, marked", [
+    ("During this F (2 s)", "During this `F` (2 s)"),
+    ("F(2, 80) UNTIL(DISTANCE < 5), X = X + 1.", "`F(2, 80) UNTIL(DISTANCE < 5)`, `X = X + 1`."),
+    ("as in UNTIL(DISTANCE < 5)", "as in `UNTIL`(`DISTANCE < 5`)"),
+    ("write f(2, 80), F(2 80 or X", "write `f(2, 80)`, `F`(2 80 or X"),
+    ("A file(s) with 1 MB; the character `, F", "A file(s) with 1 MB; the character `, F"),
+])  # fmt: skip
+def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked: str) -> None:
+    assert block_speech.mark_code(sentence, profile_of("tinibot").kit) == marked
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -6,13 +6,11 @@ this when lessons are first looked at.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tiniscript.base.kit import Kit
 from tiniscript.base.words import WORDS
 from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
@@ -28,9 +26,10 @@ from tiniscript.library.compiling import compile_source, fit_to_robot, image_mak
 from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import Form as BlockForm
-from tiniscript.studio.block_form import kinds_in, lone_block, pieces_in
+from tiniscript.studio.block_form import kinds_in, pieces_in
 from tiniscript.studio.block_kinds import KIND_OF, piece_of
 from tiniscript.studio.block_reading import read_blocks
+from tiniscript.studio.block_speech import WORD_PATTERN, blocks_of, codes_in
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import NONCE, Marks, Simulation
 from tiniscript.studio.world_form import Form, form_of
@@ -39,13 +38,6 @@ from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
 STEPS, TASK = 2, 3  # of a page's headings, after what is needed
-CODE_PATTERN, WORD_PATTERN = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
-# What makes a program of code in a sentence: the end of what it begins, or SHOW around a value.
-PROGRAM_FORMS = (
-    "{}",
-    *(f"{{}}\n{end}" for end in ("END_LOOP", "ENDIF", "END_WHILE", "END_WHEN", "END_DEF")),
-)
-VALUE_FORM = "SHOW({})"
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -136,21 +128,6 @@ def spoken_blocks(number: int, language: str) -> dict[str, dict[str, Any]]:
     return blocks_of(_codes(number, language, BLOCKS), profile_of(_lesson(number).robot).kit)
 
 
-def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
-    """Return the block that each code is, but of a word alone."""
-    block_of_code: dict[str, dict[str, Any]] = {}
-    for code in codes:
-        if WORD_PATTERN.fullmatch(code):
-            continue  # what a word is called, the page knows
-        for text in (*PROGRAM_FORMS, VALUE_FORM):
-            block = lone_block(read_blocks(text.format(code), kit))
-            if block is not None:
-                kind = "" if text == VALUE_FORM else block.kind
-                block_of_code[code] = {"kind": kind, "word": block.word, "values": block.values}
-                break
-    return block_of_code
-
-
 def _kinds_of(words: set[str]) -> set[str]:
     return {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()}
 
@@ -183,11 +160,7 @@ def _codes(number: int, language: str, form: str = TEXT) -> list[str]:
     for step in steps(number, language, form):
         parts = [block for block in step["blocks"] if block["kind"] != "program"]
         sentences += [*map(_text_of, parts), step["hint"]]
-    return _codes_in(sentences)
-
-
-def _codes_in(sentences: list[str]) -> list[str]:
-    return [code for sentence in sentences for code in CODE_PATTERN.findall(sentence)]
+    return codes_in(sentences)
 
 
 def _text_of(block: dict[str, Any]) -> str:
@@ -268,7 +241,7 @@ class LessonCheck:
             [sentence(finding, self._language, form) for finding in findings]
             for form in (TEXT, BLOCKS)
         )
-        code_blocks = blocks_of(_codes_in(block_sentences), self._kit)
+        code_blocks = blocks_of(codes_in(block_sentences), self._kit)
         run = None
         if outcome is not None and outcome.run.ending != ASKS:
             failure_ms = findings[0].ms if findings else None

@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import Any
 
 from tiniscript.base import languages
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.named_robot import rename_robot
@@ -20,6 +21,7 @@ from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, first_blocks, from_data, in_order, size_of
 from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import LOOSE_PREFIX, read_blocks
+from tiniscript.studio.block_speech import blocks_of, codes_in, mark_code
 
 Json = dict[str, Any]
 TOGETHER = "tiniscript.studio.page_together"
@@ -34,12 +36,17 @@ def answer(request: str, data: bytes = b"") -> str:
 
 def _check(fields: Json, data: bytes) -> Json:
     result = checking.check(data, fields["robot"], fields["language"])
+    kit = checking.profile_of(result.robot).kit
     return {
         "image": result.image.hex(),
         "program": f"{checksum(result.image):08x}" if result.image else "",
         "bytes": result.code_bytes,
         "findings": [
-            {**finding.message._asdict(), "may_repair": finding.may_repair}
+            {
+                **finding.message._asdict(),
+                "may_repair": finding.may_repair,
+                "on_blocks": _on_blocks(finding.message, kit),
+            }
             for finding in result.findings
         ],
         "places": result.places,
@@ -52,6 +59,12 @@ def _check(fields: Json, data: bytes) -> Json:
         "remote": result.remote_words,
         "loose": _loose(fields, data) if LOOSE_PREFIX.encode() in data else 0,
     }
+
+
+def _on_blocks(message: Message, kit: Kit) -> Json:
+    """Return a message for those who see blocks: its sentences, and which block each code is."""
+    said, fix = (mark_code(sentence, kit) for sentence in (message.message, message.fix))
+    return {"message": said, "fix": fix, "spoken": blocks_of(codes_in([said, fix]), kit)}
 
 
 def _repair(fields: Json, data: bytes) -> Json:

@@ -56,6 +56,8 @@ const work = storedWork ?? {
   world: 'obstacles',
   language: languageOf(navigator.language),
   name: '',
+  lesson: '',
+  own: null,
   view: /** @type {const} */ ('blocks'),
   level: /** @type {const} */ ('few'),
   words: false,
@@ -176,12 +178,19 @@ pageState.checkResult.subscribe((answer) => {
     return;
   }
   editor.showFindings(answer.findings, repair);
-  showMessages(messageList, answer.findings, (finding) => views.goTo(finding));
+  showFindings(answer.findings);
   showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
 pageState.offeredFindingIndex.subscribe((findingIndex) => {
   const finding = pageState.checkResult.value?.findings[findingIndex];
   if (finding) showRepair(messageList, findingIndex, finding, repair);
+});
+for (const observable of [pageState.view, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
+  const { findings = [] } = pageState.checkResult.value ?? {};
+  showFindings(findings);
+  findings.forEach((finding, findingIndex) => {
+    if (finding.repair?.length) showRepair(messageList, findingIndex, finding, repair);
+  });
 });
 if (entryFailure) pageState.note.set(text(textKey(`why_${entryFailure}`)));
 editor.replace(work.text);
@@ -216,6 +225,11 @@ function showStatus(sentence, className) {
   statusElement.className = className;
 }
 
+/** @param {Finding[]} findings */
+function showFindings(findings) {
+  showMessages(messageList, findings, (finding) => views.goTo(finding));
+}
+
 /** @param {Finding} finding */
 function repair(finding) {
   if (pageState.checkResult.value && finding.repair) editor.applyChanges(finding.repair); // else its places are those of another text
@@ -242,18 +256,20 @@ robotSelect.addEventListener('change', async () => {
   pageState.robotName.set(robotName);
 });
 
-/** @param {{text: string, robot: string, name: string}} program */
+/** @param {{text: string, robot: string, name: string, lesson?: string}} program */
 function putProgram(program) {
   showScreen('program');
   phone.show('program');
   openProgram(program);
 }
 
-/** @param {{text: string, robot: string, name: string}} program begins anew, whatever is seen */
+/** @param {{text: string, robot: string, name: string, lesson?: string}} program begins anew, whatever is seen; `lesson` whose it is */
 function openProgram(program) {
   pageState.note.set('');
   if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
+  work.lesson = program.lesson ?? '';
+  if (!work.lesson) work.own = null;
   views.beginProgram();
   editor.replace(program.text);
   simulatorPanel.beginAnew();

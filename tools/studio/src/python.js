@@ -22,6 +22,7 @@ import { watchPromise } from './page/progress.js';
  * @property {string} message
  * @property {string} fix
  * @property {boolean} may_repair
+ * @property {{message: string, fix: string, spoken: Record<string, import('./blocks/said.js').SpokenBlock>}} on_blocks its sentences for who sees blocks, with back quotes around code, and what each code is as a block
  * @property {Change[]} [repair] what its button does, as soon as it has been tried
  */
 

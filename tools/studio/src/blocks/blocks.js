@@ -10,6 +10,7 @@ import { Checker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shap
 import { setTonePlayer } from './fields.js';
 import { insert } from './insert.js';
 import { pictureOf } from './picture.js';
+import { sayOnBlocks } from './said.js';
 import { Search } from './search.js';
 import { getOptions } from './styles.js';
 import { findItems, levelOf, makeToolbox } from './toolbox.js';
@@ -359,10 +360,14 @@ export class Blocks {
 
   resize() {
     if (!this.#container.clientWidth) return; // hidden: Blockly would forget what was seen
-    Blockly.svgResize(this.#workspace);
-    this.#search?.fitWidth();
-    if (!this.isBusy) makeRoom(this.#workspace, true);
-    this.#scrollToBeginning();
+    const resize = () => {
+      Blockly.svgResize(this.#workspace);
+      this.#search?.fitWidth();
+      if (!this.isBusy) makeRoom(this.#workspace, true);
+      this.#scrollToBeginning();
+    };
+    if (this.#runFollower) this.#runFollower.resizeBy(resize);
+    else resize();
     this.#runFollower?.keepInView();
     for (const [id] of this.#places) if (!this.#placeBubble(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
@@ -488,8 +493,8 @@ export class Blocks {
     if (this.#faultAt.id) messages.set(this.#faultAt.id, [this.#faultAt.said]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
-      const message = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
-      messages.set(id, [...(messages.get(id) ?? []), message]);
+      const { message, fix } = sayOnBlocks(finding), saidText = [message, fix && `${text('try')} ${fix}`].filter(Boolean).join('\n');
+      messages.set(id, [...(messages.get(id) ?? []), saidText]);
       if (finding.severity === 'mistake') wrongIds.add(id);
     }
     Blockly.Events.disable();

@@ -96,3 +96,28 @@ export function labelOfWord(word) {
   if (!kind) return null;
   return KINDS[kind]?.words.includes(word) ? { text: blockLabel(word), colour: COLOURS[KINDS[kind]?.colour ?? ''] ?? '' } : labelOf(kind, '', null);
 }
+
+/**
+ * What is on the block that a code in a sentence is.
+ * @param {string} code @param {Record<string, SpokenBlock>} spokenBlocks what each code but a word alone is
+ * @returns {Label | null} null where no block has it
+ */
+export function labelOfCode(code, spokenBlocks) {
+  const spokenBlock = spokenBlocks[code];
+  if (!spokenBlock) return labelOfWord(code);
+  const { text: labelText, colour } = labelOfBlock(spokenBlock);
+  const namesAsWritten = code.match(/[\p{Ll}_]{2,}/gu) ?? []; // those that a sentence has in small letters
+  return { text: namesAsWritten.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
+}
+
+/**
+ * What the compiler says, for who sees blocks: its code is named as its blocks are.
+ * @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}}
+ */
+export function sayOnBlocks({ on_blocks: { message, fix, spoken } }) {
+  const [namedMessage = '', namedFix = ''] = [message, fix].map((sentence) => sentence.replace(/`([^`]+)`/g, (_, code) => {
+    const label = labelOfCode(code, spoken);
+    return label ? `“${label.text}”` : code;
+  }));
+  return { message: namedMessage, fix: namedFix };
+}

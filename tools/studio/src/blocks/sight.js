@@ -1,5 +1,6 @@
 // What runs is in sight: the blocks are scrolled to it, and made smaller where it stands far apart. Once it has
-// run, they are as large as before, and where they were. Whoever scrolls during a run has it left to them.
+// run, they are as large as before, and where they were. Whoever scrolls during a run has it left to them. A large
+// robot leaves the blocks less room, after the run, too: what was seen before is seen there, however small.
 
 import * as Blockly from 'blockly/core';
 
@@ -16,6 +17,8 @@ export class RunFollower {
   #runningIds = [];
   /** How the blocks were seen before the run. @type {{scale: number, x: number, y: number} | null} */
   #viewBefore = null;
+  /** How they were seen where there was more room, and how much of each stack. @type {{scale: number, x: number, y: number, width: number, seenSizes: [string, number, number][]} | null} */
+  #viewWithRoom = null;
   #isLeftAlone = false; // to somebody who scrolls
   #lastScroll_ms = -Infinity;
   #endTimer = 0;
@@ -53,10 +56,9 @@ export class RunFollower {
     const view = this.#view;
     if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
     const { scale, scrollX: x, scrollY: y } = this.#workspace;
-    const scaleToFit = (/** @type {Blockly.utils.Rect} */ box) => scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), view.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
     const headBoxes = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD_UNITS)));
-    const boundingBox = scaleToFit(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
-    const fittingScale = scaleToFit(boundingBox);
+    const boundingBox = this.#scaleToFit(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
+    const fittingScale = this.#scaleToFit(boundingBox);
     const isTooFar = fittingScale < LEAST_SCALE;
     if (headBoxes.every((box) => contains(box, view)) && scale <= LEAST_SCALE) return;
     if (isTooFar && (headBoxes.some((box) => contains(box, view)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
@@ -64,6 +66,59 @@ export class RunFollower {
     this.#lastScroll_ms = performance.now();
     if (fittingScale < scale) this.#workspace.setScale(Math.max(LEAST_SCALE, fittingScale));
     this.#scrollTo(isTooFar ? headBoxes[0] ?? boundingBox : boundingBox);
+  }
+
+  /**
+   * Gives the blocks another room. Where a large robot takes it, what was seen is made smaller, and is as before once
+   * the room is there again.
+   * @param {() => void} resize
+   */
+  resizeBy(resize) {
+    const view = this.#view, { scale, scrollX: x, scrollY: y } = this.#workspace, { width } = this.#workspace.getMetricsManager().getViewMetrics();
+    const seenSizes = this.#sizesSeenIn(view);
+    resize();
+    const isNarrower = this.#workspace.getMetricsManager().getViewMetrics().width < (this.#viewWithRoom?.width ?? width);
+    const isForRobot = 'big' in document.documentElement.dataset && !('phone' in document.documentElement.dataset);
+    if (isNarrower && isForRobot) {
+      this.#viewWithRoom ??= { scale, x, y, width, seenSizes };
+      this.#makeFit();
+    } else if (this.#viewWithRoom) {
+      this.#showAs(this.#viewWithRoom);
+      this.#viewWithRoom = null;
+    }
+  }
+
+  /** How much of each stack is seen, from its corner. @param {Blockly.utils.Rect} view @returns {[string, number, number][]} */
+  #sizesSeenIn(view) {
+    return this.#workspace.getTopBlocks(false).flatMap((block) => {
+      const { left, top, right, bottom } = block.getBoundingRectangle();
+      return view.contains(left, top) ? [[block.id, Math.min(right, view.right) - left, Math.min(bottom, view.bottom) - top]] : [];
+    });
+  }
+
+  /** Has all be seen that was seen where there was more room, if it does not fit in. */
+  #makeFit() {
+    const boxes = (this.#viewWithRoom?.seenSizes ?? []).flatMap(([id, width, height]) => {
+      const { left, top } = this.#workspace.getBlockById(id)?.getBoundingRectangle() ?? {};
+      return left === undefined || top === undefined ? [] : new Blockly.utils.Rect(top, top + height, left, left + width);
+    });
+    const view = this.#view;
+    if (!this.#viewWithRoom || !boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
+    const seenBox = boundsOf(boxes);
+    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(this.#viewWithRoom.scale, this.#scaleToFit(seenBox))));
+    this.#scrollTo(seenBox);
+  }
+
+  /** @param {Blockly.utils.Rect} box @returns {number} with which all of it is seen */
+  #scaleToFit(box) {
+    const view = this.#view;
+    return this.#workspace.scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), view.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
+  }
+
+  /** @param {{scale: number, x: number, y: number}} view */
+  #showAs({ scale, x, y }) {
+    this.#workspace.setScale(scale);
+    this.#workspace.scroll(x, y);
   }
 
   /** What is seen, in the units of blocks. */
@@ -85,8 +140,8 @@ export class RunFollower {
     const viewBefore = this.#viewBefore;
     this.#viewBefore = null;
     if (!viewBefore) return;
-    this.#workspace.setScale(viewBefore.scale);
-    this.#workspace.scroll(viewBefore.x, viewBefore.y);
+    this.#showAs(viewBefore);
+    this.#makeFit();
   }
 }
 

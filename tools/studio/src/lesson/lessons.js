@@ -6,18 +6,19 @@
 import { element } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { bugSentence } from '../page/faults.js';
-import { labelOfBlock, labelOfWord } from '../blocks/said.js';
+import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
-import { makeBlockElement, makeTextElement } from './page.js';
+import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { storeDone, storeStars, loadDoneLessons, countAllStars } from './progress.js';
+import { storeDone, storeProgram, storeStars, loadDoneLessons, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
+import { makeTextElement } from '../page/sentences.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 
 /** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
-/** @typedef {{text: string, robot: string, name: string}} Program */
+/** @typedef {import('../programs/work.js').Program & {lesson?: string}} Program `lesson` whose it is */
 /** @typedef {{blocks: import('./page.js').StepBlock[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
@@ -79,9 +80,6 @@ export class Lessons {
   #findings = { said: [], block_said: [] };
   #hasPassed = false;
   #isPlaying = false;
-  /** This person's program, which comes back after the lesson. @type {Program | null} */
-  #ownProgram = null;
-  #lessonProgramName = ''; // of the lesson's program
 
   /** @param {Page} page */
   constructor(page) {
@@ -122,8 +120,9 @@ export class Lessons {
     pageState.sideId.subscribe((sideId) => {
       if (sideId !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
     });
-    pageState.programText.subscribe(() => { // what was said of the one before is not of it
-      if (this.#isShown) this.#forgetCheck();
+    pageState.programText.subscribe(() => {
+      if (this.#isShown) this.#forgetCheck(); // what was said of the one before is not of it
+      this.#keepProgram();
     });
     const lessonPage = element('lesson_page', HTMLElement);
     const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - MORE_PX);
@@ -171,7 +170,10 @@ export class Lessons {
       const { lessons } = await this.#page.python.ask({ do: 'lesson_titles', language });
       if (requestNumber !== this.#requestCount) return;
       this.#lessons = lessons;
-      if (!this.#steps.length) this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => !loadDoneLessons().has(name)));
+      if (!this.#steps.length) {
+        const doneLessons = loadDoneLessons(), { lesson } = this.#page.work;
+        this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
+      }
       this.#listLessons();
       await this.#chooseLesson(this.#lessonNumber);
       if (wasChecking) this.#verdictElement.textContent = text('lesson_ended');
@@ -224,7 +226,7 @@ export class Lessons {
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
-    if (pageState.note.value === text('lesson_used')) pageState.note.set(''); // it was said of the step before
+    if ([text('lesson_used'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
@@ -270,10 +272,7 @@ export class Lessons {
         this.#page.put(this.#lendProgram(lesson, programText));
         pageState.note.set(text('lesson_used'));
       },
-      labelOfCode: (code) => {
-        const spokenBlock = this.#spokenBlocks[code];
-        return this.#areBlocks ? spokenBlock ? withNamesAsWritten(labelOfBlock(spokenBlock), code) : labelOfWord(code) : null;
-      },
+      labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
       drawProgram: this.#areBlocks ? (programText, onDone) => {
         this.#pictures.request(programText, { text: programText, robot: pageState.robotName.value }, onDone);
       } : null,
@@ -293,10 +292,19 @@ export class Lessons {
   /** Has the lesson's robot and world seen. */
   async #enterLesson() {
     const requestNumber = this.#requestCount, lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
+    const keptText = loadProgram(lesson.name);
+    if (keptText && this.#page.work.lesson !== lesson.name && !pageState.groupName.value) {
+      if (keptText !== pageState.programText.value) {
+        this.#page.exchange(this.#lendProgram(lesson, keptText));
+        pageState.note.set(text('lesson_again'));
+      }
+      await this.#showWorld(1);
+      return;
+    }
     const isForOtherRobot = await this.#isForOtherRobot(lesson);
     if (requestNumber !== this.#requestCount) return;
     if (isForOtherRobot) {
-      const notice = text(this.#isOfLesson ? 'lesson_before' : 'lesson_own');
+      const notice = text(this.#page.work.lesson ? 'lesson_before' : 'lesson_own');
       this.#page.exchange(this.#lendProgram(lesson, ''));
       pageState.note.set(notice);
     }
@@ -313,24 +321,26 @@ export class Lessons {
     return await isRightOn(robotName) && !(await isRightOn(lesson.robot)) && programText === pageState.programText.value;
   }
 
-  /** Whether the program in the editor is a lesson's, in place of this person's own one. */
-  get #isOfLesson() {
-    return this.#ownProgram !== null && this.#page.work.name === this.#lessonProgramName;
+  /** Keeps a lesson's program; one that is changed beside another lesson is that one's from then on. */
+  #keepProgram() {
+    const { work } = this.#page, openLesson = this.#lessons[this.#lessonNumber - 1];
+    if (pageState.groupName.value) [work.lesson, work.own] = ['', null]; // it is the group's
+    if (!work.lesson) return;
+    if (openLesson && pageState.sideId.value === 'side_lessons') work.lesson = openLesson.name;
+    storeProgram(work.lesson, pageState.programText.value);
   }
 
   /** A program of the lesson, for which this person's own one steps back. @param {Lesson} lesson @param {string} programText @returns {Program} */
   #lendProgram(lesson, programText) {
-    const { text: ownText, robot: robotName, name } = this.#page.work;
-    if (!this.#isOfLesson) this.#ownProgram = { text: ownText, robot: robotName, name };
-    this.#lessonProgramName = `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`;
-    return { text: programText, robot: lesson.robot, name: this.#lessonProgramName };
+    const { work } = this.#page;
+    if (!work.lesson) work.own = { text: work.text, robot: work.robot, name: work.name };
+    return { text: programText, robot: lesson.robot, name: `${this.#titleOf(lesson).replace(/[\\/:*?"<>|]/g, '')}.ts`, lesson: lesson.name };
   }
 
   /** The lesson is over, and its check: this person's own program comes back, unless another one has been opened since. */
   leave() {
     if (!this.#endButton.hidden) this.#forgetCheck();
-    const ownProgram = this.#isOfLesson ? this.#ownProgram : null;
-    this.#ownProgram = null;
+    const { own: ownProgram } = this.#page.work;
     if (!ownProgram || pageState.groupName.value) return;
     this.#page.exchange(ownProgram);
     this.#page.simulatorPanel.leaveLesson();
@@ -425,10 +435,4 @@ export class Lessons {
     }
     if (hadFocus) (this.#nextButton.hidden ? this.#checkButton : this.#nextButton).focus();
   }
-}
-
-/** Names that a sentence has in small letters. @param {import('../blocks/said.js').Label} label @param {string} code */
-function withNamesAsWritten({ text: labelText, colour }, code) {
-  const names = code.match(/[\p{Ll}_]{2,}/gu) ?? [];
-  return { text: names.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
 }

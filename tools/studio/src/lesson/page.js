@@ -1,6 +1,7 @@
 // A step of a lesson: its paragraphs and programs become elements. Knows no lesson.
 
 import { makeButton, makeElement } from '../page/made.js';
+import { makeTextElement } from '../page/sentences.js';
 
 const PICTURE_RATIO = 2.6; // of a picture of blocks, for one of the page
 
@@ -43,24 +44,4 @@ function makeProgramElement(programText, { useProgram, drawProgram }) {
     programElement.after(picture);
   });
   return container;
-}
-
-/**
- * An element with a line of a page, in which `**` is around what is bold, and a back quote around code.
- * @param {'p' | 'span' | 'li'} tag
- * @param {string} line
- * @param {Reader} reader
- */
-export function makeTextElement(tag, line, { labelOfCode }) {
-  return makeElement(tag, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((segment) => {
-    const markLength = segment.startsWith('**') ? 2 : segment.startsWith('`') ? 1 : 0;
-    if (!markLength || segment.length <= 2 * markLength) return segment;
-    const content = segment.slice(markLength, -markLength), label = markLength === 1 ? labelOfCode(content) : null;
-    const partElement = makeElement(markLength === 2 ? 'strong' : label ? 'span' : 'code', '', label?.text ?? content);
-    if (label) {
-      partElement.className = 'on_block';
-      partElement.style.setProperty('--colour', label.colour);
-    }
-    return partElement;
-  }));
 }

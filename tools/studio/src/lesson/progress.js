@@ -1,4 +1,5 @@
-// Which lessons are done, and the stars for each and for each world with a task, kept on this device.
+// Which lessons are done, the stars for each and for each world with a task, and the newest program of each,
+// kept on this device.
 //
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
@@ -6,8 +7,10 @@ import { storeText, loadJson } from '../page/kept.js';
 
 const STORAGE_KEY = 'tiniscript.lessons';
 const STARS_KEY = 'tiniscript.stars';
+const PROGRAMS_KEY = 'tiniscript.lesson_programs';
 const MOST_LESSONS = 100;
 const MOST_STARS = 100; // of a lesson
+const MOST_CHARACTERS = 20_000; // of a lesson's program
 
 /** @returns {Set<string>} names of lessons */
 export function loadDoneLessons() {
@@ -44,4 +47,21 @@ export function starsKeyOfWorld(name) {
 /** All stars of all lessons and worlds. */
 export function countAllStars() {
   return [...loadStars().values()].reduce((sum, count) => sum + count, 0);
+}
+
+/** @returns {Map<string, string>} the newest program of each lesson for which there was one */
+function loadPrograms() {
+  const stored = loadJson(PROGRAMS_KEY);
+  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MOST_LESSONS);
+  return new Map(rows.filter(([name, text]) => /^\w{1,60}$/.test(name) && typeof text === 'string' && text.trim() && text.length <= MOST_CHARACTERS));
+}
+
+/** @param {string} name of a lesson @returns {string} its newest program; empty for none */
+export function loadProgram(name) {
+  return loadPrograms().get(name) ?? '';
+}
+
+/** Keeps the newest program of a lesson. @param {string} name @param {string} text */
+export function storeProgram(name, text) {
+  if (text.trim() && text.length <= MOST_CHARACTERS) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(loadPrograms().set(name, text))));
 }

@@ -1,4 +1,5 @@
-// Keeps the work on this device: what a tab has, and what the last tab had.
+// Keeps the work on this device: what a tab has, and what the last tab had. A program that is a lesson's
+// has the lesson's name; `own` is the one of this person, which comes back after the lesson.
 //
 // What is kept may be damaged, or from somebody else on this device: all of it is checked.
 
@@ -6,7 +7,8 @@ import { storeText, loadText, loadJson } from '../page/kept.js';
 import { languageOf } from '../page/texts.js';
 import { isRobot, WORLDS } from '../page/words.js';
 
-/** @typedef {{text: string, robot: string, world: string, language: string, name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
+/** @typedef {{text: string, robot: string, name: string}} Program */
+/** @typedef {{text: string, robot: string, lesson: string, own: Program | null, world: string, language: string, name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
 
 const STORAGE_KEY = 'tiniscript.work';
 const WORLD_KEY = 'tiniscript.world'; // the text of the newest world that was drawn here
@@ -87,6 +89,8 @@ function validWork(value) {
   return {
     text: value.text,
     robot: isRobot(value.robot) ? value.robot : 'tinibot',
+    lesson: typeof value.lesson === 'string' ? value.lesson.slice(0, 60) : '',
+    own: validProgram(value.own),
     world: value.world === OWN_WORLD || WORLDS.some((world) => world.name === value.world) ? value.world : 'obstacles',
     language: languageOf(typeof value.language === 'string' ? value.language : ''),
     name: typeof value.name === 'string' ? value.name.slice(0, 200) : '',
@@ -95,4 +99,10 @@ function validWork(value) {
     words: value.words === true,
     sound: value.sound !== false,
   };
+}
+
+/** @param {any} value @returns {Program | null} */
+function validProgram(value) {
+  if (typeof value?.text !== 'string' || value.text.length > MOST_CHARACTERS || !isRobot(value.robot)) return null;
+  return { text: value.text, robot: value.robot, name: typeof value.name === 'string' ? value.name.slice(0, 200) : '' };
 }

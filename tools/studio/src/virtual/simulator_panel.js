@@ -1,6 +1,7 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
+import { sayOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -247,7 +248,8 @@ export class SimulatorPanel {
     const checkResult = /** @type {CheckResult} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
     if (startNumber !== this.#startCount) return;
     if (!checkResult.image) {
-      pageState.note.set(text('alone_wrong', { why: checkResult.findings.find(({ severity }) => severity === 'mistake')?.message ?? '' }));
+      const mistake = checkResult.findings.find(({ severity }) => severity === 'mistake');
+      pageState.note.set(text('alone_wrong', { why: mistake ? sayOnBlocks(mistake).message : '' })); // it is a block that is tried alone
       return;
     }
     await this.#start(false, null, 0, null, { text: programText, checked: checkResult });

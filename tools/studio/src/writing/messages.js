@@ -1,8 +1,11 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
+import { labelOfCode, sayOnBlocks } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
+import { pageState } from '../page/page_state.js';
+import { makeTextElement } from '../page/sentences.js';
 import { text } from '../page/texts.js';
 
 /** @import { CheckResult, Finding } from '../python.js' */
@@ -15,6 +18,18 @@ export function messageWithFix({ message = '', fix = '' }) {
   return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(separator);
 }
 
+/** A finding in words, as this person sees the program. @param {Finding} finding @returns {{message: string, fix: string}} */
+function sayAsSeen(finding) {
+  return pageState.view.value === 'blocks' ? sayOnBlocks(finding) : finding;
+}
+
+/** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
+function makeSaid(finding) {
+  const { spoken, ...sentences } = finding.on_blocks;
+  return pageState.view.value === 'blocks'
+    ? makeTextElement('span', messageWithFix(sentences), { labelOfCode: (code) => labelOfCode(code, spoken) }) : messageWithFix(finding);
+}
+
 /**
  * @param {HTMLElement} list
  * @param {Finding[]} findings
@@ -25,9 +40,9 @@ export function showMessages(list, findings, goTo) {
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
     const lineButton = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
     lineButton.className = 'place';
-    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(finding) });
+    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(sayAsSeen(finding)) });
     firstMessage ||= lineButton.ariaLabel;
-    const row = makeElement('li', '', lineButton, ' ', messageWithFix(finding));
+    const row = makeElement('li', '', lineButton, ' ', makeSaid(finding));
     row.className = finding.severity;
     return row;
   });
@@ -46,7 +61,7 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
+  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: sayAsSeen(finding).fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 

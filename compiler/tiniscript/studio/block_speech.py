@@ -1,0 +1,87 @@
+"""The code in a sentence, as the blocks that it is: for those who build programs of blocks.
+
+Such a sentence has back quotes around its code. Lessons are written so; what the compiler says of a
+program is not, and there code is what begins with a name in capitals, or a word with its brackets,
+and is read as an instruction or a value.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Any
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.words import WORDS
+from tiniscript.studio.block_form import Block, lone_block
+from tiniscript.studio.block_reading import read_blocks
+
+CODE_PATTERN = re.compile("`([^`]+)`")
+WORD_PATTERN = re.compile(r"\w+")
+# What makes a program of code in a sentence: the end of what it begins, or SHOW around a value.
+PROGRAM_FORMS = (
+    "{}",
+    *(f"{{}}\n{end}" for end in ("END_LOOP", "ENDIF", "END_WHILE", "END_WHEN", "END_DEF")),
+)
+VALUE_FORM = "SHOW({})"
+_BRACKETS = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
+_NAME = rf"[^\W\d]\w*{_BRACKETS}|[A-Z][A-Z0-9_]*\b"
+_PART = re.compile(rf" ?(?:{_NAME}|{_BRACKETS}|\d+(?:\.\d+)?\b|<>|<=|>=|[-+*/%<>=])")
+_BEGINNING = re.compile(r"(?<![\w.])(?P<word>[A-Z][A-Z0-9_]*\b|[^\W\d]\w*(?=\())")
+
+
+def mark_code(sentence: str, kit: Kit) -> str:
+    """Return a sentence with back quotes around its code, as much of it as is read as one block."""
+    if "`" in sentence:
+        return sentence  # it speaks of them
+    parts, at = [], 0
+    while beginning := _BEGINNING.search(sentence, at):
+        start, word_end = beginning.start(), beginning.start() + len(beginning["word"])
+        end = _end_of_code(sentence, start, kit)
+        parts += [sentence[at:start], f"`{sentence[start:end]}`" if end else beginning["word"]]
+        at = end or word_end
+    return "".join((*parts, sentence[at:]))
+
+
+def codes_in(sentences: list[str]) -> list[str]:
+    return [code for sentence in sentences for code in CODE_PATTERN.findall(sentence)]
+
+
+def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
+    """Return the block that each code is, but of a word alone; of a value one without a kind."""
+    block_of_code: dict[str, dict[str, Any]] = {}
+    for code in codes:
+        if WORD_PATTERN.fullmatch(code):
+            continue  # what a word is called, the page knows
+        if block := _block_of(code, kit):
+            block_of_code[code] = {"kind": block.kind, "word": block.word, "values": block.values}
+    return block_of_code
+
+
+@lru_cache(maxsize=1000)  # the same are said again whenever a text is checked
+def _block_of(code: str, kit: Kit) -> Block | None:
+    for form in (*PROGRAM_FORMS, VALUE_FORM):
+        block = lone_block(read_blocks(form.format(code), kit))
+        if block is not None:
+            return block._replace(kind="") if form == VALUE_FORM else block
+    return None
+
+
+def _end_of_code(sentence: str, start: int, kit: Kit) -> int:
+    """Return where the longest code ends that begins there, or 0 if there is none."""
+    word = WORD_PATTERN.match(sentence, start)
+    assert word is not None, "code begins with a name"
+    ends, end = [word.end()], start
+    while part := _PART.match(sentence, end):
+        end = part.end()
+        ends.append(end)
+    return next((end for end in reversed(ends) if _is_code(sentence[start:end], kit)), 0)
+
+
+def _is_code(code: str, kit: Kit) -> bool:
+    if WORD_PATTERN.fullmatch(code):
+        return code in WORDS or any(
+            code == device.name for device in (*kit.readings, *kit.actuators)
+        )
+    name = code.partition("(")[0].strip()
+    return (name == name.upper() or name.upper() in WORDS) and _block_of(code, kit) is not None
