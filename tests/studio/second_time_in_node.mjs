@@ -2,7 +2,8 @@
 // then another one; a page that was just loaded does only that. Prints a JSON row for each seed: how the first one has
 // ended, and what is seen of the other one, after the first one and by itself.
 
-import { chanceOf, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, settles, words } from './page_in_node.mjs';
+import { pathToFileURL } from 'node:url';
+import { chanceOf, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
 
 const [part, seeds] = words;
 const unhandled = [];
@@ -1052,6 +1053,92 @@ const PARTS = {
       watch.meet(null);
       await passes(500);
       return { ends: [end], seen: [all, line] };
+    };
+  },
+
+  // A page in one group after another, which it may leave, or be left by, or never get into: in each it is in that one alone,
+  // and outside of all nothing of them is left.
+  async member() {
+    const page = freshPage();
+    document.documentElement.dataset['class'] = '';
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { EditorState } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
+    const { Membership } = await page.load('class/member.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { loadText } = await page.load('page/kept.js');
+    let undo = null;
+    let group = null; // of the blocks
+    let others = [];
+    let isWitness = false;
+    const view = {
+      state: EditorState.create(), hasFocus: false, composing: false,
+      dispatch(change) { this.state = this.state.update(change).state; },
+    };
+    let late = () => 5;
+    let fails = () => false;
+    const answer = { version: 1, changes: [], ids: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
+    const python = {
+      async ask() {
+        await later(late());
+        if (fails()) throw new Broken();
+        return answer;
+      },
+    };
+    const member = new Membership({
+      python, work: { text: '' }, keepProgram() {},
+      editor: { setUndoHandler: (does) => { undo = does; }, extend: () => view },
+      views: { isBusy: false, showMates() {}, join: (shared) => { group = shared; } },
+      panel: { onGroupEvent: () => { isWitness = true; }, endWitness: () => { isWitness = false; } },
+    }, { say() {}, onBug() {}, onOthers: (all) => { others = all; } });
+    let asked = []; // of the class, since the newest join or leave
+    let isGone = () => false;
+    playsFetch(async (_, { body }) => {
+      const request = JSON.parse(body);
+      asked.push(request.do);
+      await later(late());
+      if (fails()) throw new Broken();
+      if (request.do === 'group_join') return answers(fails() ? { failure: 'group_full' } : { group: request.name });
+      if (request.do === 'group_leave') return answers({});
+      await later(400);
+      if (isGone()) return answers({ left: true });
+      return answers({ saw: 1, ran: ['class', 1], runs: [{ number: 1, event: 'DONE' }], others: [{ name: 'Luz', mark: 0, at: '', writes: false }], changes: [] });
+    });
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(200));
+      fails = () => !isGood && chance() < 0.15;
+      isGone = () => !isGood && chance() < 0.2;
+      let end = '';
+      const acts = {
+        joins: () => member.join({ do: 'group_join', name: chance.of(['one', 'other']) }),
+        leaves: () => member.isInGroup && member.leave(),
+        ends: () => member.isInGroup && member.endMembership(),
+        edits: () => member.finishEdit(),
+      };
+      const isOutside = () => !member.isInGroup && pageState.groupName.value === '' && !document.documentElement.dataset['group'] && !others.length && !isWitness && undo === null && group === null && !loadText('tiniscript.group', 'sessionStorage');
+      for (let k = isGood ? 0 : 2 + chance.below(8); k > 0; k -= 1) {
+        end = chance.of(['joins', ...Object.keys(acts)]);
+        acts[end]();
+        await passes(chance.below(900));
+      }
+      [fails, isGone] = [() => false, () => false];
+      await passes(4000);
+      if (member.isInGroup) member.leave();
+      await passes(isGood ? 0 : 50);
+      if (!isOutside()) throw new Error(`something is left of a group: ${JSON.stringify([member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others, isWitness, undo, group, loadText('tiniscript.group', 'sessionStorage')])}`);
+      await passes(1500);
+      asked = [];
+      await passes(5000);
+      if (asked.length) throw new Error(`outside of all groups it asks ${asked}`);
+      member.join({ do: 'group_join', name: 'third' });
+      await passes(3000);
+      const seen = [member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others.length, isWitness, group !== null, asked.length];
+      if (!member.isInGroup || pageState.groupName.value !== 'third' || !others.length) throw new Error(`it is not in the group: ${seen}`);
+      member.leave();
+      await passes(1500);
+      if (!isOutside()) throw new Error('something is left of the last group');
+      return { ends: [end], seen: isGood && seen };
     };
   },
 

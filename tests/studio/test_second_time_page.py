@@ -40,6 +40,7 @@ ENDS = {
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
     "robots": {"again", "identify", "line", "senses", "step", "twice", "watch"},
+    "member": {"joins", "leaves", "ends", "edits"},
     "news": {"asks", "tells", "moves"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
     "stops": {"silent", "confirmed"},

@@ -73,6 +73,7 @@ export class Membership {
       pageState.groupName.set(String(answer.group));
       this.#listener.say('group_in');
       await sharedEditor.showProgram(answer, storedPage ?? null).then(() => {
+        if (sharedEditor !== this.#sharedEditor) return; // it was left meanwhile
         views.join(sharedEditor);
         document.documentElement.dataset['group'] = 'in';
       }, (error) => {

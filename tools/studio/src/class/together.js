@@ -160,6 +160,7 @@ export class SharedEditor {
     for (;;) {
       const { doc } = this.#view.state;
       const answer = await this.#python.ask({ do: 'group_begin', news, kept: storedPage }, new TextEncoder().encode(doc.toString()));
+      if (this.#isOver) return; // it was left meanwhile
       if (doc !== this.#view.state.doc) continue; // somebody has typed meanwhile
       this.#applyAnswer(answer, doc.length, null);
       break;
