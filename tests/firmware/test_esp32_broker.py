@@ -18,7 +18,7 @@ from tests.support.esp32_broker import (
     present,
     until,
 )
-from tests.support.esp32_radio import in_reach, talk
+from tests.support.esp32_radio import Bytes, in_reach, talk
 from tests.support.esp32_wifi import joined, remote, school_in_reach
 from tests.support.images import image_of
 from tests.support.mosquitto import AtBroker, Mosquitto
@@ -174,6 +174,13 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     other.ping()
     talk(robot, [(end, other)], 300)
     assert end.has_ended, "it is told that another one has the robot"
+    teacher.publish(topic + teacher.peer, b"")  # that one leaves
+    talk(robot, [(end, Bytes())], 100)
+    end, other = AtBroker(robot, stranger), remote(robot, None, 13)
+    end.port._patient_until_s = 0.0
+    assert ended(robot, [(end, other)], other.ping()) == "OK"
+    talk(robot, [(end, other)], 500)
+    assert not end.has_ended, "it has the robot now, and is not told that again"
 
 
 def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:

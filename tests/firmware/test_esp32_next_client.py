@@ -196,7 +196,7 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
 
 def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
     """Whatever the one before has: who agrees to nothing gets 20 bytes."""
-    robot, keys = owned(Keys())
+    robot, _ = owned(Keys())
     for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
         end, who = LowEnergy(robot, mtu), session(mtu, robot)
         assert ended(robot, [(end, who)], who.status()) == "OK"
@@ -204,6 +204,32 @@ def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
         assert 0 < max(end.lengths) <= mtu - 3
         end.leave()
         talk(robot, [], 5)
+
+
+class Late(LowEnergy):
+    """One that has not subscribed yet."""
+
+    def subscribe(self, has_subscribed: bool = False) -> None:
+        if has_subscribed:
+            super().subscribe()
+
+
+def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
+    robot, _ = owned(Keys())
+    talk(robot, [(end := LowEnergy(robot), Bytes(b"\0"))], 20)
+    for number in range(3):
+        end.leave()
+        talk(robot, [], 5)
+        end, who = Late(robot), Bytes()
+        for seq in (number, ASKED_PING):
+            end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
+            talk(robot, [(end, who)], 30)
+        assert who.heard == b"", "nobody would hear it"
+        if number == 1:  # the one before has left without
+            end.subscribe(True)
+            talk(robot, [(end, who)], 100)
+            answers = [decode_frame(data) for data in who.heard.split(b"\0") if data]
+            assert [answer and answer.seq for answer in answers] == [number, ASKED_PING]
 
 
 # -- who is silent ------------------------------------------------------------------------------

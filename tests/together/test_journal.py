@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from tests.together.world import FIRST
+from tiniscript.base import files
 from tiniscript.together import journal as journals
 from tiniscript.together.form import Change, Replace, Unwrap
 from tiniscript.together.journal import OLD_ENDING, Journal
@@ -121,7 +122,7 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
         return made
 
     monkeypatch.setattr(os, "write", on_disk(os.write))
-    monkeypatch.setattr(journals, "replace", on_disk(journals.replace))
+    monkeypatch.setattr(journals, "replace", on_disk(files.replace))
     for value in range(1, 40):
         is_full = chance.random() < (0.8 if is_full else 0.2)
         assert changed(program, value)

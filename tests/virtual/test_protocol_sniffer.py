@@ -6,6 +6,7 @@ import contextlib
 import socket
 import ssl
 from random import Random
+from time import monotonic
 
 import pytest
 
@@ -251,11 +252,16 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
         first.sendall(PING)
         until(simulator, lambda: simulator.transports.visit_count == 1)
         monkeypatch.setattr(limits, "REFUSAL_DELAY_S", 1000.0)
+        now_s = [monotonic()]
+        monkeypatch.setattr(limits, "monotonic", lambda: now_s[0])
         second.sendall(PING)
-        for _ in range(20):
-            simulator.turn(0.01)
-        assert simulator.transports.visit_count == 1
-        monkeypatch.setattr(limits, "IDLE_TIMEOUT_S", 0.0)
+        for _ in range(5):  # who speaks keeps it, for however long
+            first.sendall(PING)
+            for _ in range(10):
+                simulator.turn(0.01)
+            now_s[0] += 0.7 * limits.IDLE_TIMEOUT_S
+            assert simulator.transports.visit_count == 1
+        now_s[0] += limits.IDLE_TIMEOUT_S
         until(simulator, lambda: simulator.transports.visit_count == 2)
         until_answered(simulator, second)
 
