@@ -632,7 +632,7 @@ const PARTS = {
     };
     let stops = () => {};
     const driving = { showLesson: () => later(late()), stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
-    new Lessons({ python, simulatorPanel: driving, put() {} });
+    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -1841,7 +1841,7 @@ const PARTS = {
       stop() {},
     };
     page.byId('lesson_end').hidden = true;
-    new Lessons({ python, simulatorPanel: driving, put() {} });
+    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
     const opens = () => {
