@@ -48,7 +48,7 @@ TASKS = Twins(
         "set_motors_of_move": "(without tasks)",
         "forget_way": "(no discs measure a way there)",
         "go_way": "(no discs)",
-        "is_on_the_way": "(no discs)",
+        "continues_way": "(no discs)",
     },
     in_python={
         "begin_move": "go_on",
@@ -81,7 +81,7 @@ MACHINES = Twins(
         **dict.fromkeys(
             ("is_trapped", "length", "place_of", "reach_instruction", "resume", "return_place",
              "set_motors_again", "turn"), "(breakpoints)"),
-        **dict.fromkeys(("forget_way", "go_way", "is_on_the_way", "is_stuck"), "(no discs)"),
+        **dict.fromkeys(("continues_way", "forget_way", "go_way", "is_stuck"), "(no discs)"),
         **dict.fromkeys(
             ("blocks", "is_below", "leave_move", "run_round", "run_turn", "stand_still",
              "take_motors"), "(tasks)"),
@@ -109,8 +109,9 @@ RECEIVERS = Twins(
     in_cpp={
         # bytes wait until the main loop looks at them, in the memory of the receiver
         **dict.fromkeys(
-            ("bytes", "dropped", "has_begun", "has_frame", "has_heard", "has_room", "has_text",
-             "is_first", "length", "put_frame", "release", "take_lost", "take_text"), "take"),
+            ("bytes", "dropped", "has_frame", "has_room", "has_text",
+             "is_first", "length", "put_frame", "release", "take_begun", "take_heard",
+             "take_lost", "take_text"), "take"),
         "damaged": "(an attribute)",
         "begin_line": "_end_line",
         "count_damaged": "_cut_packet",

@@ -23,7 +23,7 @@ constexpr uint32_t kTurnUs = 50;    // of the main loop
 constexpr size_t kBytesPerMs = 12;  // at 115200 baud
 
 std::string log_of_robot;
-Wired shown;
+PartOutputs shown;
 
 // Since the last request began: turns of the main loop, and those until a motor pin has changed.
 typedef std::chrono::steady_clock Watch;
@@ -35,7 +35,7 @@ uint64_t moved_ns;
 void say(const std::string& line) { log_of_robot += line + "\n"; }
 
 void look() {
-  const Wired now = wired_now();
+  const PartOutputs now = part_outputs();
   if (now.left != shown.left || now.right != shown.right) {
     say("MOTORS " + std::to_string(now.left) + " " + std::to_string(now.right));
     turns_until_moved = turns_begun;
@@ -106,8 +106,8 @@ void answer_step(RequestReader* request, Writer* answer) {
   const uint16_t count = request->u16();
   const Bytes heard = request->bytes();
   receive(heard, 0, heard.length);
-  if ((flags & 1) != 0) push_button(true);
-  if ((flags & 2) != 0) push_button(false);
+  if ((flags & 1) != 0) set_button(true);
+  if ((flags & 2) != 0) set_button(false);
   turns(count);
   answer->text(chip.sent);
   answer->text(log_of_robot);
@@ -259,9 +259,9 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return answer->u16(network_port());
     case 'I': {
       const RadioSettings found = radio_settings();
-      for (const std::string& each : {found.advertised, found.serial_port, found.host,
-                                      found.instance, found.service, found.network,
-                                      found.password}) {
+      for (const std::string& each :
+           {found.advertised, found.serial_port, found.host, found.instance, found.service,
+            found.network, found.password}) {
         answer->text(each);
       }
       answer->u8(found.is_access_point);
@@ -300,8 +300,8 @@ void answer_panic(RequestReader*, Writer*) {
   look();
 }
 
-// O: what a pin has, 0 to 255. F: whether NVS is full. Z: for how many milliseconds a write of it stops
-// the chip. L: LEDC does nothing any more.
+// O: what a pin has, 0 to 255. F: whether NVS is full. Z: for how many milliseconds a write of it
+// stops the chip. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
 const Answers answers = {

@@ -55,8 +55,8 @@ uint32_t tone() {
 
 }  // namespace
 
-Wired wired_now() {
-  Wired found = {};
+PartOutputs part_outputs() {
+  PartOutputs found = {};
   found.left = power_of(kLeftMotor);
   found.right = power_of(kRightMotor);
   found.hertz = tone();
@@ -68,4 +68,4 @@ Wired wired_now() {
 
 bool light_is_on() { return is_there(kLight) && output_of(kLight.number) != 0; }
 
-void push_button(bool is_down) { set_input(kStartButton.number, !is_down); }
+void set_button(bool is_down) { set_input(kStartButton.number, !is_down); }

@@ -9,7 +9,7 @@
 constexpr uint8_t kMostServos = 8;
 
 // What reaches the parts, from the pins alone.
-struct Wired {
+struct PartOutputs {
   int left;  // a motor's power, -100 to 100
   int right;
   uint32_t hertz;  // of the buzzer; 0: none
@@ -17,6 +17,6 @@ struct Wired {
   uint32_t pulse_us[kMostServos];  // 0: none
 };
 
-Wired wired_now();
+PartOutputs part_outputs();
 bool light_is_on();
-void push_button(bool is_down);
+void set_button(bool is_down);

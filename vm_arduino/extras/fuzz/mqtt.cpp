@@ -19,13 +19,13 @@ namespace {
 constexpr size_t kMostBytes = 4096;
 constexpr size_t kRoom = 800;
 
-struct Found {
+struct Packet {
   MqttEvent event;
   std::string topic;
   std::string payload;
   bool is_retained;
 
-  bool operator==(const Found& other) const {
+  bool operator==(const Packet& other) const {
     return event == other.event && topic == other.topic && payload == other.payload &&
            is_retained == other.is_retained;
   }
@@ -52,7 +52,7 @@ std::string message(Input* input) {
 }
 
 // The next packet of `data` from `at` on, which goes on after it. False: it is not all there.
-bool next_packet(const std::string& data, size_t* at, Found* found) {
+bool next_packet(const std::string& data, size_t* at, Packet* found) {
   *found = {MqttEvent::kNone, "", "", false};
   size_t place = *at;
   if (place == data.size()) return false;
@@ -70,9 +70,10 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
     }
   }
   const bool is_message = type >> 4 == 3;
-  const bool is_known = is_message ? (type & 6) == 0 && length >= 2
-                                   : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
-                                         (type == 0xd0 && length == 0);
+  const bool is_known = is_message
+                            ? (type & 6) == 0 && length >= 2
+                            : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
+                                  (type == 0xd0 && length == 0);
   if (!is_known) {
     *at = place;
     found->event = MqttEvent::kBroken;
@@ -80,8 +81,8 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
   }
   const std::string body = data.substr(place, length);
   if (is_message && body.size() >= 2) {
-    const size_t topic = static_cast<size_t>(static_cast<uint8_t>(body[0]) << 8 |
-                                             static_cast<uint8_t>(body[1]));
+    const size_t topic =
+        static_cast<size_t>(static_cast<uint8_t>(body[0]) << 8 | static_cast<uint8_t>(body[1]));
     if (topic > length - 2) {
       *at = place + 2;
       found->event = MqttEvent::kBroken;
@@ -107,9 +108,9 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
   return true;
 }
 
-std::vector<Found> expected(const std::string& data) {
-  std::vector<Found> all;
-  Found found;
+std::vector<Packet> expected(const std::string& data) {
+  std::vector<Packet> all;
+  Packet found;
   for (size_t at = 0; next_packet(data, &at, &found);) {
     if (found.event != MqttEvent::kNone) all.push_back(found);
   }
@@ -127,9 +128,9 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   }
   static MqttReader reader;
   reader.begin();
-  std::vector<Found> all;
+  std::vector<Packet> all;
   for (const char each : data) {
-    Found found = {reader.take(static_cast<uint8_t>(each)), "", "", false};
+    Packet found = {reader.take(static_cast<uint8_t>(each)), "", "", false};
     if (found.event == MqttEvent::kNone) continue;
     if (found.event == MqttEvent::kBroken) reader.begin();
     if (found.event == MqttEvent::kMessage) {
@@ -140,8 +141,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
     }
     all.push_back(found);
   }
-  std::vector<Found> others = expected(data);
-  for (Found& each : others) each.topic = each.topic.c_str();  // a topic of ours has no 0 in it
+  std::vector<Packet> others = expected(data);
+  for (Packet& each : others) each.topic = each.topic.c_str();  // a topic of ours has no 0 in it
   must(all == others);
   return 0;
 }

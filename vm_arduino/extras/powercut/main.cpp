@@ -78,15 +78,15 @@ void run(Store* store) {
 }
 
 // The contents of all areas, those of the one that is looked at apart.
-struct Expected {
+struct ExpectedContents {
   Area area;
   std::vector<Content> allowed;
   Content others[kAreas];
 };
 
 // What is there now, all of it.
-Expected expected_now(const Store& store, Area area) {
-  Expected found;
+ExpectedContents expected_now(const Store& store, Area area) {
+  ExpectedContents found;
   found.area = area;
   for (uint8_t k = 0; k < kAreas; k++) found.others[k] = read(store, static_cast<Area>(k));
   found.allowed = {found.others[static_cast<uint8_t>(area)]};
@@ -94,7 +94,7 @@ Expected expected_now(const Store& store, Area area) {
 }
 
 // Reads everything after a start. Returns what is in the area that is looked at.
-Content look(const Store& store, const Expected& expected) {
+Content look(const Store& store, const ExpectedContents& expected) {
   if (store.state() != StoreState::kIdle) wrong("it is not idle after a start");
   for (uint8_t k = 0; k < kAreas; k++) {
     const Area area = static_cast<Area>(k);
@@ -116,7 +116,7 @@ void start(Store* store) {
 }
 
 // A case: three starts find something that is allowed, and all the same.
-void starts(World world, const Expected& expected) {
+void starts(World world, const ExpectedContents& expected) {
   cases++;
   memory = world.memory;
   Content first;
@@ -156,29 +156,30 @@ World cut_each_write(World world, uint32_t stride, const Next& next) {
   return world;
 }
 
-Expected with(Expected expected, std::vector<Content> allowed) {
+ExpectedContents with(ExpectedContents expected, std::vector<Content> allowed) {
   expected.allowed = std::move(allowed);
   return expected;
 }
 
 // Starts, and pulls the plug in the next save, which may be that of what is there.
-void cut_next(World world, const Expected& expected, Task next, uint32_t stride) {
+void cut_next(World world, const ExpectedContents& expected, Task next, uint32_t stride) {
   memory = world.memory;
   start(&world.store);
   const Content content = look(world.store, expected);
   if (!begin(&world.store, next.area, &next.content)) wrong("the next save is refused");
   world.memory = memory;
-  const Expected now = with(expected, {content, next.content});
+  const ExpectedContents now = with(expected, {content, next.content});
   world = cut_each_write(world, stride, [&](const World& cut) { starts(cut, now); });
   if (world.store.state() == StoreState::kFailed) wrong("the next save fails");
   starts(world, with(expected, {next.content}));
 }
 
 // The second cut, where the first has left `world`, and sometimes a third one.
-void second_cuts(const World& world, const Expected& expected, const Task& next, uint32_t stride) {
+void second_cuts(const World& world, const ExpectedContents& expected, const Task& next,
+                 uint32_t stride) {
   starts(world, expected);
   World started = world;
-  Expected now = expected;
+  ExpectedContents now = expected;
   for (uint8_t k = 0; k < 2; k++) {  // in the first start, and in the second
     started.memory.is_off = false;
     started.memory.is_cut_next = false;
@@ -198,7 +199,7 @@ void cut_everything(const char* name, World world, Task task, const std::vector<
                     uint32_t stride, const std::vector<Content>& also = {}) {
   history = name;
   memory = world.memory;
-  Expected expected = expected_now(world.store, task.area);
+  ExpectedContents expected = expected_now(world.store, task.area);
   memset(erases, 0, sizeof erases);
   if (!begin(&world.store, task.area, &task.content)) wrong("a save is refused");
   expected.allowed.push_back(task.content);
@@ -268,7 +269,7 @@ void tear_emptied(World world) {
   const uint8_t generation = world.memory.cells[place].value;
   const uint8_t mark = generation ^ 0xa5;
   memory = world.memory;
-  const Expected expected = expected_now(world.store, Area::kProgram);
+  const ExpectedContents expected = expected_now(world.store, Area::kProgram);
   start(&world.store);
   world.memory = memory;
   world.memory.cells[place] = {generation, generation};

@@ -22,8 +22,9 @@ namespace {
 std::vector<uint8_t> words;
 
 // An array of its own, so that the sanitizer sees an access outside.
-struct Read {
-  explicit Read(size_t bytes) : room(static_cast<uint16_t>(bytes)), buffer(new uint8_t[bytes]) {}
+struct SanitizedReader {
+  explicit SanitizedReader(size_t bytes)
+      : room(static_cast<uint16_t>(bytes)), buffer(new uint8_t[bytes]) {}
 
   void begin() { reader.begin(buffer.get(), room); }
 
@@ -45,7 +46,7 @@ struct Read {
   std::unique_ptr<uint8_t[]> buffer;
 };
 
-void read_lines(Read* read) {
+void read_lines(SanitizedReader* read) {
   read->begin();
   bool is_blank = true;
   for (int byte = getchar(); byte >= 0; byte = getchar()) {
@@ -60,7 +61,7 @@ void read_lines(Read* read) {
   }
 }
 
-void read_texts(Read* read) {
+void read_texts(SanitizedReader* read) {
   uint8_t head[4];
   while (fread(head, 1, 4, stdin) == 4) {
     std::vector<uint8_t> text(head[0] | head[1] << 8 | head[2] << 16);
@@ -88,7 +89,7 @@ int main(int count, char** arguments) {
     const char both[] = {digits[0], digits[1], 0};
     words.push_back(static_cast<uint8_t>(strtol(both, nullptr, 16)));
   }
-  Read read(static_cast<size_t>(atoi(arguments[1])));
+  SanitizedReader read(static_cast<size_t>(atoi(arguments[1])));
   if (count > 3) {
     read_texts(&read);
   } else {

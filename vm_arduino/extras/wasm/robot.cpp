@@ -49,7 +49,7 @@ uint16_t hashes[512];
 uint8_t words[kWordBytes];
 
 // What `begin` tells of the robot.
-struct Own {
+struct RobotSettings {
   uint16_t kit;
   uint8_t sensors;
   uint8_t actuators;
@@ -60,7 +60,7 @@ struct Own {
   uint16_t language;
 };
 
-Own own;
+RobotSettings own;
 uint8_t memory[kMemoryBytes];
 
 // What the robot does, and when: milliseconds since power-on.
@@ -262,9 +262,8 @@ tini_exported("reading") int32_t* module_reading() { return &reading; }
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
                                          uint32_t speed, uint32_t turn, uint32_t edge_cm,
-                                         uint32_t edge_degrees, uint32_t has_two,
-                                         uint32_t line_us, uint32_t eeprom_us,
-                                         uint32_t language) {
+                                         uint32_t edge_degrees, uint32_t has_two, uint32_t line_us,
+                                         uint32_t eeprom_us, uint32_t language) {
   byte_us = line_us;
   write_us = eeprom_us;
   own.kit = static_cast<uint16_t>(kit);

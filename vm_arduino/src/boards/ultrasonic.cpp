@@ -20,7 +20,7 @@ constexpr uint16_t kNearUs = 175;       // 3 cm
 constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
 constexpr uint16_t kNothing = 0xffff;
 constexpr uint32_t kFarthest = 400000;
-constexpr uint16_t kFarUs = 23326;      // an echo from there
+constexpr uint16_t kFarUs = 23326;               // an echo from there
 constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
 
 // A Nano has no room for more.
@@ -40,7 +40,7 @@ struct Reading {
 };
 
 // The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
-enum class Heard : uint8_t {
+enum class EchoState : uint8_t {
   kNothing,
   kHigh,   // since `rose_us`
   kEnded,  // at `fell_us`; final after kGlitchUs
@@ -51,7 +51,7 @@ Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since `ping_us`
 
 // Everything else lies together, as `near` makes access short.
 struct Sonar {
-  volatile Heard heard;
+  volatile EchoState heard;
   volatile uint16_t rose_us;
   volatile uint16_t fell_us;
   volatile uint16_t again_us;
@@ -69,28 +69,29 @@ Sonar sonar;
 // Where there is only one sensor, the compiler knows.
 tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : sonar.last_asked; }
 
-tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
+tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t then_us) {
   return static_cast<uint16_t>(now_us - then_us);
 }
 
 void on_change() {
   Sonar* const it = near(&sonar);
   const uint16_t now_us = clock_us();
-  const Heard before = it->heard;
+  const EchoState before = it->heard;
   if (is_high(ultrasonic_at(asked()).echo.pin)) {
-    if (before == Heard::kNothing) {
+    if (before == EchoState::kNothing) {
       it->rose_us = now_us;
-      it->heard = Heard::kHigh;
-    } else if (before == Heard::kEnded && since(now_us, it->fell_us) < kGlitchUs) {
+      it->heard = EchoState::kHigh;
+    } else if (before == EchoState::kEnded && elapsed_us(now_us, it->fell_us) < kGlitchUs) {
       it->again_us = now_us;
-      it->heard = Heard::kAgain;
+      it->heard = EchoState::kAgain;
     }
-  } else if (before == Heard::kHigh) {
+  } else if (before == EchoState::kHigh) {
     it->fell_us = now_us;
-    it->heard = since(now_us, it->rose_us) < kGlitchUs ? Heard::kNothing : Heard::kEnded;
-  } else if (before == Heard::kAgain) {
-    if (since(now_us, it->again_us) >= kGlitchUs) it->fell_us = now_us;
-    it->heard = Heard::kEnded;
+    it->heard =
+        elapsed_us(now_us, it->rose_us) < kGlitchUs ? EchoState::kNothing : EchoState::kEnded;
+  } else if (before == EchoState::kAgain) {
+    if (elapsed_us(now_us, it->again_us) >= kGlitchUs) it->fell_us = now_us;
+    it->heard = EchoState::kEnded;
   }
 }
 
@@ -98,7 +99,7 @@ void on_change() {
 // An interrupt.
 tini_always_inline void on_pin_change() {
   if (kUltrasonics == 1) {
-    on_echo_edge<Sonar, Heard>(&sonar, ultrasonic_at(0).echo, kGlitchUs);
+    on_echo_edge<Sonar, EchoState>(&sonar, ultrasonic_at(0).echo, kGlitchUs);
   } else {
     call_in_frame(on_change);
   }
@@ -145,7 +146,7 @@ void take(Reading& mine, uint16_t us) {
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  if (is_on) sonar.heard = Heard::kNothing;
+  if (is_on) sonar.heard = EchoState::kNothing;
   listen_inside(ultrasonic_at(asked()).echo, is_on);
 }
 
@@ -158,16 +159,16 @@ void lower_trigger() {
 }
 
 // Continues the current ping. Returns whether it is over, and puts the sample into `*us`.
-bool is_over(uint16_t* us) {
+bool end_ping(uint16_t* us) {
   Sonar* const it = near(&sonar);
   if (it->ping == Ping::kTriggered) {
-    if (since(clock_us(), it->begun_us) < kTriggerUs) return false;
+    if (elapsed_us(clock_us(), it->begun_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
     it->ping = Ping::kListening;
     return false;
   }
-  Heard found;
+  EchoState found;
   uint16_t rose_us;
   uint16_t fell_us;
   {
@@ -177,10 +178,10 @@ bool is_over(uint16_t* us) {
     fell_us = it->fell_us;
   }
   const uint16_t now_us = clock_us();
-  const uint16_t gone_us = since(now_us, it->ping_us);
-  const uint16_t echo_us = since(fell_us, rose_us);
-  const uint16_t quiet_us = since(now_us, fell_us);
-  const bool has_ended = found == Heard::kEnded;
+  const uint16_t gone_us = elapsed_us(now_us, it->ping_us);
+  const uint16_t echo_us = elapsed_us(fell_us, rose_us);
+  const uint16_t quiet_us = elapsed_us(now_us, fell_us);
+  const bool has_ended = found == EchoState::kEnded;
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
   it->ping = Ping::kNone;
@@ -196,14 +197,14 @@ void begin(uint8_t number) {
   it->ping = Ping::kTriggered;
 }
 
-// Whether kSpacingUs have passed since the last ping of any sensor.
-bool may_ping() {
-  if (since(clock_us(), sonar.ping_us) >= kSpacingUs) is_spaced = true;
+// Notes and returns whether kSpacingUs have passed since the last ping of any sensor.
+bool note_spacing() {
+  if (elapsed_us(clock_us(), sonar.ping_us) >= kSpacingUs) is_spaced = true;
   return is_spaced;
 }
 
-// Whether the value of a sensor is fresh, if it has one; else: ask again.
-bool is_fresh(uint8_t number) {
+// Goes on with the pings. Returns whether the value of a sensor is fresh, if it has one.
+bool measure(uint8_t number) {
   Sonar* const it = near(&sonar);
   Reading& mine = it->readings[number];
   uint8_t whose = number;
@@ -211,7 +212,7 @@ bool is_fresh(uint8_t number) {
   bool is_awaited = true;
   if (it->ping != Ping::kNone) {
     whose = asked();
-    if (!is_over(&us)) return whose != number && mine.age <= kFresh;
+    if (!end_ping(&us)) return whose != number && mine.age <= kFresh;
     is_awaited = !is_spaced && whose == number;  // nobody has waited for an echo found so late
   } else {
     if (release(ultrasonic_at(number).echo)) return false;
@@ -219,7 +220,7 @@ bool is_fresh(uint8_t number) {
     const bool is_busy = is_high(ultrasonic_at(number).echo.pin);
     if (!is_busy) {
       it->is_held = false;
-      if (may_ping()) {
+      if (note_spacing()) {
         if (mine.age >= kOld) mine.sample_us = kNothing;
         begin(number);
         return false;
@@ -232,7 +233,7 @@ bool is_fresh(uint8_t number) {
       it->begun_us = clock_us();
       return false;
     }
-    if (since(clock_us(), it->begun_us) < kLimitUs) return false;
+    if (elapsed_us(clock_us(), it->begun_us) < kLimitUs) return false;
     it->is_held = false;
     if (mine.age >= kOld) {
       revive(ultrasonic_at(number).echo);
@@ -254,7 +255,7 @@ void ultrasonic_begin() {
 }
 
 void ultrasonic_tick() {
-  if (!is_spaced) may_ping();
+  if (!is_spaced) note_spacing();
   Sonar* const it = near(&sonar);
   const uint8_t gone_ms = (clock_8_ms() - it->aged_ms) & 0xfe;
   it->aged_ms = static_cast<uint8_t>(it->aged_ms + gone_ms);
@@ -267,7 +268,7 @@ void ultrasonic_tick() {
 
 bool ultrasonic_read(uint8_t number, int32_t* distance) {
   if (kUltrasonics == 1) number = 0;  // which it is, but a compiler cannot know
-  if (!is_fresh(number)) return false;
+  if (!measure(number)) return false;
   const Reading& mine = near(&sonar)->readings[number];
   const uint16_t echo_us = mine.echo_us;
   if (echo_us == kNothing || mine.sample_us != kNothing) return false;

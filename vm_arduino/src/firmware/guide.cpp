@@ -10,17 +10,17 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kTurnMs = 10;      // of the controller
-constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
-constexpr uint8_t kStandsMs = 250;   // the other one, for so long, does not turn either
-constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
-constexpr uint16_t kRestMs = 1000;   // and any does so long after its motor was turned off
-constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
-constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
+constexpr uint8_t kTurnMs = 10;        // of the controller
+constexpr uint16_t kStuckMs = 500;     // a wheel that drives and shows no edge for so long
+constexpr uint8_t kStandsMs = 250;     // the other one, for so long, does not turn either
+constexpr uint8_t kStillMs = 150;      // one that shows none for so long stands
+constexpr uint16_t kRestMs = 1000;     // and any does so long after its motor was turned off
+constexpr uint8_t kSlowMs = 150;       // one that shows none for so long gets more power
+constexpr uint16_t kGivesUpMs = 300;   // a correction that does nothing
 constexpr uint16_t kLongestMs = 1000;  // one at most
-constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
-constexpr int32_t kFar = 5 * kEdge;  // so far ahead a wheel gets as little power as may be
-constexpr uint8_t kRollMs = 60;      // until the robot has seen how it rolls
+constexpr int32_t kEdge = 64;          // positions are in 64ths of the way between two edges
+constexpr int32_t kFar = 5 * kEdge;    // so far ahead a wheel gets as little power as may be
+constexpr uint8_t kRollMs = 60;        // until the robot has seen how it rolls
 constexpr uint8_t kLeastRollMs = 10;
 constexpr uint8_t kMostRollMs = 200;
 constexpr int8_t kCreep = 35;        // percent: slow, but it moves
@@ -37,42 +37,42 @@ enum class Phase : uint8_t {
 };
 
 struct Wheel {
-  int32_t edges;       // that it has gone in the direction of the move
-  uint16_t counted;    // by the board, when it was last asked
-  uint16_t edge_ms;    // when the last edge came,
-  uint16_t before_ms;  // and the one before
-  uint16_t two_ms;     // how long the last two took; 0: not known
-  uint8_t first;       // how far the first one was, in parts of the way between two
+  int32_t edges;          // that it has gone in the direction of the move
+  uint16_t counted;       // by the board, when it was last asked
+  uint16_t edge_ms;       // when the last edge came,
+  uint16_t before_ms;     // and the one before
+  uint16_t two_ms;        // how long the last two took; 0: not known
+  uint8_t first;          // how far the first one was, in parts of the way between two
   bool is_backward : 1;   // the move
   bool is_returning : 1;  // its motor last drove it against the move
   bool stands : 1;        // its motor is off, and it cannot turn
-  uint8_t more;        // edges until it is further than before; after something has taken its motor:
-                       // that it may roll
-  uint8_t noise;       // edges while it could not turn, modulo 256
-  int8_t power;        // in the direction of the move
+  uint8_t more;   // edges until it is further than before; after something has taken its motor:
+                  // that it may roll
+  uint8_t noise;  // edges while it could not turn, modulo 256
+  int8_t power;   // in the direction of the move
 };
 
 struct Guide {
   Phase phase;
   Going going;
   uint8_t corrections;
-  int8_t most;         // power that the program wants
-  int8_t least;        // power that moves a wheel
-  uint8_t roll_ms;     // a wheel rolls on as far as it would go in this time
-  uint16_t turn_ms;    // when the controller last did something
-  uint16_t begun_ms;   // when the move began
-  uint16_t off_ms;     // when both motors were turned off, or something else or a correction began
-  uint16_t off_at;     // where both wheels were then, together, modulo 2^16,
-  uint16_t off_roll;   // and how far they were to roll
-  int16_t uneven;      // sum of what the left wheel was ahead
+  int8_t most;        // power that the program wants
+  int8_t least;       // power that moves a wheel
+  uint8_t roll_ms;    // a wheel rolls on as far as it would go in this time
+  uint16_t turn_ms;   // when the controller last did something
+  uint16_t begun_ms;  // when the move began
+  uint16_t off_ms;    // when both motors were turned off, or something else or a correction began
+  uint16_t off_at;    // where both wheels were then, together, modulo 2^16,
+  uint16_t off_roll;  // and how far they were to roll
+  int16_t uneven;     // sum of what the left wheel was ahead
   int32_t target;
-  uint32_t edge;       // what a wheel, or the robot, goes between two edges
+  uint32_t edge;  // what a wheel, or the robot, goes between two edges
   Wheel wheels[kWheels];
 };
 
 Guide guide;
 
-uint16_t since(uint16_t then_ms) {
+uint16_t elapsed_ms(uint16_t then_ms) {
   return static_cast<uint16_t>(static_cast<uint16_t>(now_ms) - then_ms);
 }
 
@@ -81,9 +81,7 @@ int32_t limited(int32_t value, int32_t most) {
 }
 
 // Where a wheel is when it stands: in the middle between two edges, as far as is known.
-int32_t place(const Wheel& wheel) {
-  return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
-}
+int32_t place(const Wheel& wheel) { return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2; }
 
 // Changes what `place` returns.
 void put(Wheel* wheel, int32_t at) {
@@ -96,7 +94,7 @@ void put(Wheel* wheel, int32_t at) {
 int32_t position(const Wheel& wheel) {
   int32_t more = kEdge / 2;
   if (wheel.two_ms != 0 && wheel.power > 0) {
-    const uint32_t part = uint32_t{since(wheel.edge_ms)} * (2 * kEdge) / wheel.two_ms;
+    const uint32_t part = uint32_t{elapsed_ms(wheel.edge_ms)} * (2 * kEdge) / wheel.two_ms;
     more = part < kEdge ? static_cast<int32_t>(part) : kEdge - 1;
   }
   return place(wheel) + more - kEdge / 2;
@@ -111,7 +109,7 @@ uint16_t gone(uint16_t time_ms) {
 // beside when the third did: wheels speed up as they roll on.
 void find_first(Wheel* wheel) {
   const uint16_t first = gone(static_cast<uint16_t>(wheel->before_ms - guide.begun_ms));
-  const uint16_t more = static_cast<uint16_t>(gone(since(guide.begun_ms)) - first);
+  const uint16_t more = static_cast<uint16_t>(gone(elapsed_ms(guide.begun_ms)) - first);
   const uint32_t found = more == 0 ? kEdge : uint32_t{first} * (2 * kEdge) / more;
   wheel->first = found < kEdge ? static_cast<uint8_t>(found) : kEdge;
 }
@@ -152,10 +150,11 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
   }
   if (wheel->edges == 3 && guide.phase == Phase::kDrives) find_first(wheel);
   if (steps == 1) {
-    if (wheel->edges > 2) wheel->two_ms = since(wheel->before_ms);
+    if (wheel->edges > 2) wheel->two_ms = elapsed_ms(wheel->before_ms);
     wheel->before_ms = wheel->edge_ms;
   } else {
-    wheel->two_ms = static_cast<uint16_t>(since(wheel->edge_ms) * 2 / static_cast<uint16_t>(steps));
+    wheel->two_ms =
+        static_cast<uint16_t>(elapsed_ms(wheel->edge_ms) * 2 / static_cast<uint16_t>(steps));
     wheel->before_ms = static_cast<uint16_t>(now_ms);
   }
   wheel->edge_ms = static_cast<uint16_t>(now_ms);
@@ -174,7 +173,7 @@ bool are_off() {
 
 void count() {
   const bool has_two = board_discs().has_two;
-  const bool are_at_rest = are_off() && since(guide.off_ms) >= kRestMs;
+  const bool are_at_rest = are_off() && elapsed_ms(guide.off_ms) >= kRestMs;
   for (uint8_t k = 0; k < kWheels; k++) {
     Wheel* const wheel = guide.wheels + k;
     if (are_at_rest) wheel->stands = true;
@@ -194,7 +193,7 @@ void set_motors() {
 
 // Whether its motor drives the wheel, and it has shown no edge for so long.
 bool is_slow(const Wheel& wheel, uint16_t most_ms) {
-  return wheel.power != 0 && since(wheel.edge_ms) >= most_ms;
+  return wheel.power != 0 && elapsed_ms(wheel.edge_ms) >= most_ms;
 }
 
 bool is_slow(uint16_t most_ms) {
@@ -220,7 +219,7 @@ void turn_off() {
 
 // What else has the motors: how far may a wheel roll on that is as fast as this one?
 void let_roll(Wheel* wheel) {
-  const uint16_t least_ms = static_cast<uint16_t>(2 * since(wheel->edge_ms));
+  const uint16_t least_ms = static_cast<uint16_t>(2 * elapsed_ms(wheel->edge_ms));
   if (wheel->is_returning || wheel->stands) wheel->two_ms = 0;
   if (wheel->two_ms != 0 && wheel->two_ms < least_ms) wheel->two_ms = least_ms;
   const int32_t most = limited(roll(*wheel) * 2 / kEdge, 250) + 2;
@@ -231,7 +230,7 @@ void let_roll(Wheel* wheel) {
 
 // What the wheels would have rolled by now if nothing else drove them is a part of the move.
 void coast() {
-  uint16_t rolled_ms = since(guide.off_ms);
+  uint16_t rolled_ms = elapsed_ms(guide.off_ms);
   if (rolled_ms > 2 * guide.roll_ms) rolled_ms = static_cast<uint16_t>(2 * guide.roll_ms);
   for (Wheel& wheel : guide.wheels) {
     if (wheel.two_ms == 0) continue;
@@ -289,13 +288,13 @@ void begin_to_drive(uint16_t stood_ms) {
 // Both motors are off: waits until the wheels stand, and looks where they are. A disc that flickers
 // does not say it.
 void settle() {
-  const uint16_t off_ms = since(guide.off_ms);
+  const uint16_t off_ms = elapsed_ms(guide.off_ms);
   if (off_ms >= kRestMs) return end(Going::kThere);
   if (off_ms < kStillMs) return;
   bool is_off = false;
   uint16_t place_of_both = 0;
   for (const Wheel& wheel : guide.wheels) {
-    if (since(wheel.edge_ms) < kStillMs) return;
+    if (elapsed_ms(wheel.edge_ms) < kStillMs) return;
     const int32_t missing = guide.target - place(wheel);
     if (missing >= kEdge || missing <= -kEdge) is_off = true;
     place_of_both = static_cast<uint16_t>(place_of_both + place(wheel));
@@ -335,7 +334,7 @@ void correct() {
     if (wheel.power > 0 ? missing < kEdge : missing > -kEdge) wheel.power = 0;
     if (wheel.power != 0) is_over = false;
   }
-  if (is_over || is_slow(kGivesUpMs) || since(guide.off_ms) >= kLongestMs) return turn_off();
+  if (is_over || is_slow(kGivesUpMs) || elapsed_ms(guide.off_ms) >= kLongestMs) return turn_off();
   set_motors();
 }
 
@@ -378,9 +377,11 @@ void guide_go_on() {
 
 Going guide_going(int32_t* rest) {
   if (guide.phase == Phase::kDriven) coast();
-  const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
+  const int32_t missing =
+      guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
   const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
-  *rest = static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
+  *rest =
+      static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
   return guide.going;
 }
 
@@ -408,7 +409,7 @@ void guide_end(bool is_driven) {
 void guide_tick() {
   if (board_discs().cm == 0) return;
   count();
-  if (!is_moving() || since(guide.turn_ms) < kTurnMs) return;
+  if (!is_moving() || elapsed_ms(guide.turn_ms) < kTurnMs) return;
   guide.turn_ms = static_cast<uint16_t>(now_ms);
   if (guide.phase == Phase::kRolls) return settle();
   if (is_slow(kSlowMs) && guide.least < guide.most) guide.least++;

@@ -38,12 +38,12 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in the
-  // next call.
+  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in
+  // the next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
   const bool is_line = receiver_->has_open_line();
-  const bool has_heard = receiver_->has_heard();
+  const bool has_heard = receiver_->take_heard();
   const uint16_t before = left_ms_[kSilence];
   run_down(left_ms_, kTimes, passed);
   if (kTellsReadings) pass_readings(passed);
@@ -143,7 +143,7 @@ tini_noinline void Link::stop(Cause cause) {
 
 // Takes the bytes of a packet that have arrived; a LIVE is made when all of its payload has.
 inline void Link::take_arrived() {
-  if (receiver_->has_begun()) {
+  if (receiver_->take_begun()) {
     check_.begin();
     ahead_ = 0;
   }
@@ -200,18 +200,18 @@ tini_noinline void Link::handle(uint8_t end) {
   const uint8_t length = static_cast<uint8_t>(end - begin);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
-  Said& last = this->last();
+  Reply& last = this->last();
   uint8_t& last_epoch = this->last_epoch();
   const bool is_last = seq == last.seq && type == last.number && epoch == last_epoch;
   const bool is_repeat = is_last && is_marked == is_sealed();
   if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
-    said_ = last;
+    reply_ = last;
     left_ms_[kFrameSent] = 0;  // it is repeated
     return;
   }
-  said_.number = type & static_cast<uint8_t>(~kSealed);
-  said_.seq = seq;
-  said_.detail = 0;
+  reply_.number = type & static_cast<uint8_t>(~kSealed);
+  reply_.seq = seq;
+  reply_.detail = 0;
   const bool is_next = this->is_next(seq, epoch);
   Answer refusal = Answer::kOk;
   if ((type & kSealed) != 0) {
@@ -224,7 +224,7 @@ tini_noinline void Link::handle(uint8_t end) {
   } else if (type == 0 || type > kLastRequest) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
-    said_.detail = kLinkMajor;
+    reply_.detail = kLinkMajor;
     left_ms_[kFrameSent] = 0;
     refusal = Answer::kOtherLink;
   } else if (length < flash_byte(&kRequestBytes[type - 1][0]) ||
@@ -238,15 +238,15 @@ tini_noinline void Link::handle(uint8_t end) {
   } else {
     refusal = may_drive(type);
   }
-  said_.status = number_of(refusal);
+  reply_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
     if (type >= kFirstActing && (!kHasRemote || type != static_cast<uint8_t>(Message::kKeys))) {
       console_.drop();  // it may use the same memory
     }
-    said_.status = answer(static_cast<Message>(type), payload, length);
+    reply_.status = answer(static_cast<Message>(type), payload, length);
   }
-  if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && said_.status == kIsFine)) {
-    last = said_;
+  if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && reply_.status == kIsFine)) {
+    last = reply_;
     last_epoch = epoch;
   }
 }
@@ -262,10 +262,10 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kKeys:
       if (!kHasRemote) break;
       found = hold(*reinterpret_cast<const RemoteKeys*>(payload));
-      if (found == Answer::kOk) said_.detail = length;
+      if (found == Answer::kOk) reply_.detail = length;
       break;
     case Message::kPing:
-      said_.detail = length;
+      reply_.detail = length;
       break;
     case Message::kBreak:
       if (kHasBreakpoints) found = set_breakpoints(payload, length);
@@ -275,8 +275,8 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kReadVariables:
       if (!kHasBreakpoints) break;
-      said_.detail = payload[kReadVariablesFirstAt];
-      if (said_.detail >= kVariables) found = Answer::kBadValue;
+      reply_.detail = payload[kReadVariablesFirstAt];
+      if (reply_.detail >= kVariables) found = Answer::kBadValue;
       break;
     case Message::kTellReadings:
       if (kTellsReadings) tell_readings(payload[kTellReadingsIsOnAt] != 0);
@@ -292,7 +292,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kFetch:
       found = lacks_program();
-      if (found == Answer::kOk) said_.detail = get16(payload + kFetchOffsetAt);
+      if (found == Answer::kOk) reply_.detail = get16(payload + kFetchOffsetAt);
       break;
     case Message::kStop:
       stop(Cause::kMessage);

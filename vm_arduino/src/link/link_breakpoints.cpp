@@ -29,7 +29,7 @@ Answer Link::set_breakpoints(const uint8_t* places, uint8_t length) {
 
 Answer Link::resume(uint8_t how) {
   if (how > static_cast<uint8_t>(ResumeHow::kStep)) return Answer::kBadValue;
-  said_.detail = port_is_halted();
+  reply_.detail = port_is_halted();
   port_resume(static_cast<ResumeHow>(how));
   return Answer::kOk;
 }
@@ -60,7 +60,7 @@ void Link::tell_variables() {
   if (port_status().state != State::kRunning || port_variables() == nullptr) return;
   const uint8_t seal = kHasSeals && (out_[kTypeAt] & kSealed) != 0 ? kTagBytes : 0;
   const uint8_t most = static_cast<uint8_t>(kSmallFrame - kCrcBytes - seal - sizeof(int32_t));
-  for (uint8_t k = static_cast<uint8_t>(said_.detail); k < kVariables && size_ <= most; k++) {
+  for (uint8_t k = static_cast<uint8_t>(reply_.detail); k < kVariables && size_ <= most; k++) {
     put_all(port_variables() + k, sizeof(int32_t));
   }
 }

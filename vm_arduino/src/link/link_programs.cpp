@@ -34,8 +34,7 @@ tini_noinline void Link::make_ahead() {
     return;
   }
   ahead_ = end;
-  is_ready_ =
-      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
+  is_ready_ = fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.
@@ -47,9 +46,9 @@ bool Link::go_live() {
   }
   left_ms_[kListen] = kListenMs;
   // Both at once, and no detail: that is quicker than to copy it.
-  said_.number = last_.number = kLiveByte;
-  said_.seq = last_.seq = bytes[kSeqAt];
-  said_.status = last_.status = kIsFine;
+  reply_.number = last_.number = kLiveByte;
+  reply_.seq = last_.seq = bytes[kSeqAt];
+  reply_.status = last_.status = kIsFine;
   last_epoch_ = epoch_;
   without_checksum_ = made_;
   finish(kRun, true);
@@ -58,15 +57,14 @@ bool Link::go_live() {
 
 // Refuses, with a reason and its detail.
 tini_noinline uint8_t Link::refuse(Answer answer, uint16_t detail) {
-  said_.detail = detail;
+  reply_.detail = detail;
   return number_of(answer);
 }
 
 // Whether the robot may take a program of this instruction set at all.
 uint8_t Link::allow(uint8_t mode, const uint8_t* isa) {
   if (isa[0] != kIsaMajor || isa[1] > kIsaMinor) return refuse(Answer::kOtherMachine, kIsa);
-  if ((mode & kStartBits) >= kStartPing ||
-      (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
+  if ((mode & kStartBits) >= kStartPing || (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
     return refuse(Answer::kBadValue, 0);
   }
   if (!may_start(mode)) return refuse(Answer::kLatched, 0);
@@ -190,7 +188,8 @@ uint8_t Link::commit(const uint8_t* payload) {
   if (admission.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
-  if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
+  if (admission.refusal != 0)
+    return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
   port_has_checksum(image);
   return kIsFine;

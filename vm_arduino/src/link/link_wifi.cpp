@@ -25,12 +25,12 @@ uint8_t Link::set_wifi(const uint8_t* payload, uint8_t length) {
   seal_.cover(receiver_->bytes() + kCounterAt, text, text_bytes);
   const Answer answer = port_set_wifi(static_cast<WifiStep>(step), text, text_bytes);
   for (uint8_t& byte : text) byte = 0;
-  if (answer == Answer::kOk) said_.detail = step;  // what the reply is about
+  if (answer == Answer::kOk) reply_.detail = step;  // what the reply is about
   return static_cast<uint8_t>(answer);
 }
 
 void Link::tell_wifi() {
-  const WifiReport report = port_wifi_report(static_cast<WifiStep>(said_.detail));
+  const WifiReport report = port_wifi_report(static_cast<WifiStep>(reply_.detail));
   put(static_cast<uint8_t>(report.mode));
   put(static_cast<uint8_t>(report.state));
   put_all(report.address, sizeof report.address);

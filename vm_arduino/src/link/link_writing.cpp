@@ -124,21 +124,21 @@ void Link::send() {
 }
 
 void Link::reply() {
-  begin_frame(said_.number | kReply | reply_mark(), said_.seq);
-  put(said_.status);
-  if (said_.status != byte_of(Answer::kOk)) {
-    put16(said_.detail);
+  begin_frame(reply_.number | kReply | reply_mark(), reply_.seq);
+  put(reply_.status);
+  if (reply_.status != byte_of(Answer::kOk)) {
+    put16(reply_.detail);
     return;
   }
   const RobotStatus& robot_status = port_status();
-  switch (static_cast<Message>(said_.number)) {
+  switch (static_cast<Message>(reply_.number)) {
     case Message::kHello:
       describe();
       break;
     case Message::kPing:
     case Message::kKeys:
       put_all(&robot_status, kPulseBytes);
-      if (byte_of(said_.detail) != 0 && robot_status.state == State::kRunning) {
+      if (byte_of(reply_.detail) != 0 && robot_status.state == State::kRunning) {
         put16(port_run_at());
         put_all(port_run_image() + kChecksumAt, kChecksumBytes);
       }
@@ -172,13 +172,13 @@ void Link::reply() {
     case Message::kAuthenticate:
     case Message::kText:
       put_all(&port_identity().features, kFeaturesBytes);
-      if (said_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
+      if (reply_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
         put_all(challenge_, kChallengeBytes);
       break;
     case Message::kResume:
       if (!kHasBreakpoints) break;
       put(robot_status.run);
-      put(byte_of(said_.detail));
+      put(byte_of(reply_.detail));
       break;
     case Message::kReadVariables:
       if (kHasBreakpoints) tell_variables();
@@ -209,12 +209,12 @@ void Link::fetch() {
   const bool is_sealed = first != kPayloadAt;
   const uint8_t most =
       static_cast<uint8_t>(kLargestFrame + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
-  if (kHasLargeFrames && !is_sealed && said_.detail + kSmallFetch < whole) {
+  if (kHasLargeFrames && !is_sealed && reply_.detail + kSmallFetch < whole) {
     put(out_[first]);
     out_[first] = 0;
   }
   put16(whole);
-  for (uint16_t at = said_.detail; at < whole && size_ < most; at++) {
+  for (uint16_t at = reply_.detail; at < whole && size_ < most; at++) {
     const Answer answer = port_image_byte(at, out_ + size_++);
     if (answer != Answer::kOk) {
       size_ = first;

@@ -25,7 +25,7 @@ constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_o
 enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
 
 // What the parser wants next.
-enum Wanted : uint8_t {
+enum ParseState : uint8_t {
   kBegin,
   kBar,              // after SI, SB or PING
   kCheckConnection,  // after PING|

@@ -1,4 +1,5 @@
-// Waits and moves of tasks, and who has the motors. `tasks_avr.S` is the same for an Uno without discs.
+// Waits and moves of tasks, and who has the motors. `tasks_avr.S` is the same for an Uno without
+// discs.
 
 #include "build.h"
 
@@ -111,7 +112,7 @@ tini_noinline bool Drive::go_on() {
     me->state |= kHasBegun;
     begin(me);
   }
-  if (measures && !is_on_the_way()) {
+  if (measures && !continues_way()) {
     me->clock_ms = now_ms_;
     return fault_ == Fault::kNone;
   }
@@ -160,7 +161,7 @@ void Drive::go_way() {
 }
 
 // False: it is there, and its move is over, or a wheel does not turn.
-bool Drive::is_on_the_way() {
+bool Drive::continues_way() {
   constexpr uint8_t kGoBytes = 2;
   static_assert(static_cast<Fault>(Going::kStuckRight) == Fault::kStuckRight, "a Fault");
   int32_t rest;

@@ -17,9 +17,9 @@
 
 namespace tiniscript {
 
-// `Record` has `heard` (of type `Heard`), `rose_us`, `fell_us` and `again_us`. Saves what it
+// `Record` has `heard` (of type `EchoState`), `rose_us`, `fell_us` and `again_us`. Saves what it
 // changes and returns from the interrupt.
-template <class Record, class Heard>
+template <class Record, class EchoState>
 tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_us) {
   asm volatile(
       "push r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r25\n\t"
@@ -61,9 +61,11 @@ tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_u
         [clock] "i"(&clock), [turns] "I"(offsetof(Clock, turns)), [pin] "n"(echo.pin.port - 2),
         [mask] "M"(0 + echo.pin.mask), [record] "i"(record), [heard] "I"(offsetof(Record, heard)),
         [rose] "I"(offsetof(Record, rose_us)), [fell] "I"(offsetof(Record, fell_us)),
-        [again] "I"(offsetof(Record, again_us)), [nothing] "M"(static_cast<int>(Heard::kNothing)),
-        [high] "M"(static_cast<int>(Heard::kHigh)), [ended] "M"(static_cast<int>(Heard::kEnded)),
-        [high_again] "M"(static_cast<int>(Heard::kAgain)), [glitch] "M"(0 + glitch_us));
+        [again] "I"(offsetof(Record, again_us)),
+        [nothing] "M"(static_cast<int>(EchoState::kNothing)),
+        [high] "M"(static_cast<int>(EchoState::kHigh)),
+        [ended] "M"(static_cast<int>(EchoState::kEnded)),
+        [high_again] "M"(static_cast<int>(EchoState::kAgain)), [glitch] "M"(0 + glitch_us));
 }
 
 }  // namespace tiniscript

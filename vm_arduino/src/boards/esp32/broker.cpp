@@ -107,19 +107,19 @@ bool is_stop(const uint8_t* payload, size_t length) {
 
 // The stop in a message of somebody of whom no other one is known. It begins with text, or with
 // frames if it has a zero, and ends where a line does. What a frame holds is no stop of a stranger.
-Found find_stop(const uint8_t* payload, size_t length) {
+StopKind find_stop(const uint8_t* payload, size_t length) {
   bool is_framed = false;
   for (size_t k = 0; k < length; k++) {
     if (payload[k] == 0) is_framed = true;
   }
   StopFinder finder = StopFinder();
   finder.begin(is_framed);
-  Found most = Found::kNothing;
+  StopKind most = StopKind::kNothing;
   for (size_t k = 0; k < length; k++) {
-    const Found found = finder.put(payload[k], 0);
+    const StopKind found = finder.put(payload[k], 0);
     if (found > most) most = found;
   }
-  return finder.is_at_stop() ? Found::kStop : most;
+  return finder.is_at_stop() ? StopKind::kStop : most;
 }
 
 void part() {
@@ -207,8 +207,8 @@ void pass_on(const uint8_t* bytes, size_t length) {
 void on_peer(const char* who, const uint8_t* payload, size_t length) {
   const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {
-    const Found found = is_stop(payload, length) ? Found::kStop : find_stop(payload, length);
-    if (found > Found::kInFrame) return pipe().stop(found == Found::kOfRun);
+    const StopKind found = is_stop(payload, length) ? StopKind::kStop : find_stop(payload, length);
+    if (found > StopKind::kInFrame) return pipe().stop(found == StopKind::kOfRun);
     if (length != 0) __builtin_memcpy(refused, who, sizeof refused);
     return;
   }

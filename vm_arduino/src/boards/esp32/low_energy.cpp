@@ -1,8 +1,8 @@
 // Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
 //
 // The stack's task tells what is written to the robot, and who connects and leaves, with the number
-// of its connection; the task of this radio sends notifications. That one asks nothing of the core's
-// objects: these change in the stack's task, and no lock is around them.
+// of its connection; the task of this radio sends notifications. That one asks nothing of the
+// core's objects: these change in the stack's task, and no lock is around them.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -14,7 +14,8 @@
 #include "radio.h"
 
 #ifdef CONFIG_NIMBLE_ENABLED
-#error "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/develop/esp32.md"
+#error \
+    "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/develop/esp32.md"
 #endif
 
 namespace tiniscript {
@@ -64,7 +65,7 @@ Value published(const Value& at) {
 
 Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
 
-class Heard : public BLECharacteristicCallbacks {
+class WriteCallbacks : public BLECharacteristicCallbacks {
  public:
   void onWrite(BLECharacteristic* its, esp_ble_gatts_cb_param_t* event) override {
     if (event->write.conn_id != client) return;
@@ -125,7 +126,7 @@ void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t its_interface,
 }  // namespace
 
 void low_energy_begin() {
-  static Heard heard;
+  static WriteCallbacks write_callbacks;
   static BLE2902 notifications;
   subscription = &notifications;
   BLEDevice::init(radio_name().name);
@@ -138,7 +139,7 @@ void low_energy_begin() {
   notifier->addDescriptor(&notifications);
   BLECharacteristic* const to_robot = service->createCharacteristic(
       kToRobot, BLECharacteristic::PROPERTY_WRITE | BLECharacteristic::PROPERTY_WRITE_NR);
-  to_robot->setCallbacks(&heard);
+  to_robot->setCallbacks(&write_callbacks);
   service->start();
   to_computer = notifier->getHandle();
   BLEAdvertising* const advertising = BLEDevice::getAdvertising();

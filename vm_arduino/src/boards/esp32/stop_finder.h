@@ -9,13 +9,13 @@
 #include <stdint.h>
 
 #include "../../link/key_sequence.h"
-#include "../../link/typed_stop.h"
 #include "../../link/stop_sequence.h"
+#include "../../link/typed_stop.h"
 
 namespace tiniscript {
 
 // What a byte completes; the greater one counts.
-enum class Found : uint8_t {
+enum class StopKind : uint8_t {
   kNothing,
   kInFrame,  // a stop of its packet, if that is no whole frame
   kOfRun,    // a stop of what runs
@@ -30,18 +30,16 @@ class StopFinder {
     begin_line();
   }
 
-  Found put(uint8_t byte, uint16_t now_ms) {
+  StopKind put(uint8_t byte, uint16_t now_ms) {
     const bool are_zeros = zeros_.count_zeros(byte, now_ms);
     if (zeros_.keep_and_find_silence(byte, now_ms)) end_silence();
     zeros_.take_whole();
-    if (byte == 0) return put_zero() || are_zeros ? Found::kStop : Found::kNothing;
+    if (byte == 0) return put_zero() || are_zeros ? StopKind::kStop : StopKind::kNothing;
     return mode_ == Mode::kText ? put_text(byte) : put_packet(byte);
   }
 
   // Whether what has come of a line stops what runs, if silence follows.
-  bool is_at_stop() const {
-    return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed());
-  }
+  bool is_at_stop() const { return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed()); }
 
  private:
   enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };
@@ -72,27 +70,27 @@ class StopFinder {
     return is_stop;
   }
 
-  Found end_line(bool is_stop) {
+  StopKind end_line(bool is_stop) {
     begin_line();
     mode_ = Mode::kText;
-    return is_stop ? Found::kStop : Found::kNothing;
+    return is_stop ? StopKind::kStop : StopKind::kNothing;
   }
 
-  Found watch(uint8_t byte) {
+  StopKind watch(uint8_t byte) {
     typed_.put(byte);
-    return typed_.is_urgent() ? Found::kOfRun : Found::kNothing;
+    return typed_.is_urgent() ? StopKind::kOfRun : StopKind::kNothing;
   }
 
-  Found put_text(uint8_t byte) {
+  StopKind put_text(uint8_t byte) {
     if (ends_line(byte)) return end_line(line_ == Line::kHeld || is_typed());
     if (keys_.put(byte)) {
       if (line_ != Line::kSome) line_ = Line::kSkipped;
-      return Found::kNothing;
+      return StopKind::kNothing;
     }
     if (line_ != Line::kSome) {
       if (byte <= ' ' || byte == kDelete) {
         line_ = byte == kControlC && line_ <= Line::kHeld ? Line::kHeld : Line::kSkipped;
-        return Found::kNothing;
+        return StopKind::kNothing;
       }
       line_ = Line::kSome;
       is_printable_ = true;
@@ -101,21 +99,21 @@ class StopFinder {
     return watch(byte);
   }
 
-  Found put_packet(uint8_t byte) {
+  StopKind put_packet(uint8_t byte) {
     if (mode_ == Mode::kLine && ends_line(byte)) return end_line(is_typed());
     if (mode_ == Mode::kBegin) mode_ = Mode::kLine;
     if (!is_printable(byte)) mode_ = Mode::kFrame;
     return mode_ == Mode::kLine ? watch(byte) : take_frame_byte(byte);
   }
 
-  Found take_frame_byte(uint8_t byte) {
+  StopKind take_frame_byte(uint8_t byte) {
     const bool is_stop = ends_line(byte) && typed_.found() == TypedStop::kStrict;
     if ((byte < ' ' && byte != '\t') || byte == kDelete) {
       typed_.begin();
     } else {
       typed_.put(byte);
     }
-    return is_stop ? Found::kInFrame : Found::kNothing;
+    return is_stop ? StopKind::kInFrame : StopKind::kNothing;
   }
 
   static constexpr uint8_t kControlC = 3;
