@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from random import Random
 from time import monotonic
 
 import pytest
@@ -14,9 +15,10 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
 from tiniscript.cli.robot import event_printer, recorder
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.recorder import Recorder
+from tiniscript.cli.robot.recorder import ENDING_EVENTS, Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
+from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
 from tiniscript.studio.playing import play, prepare
 from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
@@ -306,6 +308,23 @@ def test_a_recording_has_an_end_and_no_more(
     events = recorded(file, show, began_s=began_s)
     assert events == ()  # longer than may be
     assert recorded(file) == (Row(0, "STOPPED"),)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_whatever_a_robot_tells_after_the_end_of_its_run_is_not_recorded(
+    tmp_path: Path, seed: int
+) -> None:
+    chance, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
+    tested = Recorder(str(file), HEAD, monotonic(), kit=kit)
+    for k in range(12):
+        name = chance.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
+        if name == "READING":
+            tested.add_reading(ReadingEvent(7, chance.randrange(3), 1000 * k, 0))
+        else:
+            tested.add_event(7, name, "OVERFLOW" if name == "FAULT" else str(k))
+    tested.close()
+    names = [row.event.partition(" ")[0] for row in decode(file.read_bytes()).rows]
+    assert names[-1] in ENDING_EVENTS and not {*names[:-1]} & {*ENDING_EVENTS}
 
 
 @pytest.mark.parametrize(("event", "wanted"), [("", "STOPPED"), ("LOST", "LOST")])

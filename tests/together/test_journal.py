@@ -128,6 +128,12 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
         assert changed(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
         look()
+        if chance.random() < 0.2:  # it crashes, and goes on with what there is
+            journal.close()
+            journal = Journal(path)
+            resumed = journal.resume(f"e{value}")
+            assert resumed is not None
+            program = resumed
     is_full = False
     assert changed(program, 99) and not journal.is_incomplete
     there = Journal(path).resume("e3")
