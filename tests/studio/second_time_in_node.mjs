@@ -1445,6 +1445,16 @@ const PARTS = {
         await passes(chance.below(20));
         presses('link_watch');
       },
+      async startAgain(chance) { // after a line, which takes the breakpoints away
+        acts.upload();
+        await passes(late());
+        acts.points(chance);
+        await passes(late());
+        await acts.line();
+        robot.tell({ event: 'DONE', program: robot.line });
+        await passes(late());
+        acts.start();
+      },
       again(chance) { // it halts, ends and halts, and nobody had time to look
         acts.halts(chance);
         robot.tell({ event: 'DONE' });
