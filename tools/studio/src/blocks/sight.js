@@ -117,8 +117,10 @@ export class RunFollower {
 
   /** @param {{scale: number, x: number, y: number}} view */
   #showAs({ scale, x, y }) {
-    this.#workspace.setScale(scale);
+    const toolbox = this.#workspace.getToolbox(), openGroup = toolbox?.getSelectedItem() ?? null;
+    if (scale !== this.#workspace.scale) this.#workspace.setScale(scale); // which closes what somebody has opened
     this.#workspace.scroll(x, y);
+    if (openGroup && !toolbox?.getSelectedItem()) toolbox?.setSelectedItem(openGroup);
   }
 
   /** What is seen, in the units of blocks. */
