@@ -1445,15 +1445,20 @@ const PARTS = {
         await passes(chance.below(20));
         presses('link_watch');
       },
-      async startAgain(chance) { // after a line, which takes the breakpoints away
+      async startAgain(chance) { // after a line, which takes the breakpoints away; perhaps before it is sent
+        const answered = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await passes(100); };
+        await answered();
+        if (isWatched()) acts.watch();
+        await answered();
         acts.upload();
-        await passes(late());
+        await answered();
         acts.points(chance);
-        await passes(late());
+        await answered();
         await acts.line();
-        robot.tell({ event: 'DONE', program: robot.line });
-        await passes(late());
+        if (chance() < 0.5) await answered();
+        robot.tell({ event: 'DONE' });
         acts.start();
+        await answered();
       },
       again(chance) { // it halts, ends and halts, and nobody had time to look
         acts.halts(chance);

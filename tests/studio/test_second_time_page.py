@@ -39,7 +39,7 @@ ENDS = {
     "sharing": {"share_line", "share_link"},
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
-    "robots": {"again", "identify", "line", "senses", "startAgain", "step", "twice", "watch"},
+    "robots": {"again", "line", "senses", "startAgain", "step", "twice", "watch"},
     "member": {"joins", "leaves", "ends", "edits"},
     "news": {"asks", "tells", "moves"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},

@@ -22,6 +22,7 @@ import { StopOffsets } from '../writing/parts.js';
  */
 
 const END_EVENTS = ['DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
+const TAKEN_AWAY = '?'; // no list of places
 
 export class Debugging {
   #page;
@@ -91,7 +92,6 @@ export class Debugging {
   /** What the robot has is to start: with the places, if it is the program from here. */
   async startAgain() {
     this.#isHaltingFirst = false;
-    if (this.#sentPlaces) this.#sentPlaces = '?'; // a line that ran meanwhile may have taken them away
     const requestNumber = ++this.#requestCount;
     if (this.#program && this.#canHalt && !await this.#sendPlaces()) return;
     if (requestNumber === this.#requestCount) await this.#page.ask({ do: 'start' }, () => this.#page.say('say_started'));
@@ -100,6 +100,11 @@ export class Debugging {
   /** Somebody has pressed STOP. */
   stop() {
     this.#requestCount += 1;
+  }
+
+  /** A line is sent: it takes the robot's places away. */
+  onLine() {
+    if (this.#sentPlaces) this.#sentPlaces = TAKEN_AWAY;
   }
 
   /** @param {RobotEvent} event */
@@ -150,7 +155,8 @@ export class Debugging {
     const places = (this.#isHaltingFirst ? [0, ...haltOffsets.filter((offset) => offset !== 0)] : haltOffsets).slice(0, LINK.most_breakpoints);
     if (places.join() === this.#sentPlaces) return true;
     this.#sentPlaces = places.join();
-    return await this.#page.ask({ do: 'break', places }) !== null;
+    if (await this.#page.ask({ do: 'break', places }) === null) return false;
+    return this.#sentPlaces !== TAKEN_AWAY || this.#sendPlaces();
   }
 
   // -- a halt -------------------------------------------------------------------------------------

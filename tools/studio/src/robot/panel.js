@@ -333,6 +333,7 @@ export class RobotPanel {
    */
   async #askNow(request, onDone, isQuiet) {
     if (!this.#transport || !this.#robotInfo) return null;
+    if (request['do'] === 'live') this.#debugging.onLine();
     const isUnannounced = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
     const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
