@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from random import Random
+
+import pytest
 
 from tiniscript.link import known_ports
 
@@ -27,3 +30,20 @@ def test_a_school_has_more_than_a_hundred_robots() -> None:
         known_ports.remember(f"socket://10.0.0.{number}:1", f"R{number}", is_used=False)
     names = known_ports.remembered_ports().name_by_port
     assert len(names) == 150 and next(iter(names.values())) == "R149"
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_newest_port_is_first_and_the_one_used_last_is_known(seed: int) -> None:
+    """Whatever was remembered before, and whether it was used or only seen."""
+    chance, last_port, names = Random(seed), None, dict[str, str]()
+    for _ in range(20):
+        port, name, is_used = (
+            f"COM{chance.randrange(3)}",
+            chance.choice("AB"),
+            chance.random() < 0.5,
+        )
+        known_ports.remember(port, name, is_used)
+        last_port = port if is_used else last_port
+        names = {port: name, **{other: names[other] for other in names if other != port}}
+        assert known_ports.remembered_ports() == (last_port, names)
+        assert [*known_ports.remembered_ports().name_by_port] == [*names]

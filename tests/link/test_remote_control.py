@@ -30,8 +30,15 @@ from tiniscript.link.messages import (
     encode_payload,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
-from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, RemoteState, remote_state_of
-from tiniscript.link.requests import OK
+from tiniscript.link.payloads import EmptyReply
+from tiniscript.link.remote import (
+    GAP_MS,
+    NOTHING_PRESSED,
+    RemoteControl,
+    RemoteState,
+    remote_state_of,
+)
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
 
 UP, LEFT, A = (remote_state_of([name]) for name in ("UP", "LEFT", "A"))
@@ -565,3 +572,28 @@ def test_the_reply_says_where_the_program_is() -> None:
     reply = next(frame for frame in frames if frame is not None and frame.number == KEYS.number)
     assert reply.payload[:2] == bytes((0, STATE_RUNNING))
     assert int.from_bytes(reply.payload[5:9], "little") == program.checksum
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(seed: int) -> None:
+    chance, remote, now_ms = random.Random(seed), RemoteControl(), 0
+    ends: dict[str, Callable[[], None]] = {
+        "answer": lambda: remote.take_answer(Reply(OK, 0, EmptyReply())),
+        "refusal": lambda: remote.take_answer(Reply(STATUSES["UNOWNED"])),
+        "silence": remote.note_unanswered,
+        "stop": remote.let_go,
+    }
+    for _ in range(20):
+        presses = [remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, UP, A)))]
+        for _ in range(chance.randrange(4)):
+            now_ms += chance.randrange(400)
+            if remote.expire_and_check_due(now_ms):
+                remote.take_message(now_ms)
+            presses.append(
+                remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, UP, A)))
+            )
+        how = chance.choice([*ends])
+        if how in ("answer", "silence"):  # of a word after these presses
+            remote.take_message(now_ms)
+        ends[how]()
+        assert all(press.outcome is not None for press in presses), how
