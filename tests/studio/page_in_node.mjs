@@ -16,7 +16,7 @@ const PLAYED = {
   'virtual/sounds.js': ['Sounds'],
   'world/choice.js': ['WorldChoice'],
   'world/drawing.js': ['WorldDrawing'],
-  'page/pictures.js': ['replaceOptions', 'makePictureOption', 'makeDialPicture', 'makeWorldPicture', 'makeSymbolPicture'],
+  'page/pictures.js': ['replaceOptions', 'makePictureOption', 'makeBlocksPicture', 'makeDialPicture', 'makeWorldPicture', 'makeSymbolPicture'],
   'blocks/blocks.js': ['Blocks'],
   'robot/host.js': ['HostRobot', 'hasHost', 'fetchPorts', 'isPupil', 'isTeacher', 'post'],
   'robot/serial.js': ['hasSerial', 'choosePort', 'listKnownPorts', 'SerialPort'],
@@ -61,6 +61,12 @@ const setLater = (does, ms = 0, ...given) => {
 };
 const clearLater = (number) => {
   timers = timers.filter((each) => each.number !== number);
+};
+const every = (does, ms) => {
+  const number = (count += 1);
+  const plans = () => timers.push({ at_ms: now_ms + ms, does: () => { plans(); does(); }, number });
+  plans();
+  return number;
 };
 export const now = () => now_ms;
 export const later = (ms, value) => new Promise((resolve) => setLater(() => resolve(value), ms));
@@ -181,10 +187,11 @@ for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Deta
 stands('DOMMatrix', Matrix);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
+stands('clearInterval', clearLater);
 stands('performance', { now });
 stands('requestAnimationFrame', (does) => setLater(() => does(now_ms), 16));
 stands('cancelAnimationFrame', clearLater);
-stands('ResizeObserver', class { observe() {} });
+for (const name of ['ResizeObserver', 'MutationObserver']) stands(name, class { observe() {} });
 stands('matchMedia', () => ({ matches: false }));
 stands('Option', Part);
 stands('self', globalThis);
@@ -201,7 +208,7 @@ export function freshPage(given = {}) {
   const byId = (id) => parts.get(id) ?? parts.set(id, new Part()).get(id);
   played = given;
   timers = [];
-  stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, sessionStorage: new Store(), localStorage: new Store() }));
+  stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, setInterval: every, sessionStorage: new Store(), localStorage: new Store() }));
   const heard = new EventTarget();
   for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
   stands('document', Object.assign(new EventTarget(), {

@@ -2296,6 +2296,284 @@ const PARTS = {
     };
   },
 
+  // One program after another as blocks and as text, by whoever changes which of both and whenever Python answers: what is
+  // done to blocks becomes text unless somebody has typed since they were made, what is typed stays, and in a group all of
+  // it does; undo comes after what was done before it; and when nobody does anything, both are the same program.
+  async writing() {
+    let blocks = null;
+    let wrong = '';
+    const fails = (sentence) => { wrong ||= sentence; };
+    const linesOf = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
+    const formOf = (text) => ({ body: linesOf(text).map((line) => ({ text: line, kind: line.includes('?') ? 'grey' : 'word', bodies: [] })) });
+    const textOf = ({ body }) => body.map((each) => each.text).join('\n');
+    const page = freshPage({
+      replaceOptions() {}, makePictureOption() {}, makeDialPicture() {}, makeBlocksPicture() {},
+      Blocks: class {
+        isBusy = false;
+        focusedLine = 1;
+        has = {};
+        layoutText = 'L0';
+        form = { body: [] };
+        constructor(_, __, ___, page) {
+          Object.assign(this, { page });
+          blocks = this;
+        }
+        get lines() { return this.form.body.map((_, line) => [`${line}`, line]); }
+        readForm() {
+          if (this.isBusy) fails('blocks are read while one is in a hand');
+          return { form: structuredClone(this.form), ids: [] };
+        }
+        show(form) {
+          if (this.isBusy) fails('a block is taken out of a hand');
+          if (textOf(form) !== textOf(formOf(editor.text))) fails('blocks are made of an older text');
+          if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fails('blocks are made of what somebody is typing');
+          this.form = structuredClone(form);
+          this.shown = textOf(form);
+          isTyped = hasTouched = false;
+          stood = this.layoutText;
+          this.has = {};
+        }
+        levelOf() { return 'few'; }
+        showFindings(findings) {
+          if (findings.some((each) => each.of !== editor.text)) fails('what is said at blocks is said of another text');
+          this.sees('findings', findings);
+        }
+        showBreakpoints(points) { this.sees('points', points); }
+        showRunning(ranges) { this.sees('running', ranges); }
+        showMates(places) { this.sees('mates', places); }
+        sees(what, value) {
+          if (!group && this.shown !== textOf(formOf(editor.text))) fails(`blocks of another text have ${what}`);
+          this.has[what] = JSON.stringify(value);
+        }
+        async makePicture() { return textOf(this.form); }
+        setRanges() { if (group) this.shown = textOf(formOf(editor.text)); }
+        showFault() {} setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
+      },
+    });
+    let isTyped = false; // since blocks were shown
+    let hasTouched = false; // blocks, since then
+    let asked_ms = 0; // for blocks of a text that is wrong, too
+    let stood = 'L0'; // where blocks stood then
+    let past = [];
+    let layout = () => {};
+    const editor = {
+      text: '', hasFocus: false,
+      put(text) {
+        if (text === editor.text) return;
+        editor.text = text;
+        pageState.checkResult.set(null);
+        pageState.programText.set(text);
+      },
+      replaceByBlocks(text, { before, after }) {
+        if (text !== editor.text && isTyped && !group) fails('what was typed is lost');
+        if (text !== editor.text && text !== textOf(blocks.form)) fails(`blocks of before become text: ${text}`);
+        if (before !== stood || after !== blocks.layoutText) fails(`blocks go from ${before} to ${after}, and not from ${stood}`);
+        stood = after;
+        past.push([editor.text, before, after]);
+        if (text !== editor.text) {
+          hasTouched = false;
+          blocks.shown = text;
+        }
+        editor.put(text);
+      },
+      undo() {
+        if (blocks.isBusy) fails('undo comes while a block is in a hand');
+        if (hasTouched && !isTyped && !hasFailed) fails('undo comes before what was done to blocks');
+        const [text, before, after] = past.pop() ?? [editor.text, '', ''];
+        editor.put(text);
+        if (before === after) return;
+        layout(before);
+        if (blocks.layoutText !== before) fails('an undo leaves blocks where they are');
+      },
+      redo() {},
+      onLayoutChange: (does) => { layout = does; },
+      toggleBreakpoint: () => { if (textOf(formOf(editor.text)) !== blocks.shown) fails('a breakpoint is set in another text'); },
+      showRunning() {}, goTo() {},
+    };
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Views } = await page.load('writing/views.js');
+    let late = () => 5;
+    let breaks = () => false;
+    let hasFailed = false;
+    let worker = Promise.resolve(); // it does one thing after the other
+    const python = {
+      ask({ do: what, form }, bytes) {
+        const text = bytes && new TextDecoder().decode(bytes);
+        worker = worker.catch(() => {}).then(() => later(late())).then(() => {
+          if (!breaks()) return what === 'text' ? { text: textOf(form), places: [] } : formOf(text);
+          hasFailed = true;
+          throw new Broken();
+        });
+        return worker;
+      },
+    };
+    const work = { view: 'blocks', level: 'few' };
+    let group = null;
+    /** Others of it write, too. */
+    const makeGroup = () => ({
+      base: [],
+      async reportBlocks() {
+        this.base = linesOf(textOf(blocks.form));
+        await later(late());
+        return { is_known: true };
+      },
+      async writeBlocks(form) {
+        const given = form.body.map((each) => each.text);
+        stood = blocks.layoutText;
+        await later(late());
+        if (group !== this) return null;
+        const { base } = this;
+        this.base = given;
+        editor.put([...linesOf(editor.text).filter((line) => given.includes(line) || !base.includes(line)), ...given.filter((line) => !base.includes(line))].join('\n'));
+        return { is_shown: editor.text === textOf(form), places: [] };
+      },
+      settle: () => later(late()),
+      chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
+    });
+    const views = new Views({ python, editor, work, remember() {}, tryAlone() {}, playTone() {} });
+    const pane = page.byId('blocks');
+    views.markReady();
+    views.wake();
+    for (let k = 0; !blocks && k < 500; k += 1) await settles();
+    const presses = (id) => page.byId(id).click();
+    let count = 0;
+    let mine = []; // that have to stay in a group
+    const acts = {
+      types(chance) {
+        editor.hasFocus = chance() < 0.6;
+        const line = `t${(count += 1)}${chance() < 0.3 ? '?' : ''}`;
+        isTyped = true;
+        mine.push(line);
+        editor.put(group || chance() < 0.7 ? `${editor.text}\n${line}` : line);
+        if (pane.dataset['state'] !== 'stale') fails('blocks pass for those of a text that was typed since');
+      },
+      async builds(chance) {
+        if (work.view !== 'blocks') return;
+        const pressed = Object.assign(new Event('pointerdown'), { stopPropagation() { this.isStopped = true; } });
+        editor.hasFocus = false;
+        pane.dispatchEvent(pressed);
+        if (pressed.isStopped) return; // it is a moment too early
+        for (let more = true; more; more = chance() < 0.3) { // and takes the next one at once
+          blocks.isBusy = true;
+          if (!group && chance() < 0.2) presses('undo');
+          await passes(chance.below(chance.of([2, 120])));
+          blocks.isBusy = false;
+          const line = chance() < 0.7 ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
+          hasFailed = false;
+          if (line !== `b${count}`) mine = mine.filter((each) => each !== line);
+          else {
+            mine.push(line);
+            blocks.form.body.push({ text: line, kind: 'word', bodies: [] });
+          }
+          hasTouched = textOf(blocks.form) !== blocks.shown;
+          blocks.page.onChange();
+        }
+      },
+      moves() {
+        if (work.view !== 'blocks') return;
+        blocks.layoutText = `L${(count += 1)}`;
+        blocks.page.onChange();
+      },
+      async undoes() {
+        if (group) return;
+        hasFailed = false; // it is tried again
+        presses('undo');
+      },
+      views: (chance) => presses(chance.of(['view_blocks', 'view_text'])),
+      robot() { // blocks of its own are made
+        [mine, hasTouched] = [[], false];
+        pageState.robotName.set('tinibot');
+      },
+      speaks: () => pageState.language.set('en'),
+      checks: () => pageState.checkResult.set({ findings: [{ of: editor.text }] }),
+      points: () => {
+        pageState.breakpoints.set([{ line: (count += 1), column: 1 }]);
+        blocks.page.toggleBreakpoint({});
+      },
+      runs: () => pageState.virtualRun.set({ ranges: [{ line: (count += 1) }], isHeld: false }),
+      mates: () => views.showMates([{ line: (count += 1) }]),
+      async pictures() {
+        const { view } = work;
+        let picture;
+        views.makePicture().then((made) => { picture = made; }, fails);
+        for (let k = 0; picture === undefined && k < 100; k += 1) await passes(100);
+        if (picture === undefined) fails('a picture never comes');
+        if (work.view !== view) fails(`a picture leaves ${view}`);
+        if (picture === null && !hasFailed) fails('there is no picture');
+        if (picture !== null && picture !== textOf(formOf(editor.text)) && !hasTouched) fails(`a picture of ${picture}`);
+      },
+      joins() {
+        if (group) return;
+        [group, mine, hasTouched] = [makeGroup(), [], false];
+        views.join(group);
+      },
+      leaves() {
+        [group, mine, hasTouched] = [null, [], false];
+        views.join(null);
+      },
+      waits: () => {},
+    };
+    const rests = async () => {
+      acts.checks();
+      await passes(4000);
+      if (wrong) throw new Error(wrong);
+      const text = textOf(formOf(editor.text));
+      if (work.view !== 'blocks' || (editor.hasFocus && text.includes('?'))) return;
+      if (hasFailed) { // who goes on has it right again
+        if (textOf(blocks.form) !== text && !page.byId('blocks_note').textContent) throw new Error('nobody says that blocks and text differ');
+        hasFailed = false;
+        acts.undoes();
+        await rests();
+        return;
+      }
+      if (textOf(blocks.form) !== text) throw new Error(`${textOf(blocks.form)} are the blocks of ${text}`);
+      if (pane.dataset['state'] !== 'shown' || page.byId('blocks_note').textContent) throw new Error(`it says ${pane.dataset['state']} ${page.byId('blocks_note').textContent}`);
+      if (pageState.checkResult.value && blocks.has.findings !== JSON.stringify(pageState.checkResult.value.findings)) throw new Error(`${blocks.has.findings} is said at blocks`);
+      if (blocks.has.points !== JSON.stringify(pageState.breakpoints.value)) throw new Error('breakpoints are not at blocks');
+      if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
+      if (group) for (const line of mine) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(chance.of([10, 400])));
+      breaks = () => !isGood && !group && chance() < 0.2;
+      const ends = new Set();
+      if (isGood) {
+        acts.leaves();
+        presses('view_blocks');
+        editor.hasFocus = false;
+        isTyped = true;
+        hasFailed = false;
+        blocks.layoutText = 'L0';
+        editor.put('first\nsecond');
+        pageState.breakpoints.set([]);
+        pageState.virtualRun.set({ ranges: [], isHeld: false });
+        await rests();
+        past = [];
+        mine = [];
+        count = 0;
+      }
+      const all = [];
+      asked_ms = now();
+      if (chance() < 0.4) acts.joins();
+      for (let k = 5 + chance.below(15); k > 0; k -= 1) {
+        const act = chance.of(['types', 'builds', 'builds', 'undoes', ...Object.keys(acts)]);
+        if (act === 'leaves' && chance() < 0.7) continue;
+        if (!['types', 'checks', 'points', 'runs', 'mates', 'waits'].includes(act)) asked_ms = now();
+        await acts[act](chance);
+        ends.add(act);
+        if (!isGood && chance() < 0.15) await rests();
+        await passes(chance.of([0, chance.below(40), chance.below(600)]));
+        if (wrong) throw new Error(wrong);
+        all.push([editor.text, textOf(blocks.form), pane.dataset['state']]);
+      }
+      breaks = () => false;
+      if (hasFailed) ends.add('failed');
+      await rests();
+      return { ends: [...ends], seen: isGood && [all, past] };
+    };
+  },
+
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };

@@ -55,6 +55,7 @@ ENDS = {
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
     "queue": {"asks", "hears", "stops", "waits", "broken"},
+    "writing": {"types", "builds", "undoes", "views", "joins", "leaves", "pictures", "failed"},
     "languages": {"en", "es", "pt"},
     "presses": {"run", "step", "stop", "edits"},
     "watching": {"told", "silent"},

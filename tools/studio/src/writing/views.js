@@ -5,6 +5,7 @@ import { element } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
 import { makeBlocksPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
+import { pause } from '../robot/transport.js';
 import { text } from '../page/texts.js';
 import { isShippedProgram } from '../start/beginnings.js';
 
@@ -38,7 +39,8 @@ export class Views {
   #isReady = false;
   #isAwake = false; // blocks may be fetched
   #isRefreshing = false;
-  #isSending = false;
+  /** @type {Promise<void> | null} */
+  #sending = null;
   #isForced = false; // blocks of a text that does not parse, too
   #changeCount = 0; // of blocks that their text does not have yet
   #shownForm = ''; // what the blocks were when they and the text were the same
@@ -214,7 +216,7 @@ export class Views {
       await this.#fetchingBlocks;
       await this.#sendBlocks();
       this.#refreshBlocks(true);
-      while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
+      while (this.#isRefreshing) await pause(BUSY_PAUSE_MS);
       return this.#blocks && !this.#isStale() ? await this.#blocks.makePicture() : null;
     } finally {
       if (view !== 'blocks') this.#chooseView(view);
@@ -304,20 +306,22 @@ export class Views {
     this.#sendTimer = window.setTimeout(() => this.#sendBlocks(), 0);
   }
 
-  /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
-  async #sendBlocks() {
-    if (!this.#blocks || this.#shownText === null || this.#isSending || !this.#changeCount) return;
-    if (this.isBusy) {
-      clearTimeout(this.#sendTimer);
-      this.#sendTimer = window.setTimeout(() => this.#sendBlocks(), BUSY_PAUSE_MS);
-      return;
-    }
-    this.#isSending = true;
-    const textBefore = this.#page.editor.text;
+  /** Makes the text of the blocks, unless somebody has changed the text meanwhile. Who comes while it is made waits for that. */
+  #sendBlocks() {
+    this.#sending ??= this.#makeText().finally(() => {
+      this.#sending = null;
+    });
+    return this.#sending;
+  }
+
+  async #makeText() {
+    await this.#waitForHand();
+    if (!this.#blocks || this.#shownText === null || !this.#changeCount) return;
     try {
       if (this.#group) await this.#writeToGroup(this.#group);
-      else while (this.#changeCount && this.#shownText === textBefore) {
+      else while (this.#changeCount && !this.#isStale()) {
         this.#changeCount = 0;
+        const textBefore = this.#page.editor.text;
         const { form, ids } = this.#blocks.readForm();
         const formText = JSON.stringify(form);
         const layouts = { before: this.#shownLayout, after: this.#blocks.layoutText };
@@ -327,7 +331,10 @@ export class Views {
           break;
         }
         const answer = await this.#page.python.ask({ do: 'text', form });
-        if (this.#changeCount || this.#page.editor.text !== textBefore) continue;
+        if (this.#changeCount || this.#page.editor.text !== textBefore) {
+          await this.#waitForHand();
+          continue;
+        }
         this.#shownText = answer.text;
         this.#shownForm = formText;
         this.#shownLayout = layouts.after;
@@ -337,8 +344,8 @@ export class Views {
       }
     } catch (error) {
       this.#showFailure(error);
-    } finally {
-      this.#isSending = false;
+      this.#changeCount ||= 1; // whatever comes next tries again
+      return;
     }
     this.#changeCount = 0;
     if (this.#isStale()) this.#refreshBlocks(true);
@@ -347,7 +354,7 @@ export class Views {
 
   /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').SharedEditor} group */
   async #writeToGroup(group) {
-    while (this.#blocks) {
+    while (this.#blocks && group === this.#group) {
       this.#changeCount = 0;
       const { form, ids } = this.#blocks.readForm();
       const formText = JSON.stringify(form);
@@ -363,7 +370,12 @@ export class Views {
       this.#shownText = this.#page.editor.text;
       this.#blocks.setRanges(ids, answer.places ?? []);
       this.#showBreakpoints();
+      await this.#waitForHand();
     }
+  }
+
+  async #waitForHand() {
+    while (this.isBusy) await pause(BUSY_PAUSE_MS);
   }
 
   /**
@@ -385,8 +397,8 @@ export class Views {
         const newText = this.#page.editor.text;
         /** @type {Form & {size: number}} */
         const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(newText));
-        while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
-        if (newText !== this.#page.editor.text || group !== this.#group || (group && this.#isTouched)) continue;
+        await this.#waitForHand();
+        if (newText !== this.#page.editor.text || group !== this.#group || (group && (this.#sending || this.#isTouched))) continue;
         const areBlocksKept = !this.#isForced && this.#page.editor.hasFocus && this.#shownText !== null && hasGrey(form);
         if (!form.body || areBlocksKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
@@ -401,7 +413,7 @@ export class Views {
         if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
         this.#decorateBlocks();
       }
-      this.#showState();
+      if (!this.#changeCount) this.#showState();
     } catch (error) {
       this.#showFailure(error);
     } finally {
@@ -417,8 +429,8 @@ export class Views {
 
   /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
   async #settle() {
-    while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
-    while (this.#isSending) await new Promise((resolve) => setTimeout(resolve, BUSY_PAUSE_MS));
+    await this.#waitForHand();
+    await this.#sending;
     if (this.#isTouched) {
       this.#changeCount ||= 1; // Blockly tells of it a moment later
       await this.#sendBlocks();
