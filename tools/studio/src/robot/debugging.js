@@ -149,7 +149,7 @@ export class Debugging {
     this.#show();
   }
 
-  /** Tells the robot where to halt, if that is new. Returns whether it knows. */
+  /** Tells the robot where to halt, if that is new. Returns whether it knows. @returns {Promise<boolean>} */
   async #sendPlaces() {
     const haltOffsets = this.#haltOffsets;
     const places = (this.#isHaltingFirst ? [0, ...haltOffsets.filter((offset) => offset !== 0)] : haltOffsets).slice(0, LINK.most_breakpoints);
