@@ -9,16 +9,18 @@ from pathlib import Path
 
 import pytest
 
+from tests.support import edited_robots
 from tests.support.command import PROGRAM, TSC, Done, Tsc
 from tests.support.verbs import parsers, values_of, words_of
 from tests.support.waiting import HANGS_S
 from tiniscript.cli import paths
 from tiniscript.cli.texts.options import options_of
 from tiniscript.robots import DEFAULT
+from tiniscript.virtual import worlds
 
 HERE = Path(sys.modules["tiniscript"].__file__ or "").parent
-PROFILE = (HERE / "robots" / f"{DEFAULT}.toml").read_text(encoding="utf-8")
-WORLD = (HERE / "virtual" / "worlds" / "obstacles.toml").read_text(encoding="utf-8")
+PROFILE = edited_robots.TEXTS[DEFAULT]
+WORLD = (worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8")
 TEXTS = {"program": PROGRAM, "robot": PROFILE, "world": WORLD, "memory": "m" * 1024}
 PARSERS = parsers()
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_outputs import PROFILE, WORLD
 from tests.support.command import PROGRAM, Tsc
+from tests.support.edited_robots import TEXTS
 from tests.support.rows import each_row
 from tests.support.sampling import some_of
 from tests.support.session_frames import DESCRIPTION
@@ -28,6 +28,8 @@ from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import device_info_of
 from tiniscript.link.sharing.protocol import make_payload
+from tiniscript.robots import DEFAULT
+from tiniscript.virtual import worlds
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
@@ -107,7 +109,7 @@ def spoiled(toml: str) -> list[str]:
 def test_no_string_of_a_profile_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, pytestconfig: pytest.Config
 ) -> None:
-    texts = spoiled(PROFILE)
+    texts = spoiled(TEXTS[DEFAULT])
     assert len(texts) > 30
     for number, toml in enumerate(texts):
         if verb in ("run", "robot") and number % 7:
@@ -124,7 +126,7 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
 
 
 def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
-    texts = spoiled(WORLD)
+    texts = spoiled((worlds.FOLDER / "obstacles.toml").read_text(encoding="utf-8"))
     assert len(texts) > 3
     for toml in texts:
         Path("evil.toml").write_text(toml, encoding="utf-8")

@@ -7,12 +7,14 @@ import re
 
 import pytest
 
-from tests.diagnostics.test_rendering import KIT, LANGUAGES, gaps
-from tiniscript import Compilation, check_text
+from tests.support.texts import LANGUAGES, gap_names
+from tiniscript import Compilation, check_text, robots
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_text, message
+
+KIT = robots.load("grabber").kit
 
 
 def at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:
@@ -136,7 +138,7 @@ def is_told_well(found: Compilation) -> None:
     """Check all that is true of the messages for any text."""
     text, source = found.source.text, found.source
     for diagnostic in found.diagnostics:
-        assert gaps(diagnostic.code.number) <= set(diagnostic.values)
+        assert gap_names(diagnostic.code.number) <= set(diagnostic.values)
         for lang in LANGUAGES:
             said = message(diagnostic, source, lang)
             assert said.severity == ("mistake" if diagnostic.is_mistake else "warning")

@@ -8,12 +8,13 @@ from collections.abc import Mapping
 import pytest
 
 from tests.support.rows import each_row
+from tests.support.texts import LANGUAGES, gap_names
 from tests.support.texts import said as all_said
 from tiniscript import check_text, compile_text
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages
 from tiniscript.base.source import Source, Span
-from tiniscript.diagnostics import codes, rendering
+from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_json, as_text, explain, message, titles
 from tools.languages import sources
@@ -32,7 +33,6 @@ KIT = Kit(
     speed=45_000,
     turn=360_000,
 )
-LANGUAGES = languages()
 TEXTS = {language: all_said(language, "messages") for language in languages()}
 EXAMPLES = [code for code in sorted(CODES) if f"{code}/wrong" in TEXTS[SOURCE_LANGUAGE]]
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
@@ -57,16 +57,6 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS315": {"robot": "tinibot"},
     "TS809": BOARD,
 }
-
-
-def gaps(code: str) -> set[str]:
-    """Return the names of the gaps in a code's message and thing to try, which all need a value.
-
-    Of several texts only the last one has to be filled: it is taken where no other is.
-    """
-    both = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
-                   for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip
-    return set(re.findall(r"\{@?(\w+)\}", both))
 
 
 def first(text: str, lang: str = "en") -> tuple[Message, Source]:
@@ -116,7 +106,7 @@ def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
     found = compile_text(TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"], KIT)
     values = found.diagnostics[0].values
     if found.diagnostics[0].repair is None:  # else what it becomes is told
-        assert gaps(code) <= set(values)
+        assert gap_names(code) <= set(values)
     for lang in LANGUAGES:
         said = message(found.diagnostics[0], found.source, lang)
         assert "{" not in said.message + said.fix
@@ -125,7 +115,7 @@ def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
 
 @pytest.mark.parametrize("code", sorted(WITHOUT_EXAMPLE))
 def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> None:
-    assert gaps(code) <= set(WITHOUT_EXAMPLE[code])
+    assert gap_names(code) <= set(WITHOUT_EXAMPLE[code])
     diagnostic = Diagnostic(CODES[code], Span(0, 0), WITHOUT_EXAMPLE[code])
     for lang in LANGUAGES:
         said = message(diagnostic, Source(""), lang)

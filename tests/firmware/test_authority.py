@@ -9,31 +9,24 @@ import pytest
 from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tests.support.owners import (
+    OPEN_TO_ALL,
     WITHOUT_SEALS,
     Keys,
     Owned,
+    grants_key_request,
     owner_of,
     robots_of_both_kinds,
     state_of,
 )
 from tiniscript.link.authority import OWNED_BY_OTHER
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
-from tiniscript.link.messages import (
-    BY_NAME,
-    BY_NUMBER,
-    FIRST_EVENT,
-    RADIO_MESSAGES,
-    STATE_RUNNING,
-    STATE_STOPPED,
-    STATUSES,
-)
+from tiniscript.link.messages import BY_NAME, RADIO_MESSAGES, STATE_RUNNING, STATE_STOPPED, STATUSES
 from tiniscript.link.seal import siphash
 from tiniscript.link.session import Session
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
 
 DISCONNECTED = 8  # the STATE pin of a module
-OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 
 
 def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
@@ -230,7 +223,7 @@ def forged(frames: int, seed: int) -> int:
             seq = thief._seq if how == 1 else chance.randrange(256)
             data = encode_frame(Frame(message.number, seq, thief._epoch, payload))
         sent = table.robot.step(b"\0" + data)
-        accepted += sum(is_accepted(answer) for answer in sent.split(b"\0"))
+        accepted += sum(grants_key_request(answer) for answer in sent.split(b"\0"))
         if chance.randrange(50) == 0:
             table.robot.wait(30)
         did = [line for line in table.robot.did if "MOTORS" in line]
@@ -240,19 +233,6 @@ def forged(frames: int, seed: int) -> int:
         accepted += 1
     assert table.tries(table.session(keys, nonce=5)) == "OK"
     return accepted
-
-
-def is_accepted(sent: bytes) -> bool:
-    """Return whether an answer says that something was done for which it takes a key."""
-    frame = decode_frame(sent)
-    if frame is None or frame.number not in BY_NUMBER or not frame.payload:
-        return False
-    message = BY_NUMBER[frame.number]
-    if message.name == "AUTHENTICATE":  # a challenge is for anybody
-        is_open = len(frame.payload) == 1 + 2 + 8
-    else:
-        is_open = message.name in OPEN_TO_ALL or message.number >= FIRST_EVENT
-    return frame.payload[0] == 0 and not is_open
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from tests.machines.board import HERTZ, MS, Board
-from tests.support.board_states import LAMP, START, STEADY, on_board, pulses, started
+from tests.support.board_states import START, STEADY, WORKSHOP, on_board, pulses, started
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
@@ -236,25 +236,6 @@ def test_a_servo_and_a_lamp() -> None:
         each = [length for ms, length in found if START + after < ms < START + after + 70]
         assert each and all(abs(length - us) < 3 for length in each)
     assert board.pin(30, START + 50) == "high"
-
-
-# what the shipped robots do not have: a lamp that is on when its pin is low, a fan, a threshold
-WORKSHOP = (
-    ("[[kit.sensors]]", '[[kit.sensors]]\nname = "BRIGHT"\nkind = "yes/no"\n\n[[kit.sensors]]'),
-    (
-        "[board]\n",
-        '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-30000, 30000]\n\n' + LAMP,
-    ),
-    ("bluetooth_state = 12", ""),
-    ("right_forward = 9", "right_forward = 12"),
-    (
-        "[body]\n",
-        '[board.actuators.FAN]\ndriver = "pwm"\npin = 9\n\n'
-        '[board.actuators.LAMP]\ndriver = "digital"\npin = "A5"\nyes_is_low = true\n\n'
-        '[board.sensors.BRIGHT]\ndriver = "threshold"\npin = "A2"\nthreshold = 600\n'
-        "yes_is_low = true\n\n[body]\n",
-    ),
-)
 
 
 def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:

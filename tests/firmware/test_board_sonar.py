@@ -2,46 +2,35 @@
 
 from __future__ import annotations
 
-import random
 from itertools import pairwise
 
 import pytest
 
 from tests.machines.board import HERTZ, MS, PORTS, Board
 from tests.support.board_states import START, on_board, started
+from tests.support.sonar import (
+    US_PER_CM,
+    approaching_obstacle,
+    driven_ms,
+    ping_starts_ms,
+    sonar_pins,
+)
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
 SPACING_MS, FRESH_MS = 30.0, 60.0
 FIRST = 3  # samples of a run's first value
 DELAY_US = 460  # from the trigger to the echo
-US_PER_CM = 2 / 0.0343
-
-
-def wire(robot: Robot, number: int = 2) -> tuple[int, int]:
-    pins = robot.board.sensors[number].pins
-    return pins["trigger"], pins["echo"]
-
-
-def pings(board: Board, trigger: int) -> list[float]:
-    """Return when pings left, in ms."""
-    return [cycle / MS for cycle in board.edges(trigger)[1::2]]
 
 
 def looking(text: str, *distances_cm: float, robot: Robot | None = None, more: str = "") -> Board:
     """The distances of its pings, one after the other; the last one stays."""
     robot = robot or robots.load("tinibot")
-    trigger, echo = wire(robot)
+    trigger, echo = sonar_pins(robot)
     board = started(robot, text, more)
     board.watch(trigger)
     board.echoes(trigger, echo, [each * US_PER_CM for each in distances_cm])
     return board
-
-
-def driven_ms(board: Board, motors: int) -> list[float]:
-    """Return the times at which so many motors have just been turned on."""
-    times = [cycle / MS for cycle in board.moved()]
-    return [ms for ms in times if sum("pwm" in pin for pin in board.motors(ms)) == motors]
 
 
 def shown(board: Board, ms: float) -> int:
@@ -58,12 +47,12 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
     loop does not wait for it."""
     robot = robots.load(name)
     at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    trigger, echo = wire(robot, at)
+    trigger, echo = sonar_pins(robot, at)
     board = started(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM])
     board.ran(START + 400)
-    gaps = [b - a for a, b in pairwise(pings(board, trigger))]
+    gaps = [b - a for a, b in pairwise(ping_starts_ms(board, trigger))]
     assert len(gaps) >= 10
     assert min(gaps) >= SPACING_MS
     assert max(gaps) < SPACING_MS + 2
@@ -76,7 +65,7 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
 def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
     board = looking(text, *[20] * FIRST, 60).ran(START + 160)
-    first, second, third = pings(board, wire(board.robot)[0])[FIRST - 1 : FIRST + 2]
+    first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[FIRST - 1 : FIRST + 2]
     assert SPACING_MS <= second - first < SPACING_MS + 11  # the program asks every 10 ms
     assert shown(board, first + 5) == shown(board, second) == 20
     assert SPACING_MS <= third - second < SPACING_MS + 2, "it waits for what it has asked"
@@ -88,7 +77,7 @@ def test_until_looks_again_every_40_ms() -> None:
     """It checks every 20 ms; in between the last reading is fresh."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
     board = looking(text, *[50] * FIRST, 50, 8).ran(START + 250)
-    left = [ms - START for ms in pings(board, wire(board.robot)[0])]
+    left = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
     assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START + 173)[0] == "pwm 51"
     assert board.motors(START + 178)[0] == "low"
@@ -113,14 +102,14 @@ extern "C" void test_turn() {
 def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     """At any time of a measurement: the next reading is one of its own ping, 30 ms later."""
     robot = robots.load("tinibot")
-    trigger, _ = wire(robot)
+    trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
     plain = looking(text, 20, 70).ran(START + 40)
     left = plain.edges(trigger)[0] / MS
     board = looking(text, 20, 70, robot=robot, more=AGAIN)
     board.level(left + after_ms, 19, True)
     board.ran(START + 160)
-    first, second, *others = pings(board, trigger)
+    first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
     driven = driven_ms(board, 1)
     assert not [ms for ms in driven if left + after_ms + 0.5 < ms < others[1] + 3]
@@ -152,11 +141,11 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
     board = started(robot, text)
     rows = [(3, range(20, 60)), (0, range(60, 100))]  # what comes nearer with each ping
     for number, distances in rows:
-        trigger, echo = wire(robot, number)
+        trigger, echo = sonar_pins(robot, number)
         board.watch(trigger)
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.ran(START + 600)
-    each = [pings(board, wire(robot, number)[0]) for number, _ in rows]
+    each = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
     both = sorted(ms for times in each for ms in times)
     assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
     assert min(len(times) for times in each) >= 4
@@ -193,12 +182,12 @@ def glitched(width_us: float) -> list[tuple[int, int]]:
     some us, and its end must not be taken for a line that stays high after the echo.
     """
     robot = robots.load("tinibot")
-    trigger, echo = wire(robot)
+    trigger, echo = sonar_pins(robot)
     board = started(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP")
     board.watch(trigger)
     rows = [(0.0, 0.0)] * FIRST + [(phase, width_us) for phase in PHASES]
     board.echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
-    times = pings(board.ran(START + 33 * len(rows)), trigger)[FIRST:]
+    times = ping_starts_ms(board.ran(START + 33 * len(rows)), trigger)[FIRST:]
     gaps = [b - a for a, b in pairwise(times)]
     assert max(gaps) < 33  # no reading came late
     return [(phase, shown(board, ms + 31)) for ms, phase in zip(times, PHASES, strict=False)]
@@ -220,7 +209,7 @@ def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
 
 def test_a_glitch_without_an_echo_is_far_away() -> None:
     robot = robots.load("tinibot")
-    _, echo = wire(robot)
+    _, echo = sonar_pins(robot)
     text = "SI|IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;W(5)"
     board = looking(text, 0)
     for ms in (1.0, 3.0, 10.0, 20.0):
@@ -244,7 +233,7 @@ def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None
     board = looking(text, high_ms * 1000 / US_PER_CM, robot=robot).ran(START + 1000)
     assert shown(board, START + 3 * high_ms) == 10
     assert {shown(board, ms) for ms in driven_ms(board, 1)} == {10}
-    assert len(pings(board, wire(robot)[0])) >= 5
+    assert len(ping_starts_ms(board, sonar_pins(robot)[0])) >= 5
 
 
 @pytest.mark.sampled("chip")
@@ -253,11 +242,11 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     """So who asks `DISTANCE < 15` stops. It pulls the echo low for a moment, again and again."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     robot = on_board("tinibot", chip)
-    echo = wire(robot)[1]
+    echo = sonar_pins(robot)[1]
     board = looking(text, *[50] * FIRST, 1_000_000 / US_PER_CM, 50, robot=robot)
     board.watch(echo)
     board.ran(START + 1300)
-    hangs = pings(board, wire(robot)[0])[FIRST]
+    hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST]
     assert shown(board, hangs) == 10
     assert shown(board, hangs + HUNG_MS - 1) == 10, "it may be one that hears nothing"
     assert shown(board, hangs + HUNG_MS + 35) == 90
@@ -276,35 +265,22 @@ def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
     robot = robots.load("tinibot")
     board = looking(text, 50, robot=robot)
     for number in range(200):
-        board.level(START + 400 + 3 * number, wire(robot)[1], True)
-        board.level(START + 401.5 + 3 * number, wire(robot)[1], False)
+        board.level(START + 400 + 3 * number, sonar_pins(robot)[1], True)
+        board.level(START + 401.5 + 3 * number, sonar_pins(robot)[1], False)
     board.ran(START + 1200)
     assert {shown(board, ms) for ms in driven_ms(board, 1)} == {10}
 
 
 # -- a wrong sample
 
-STEP_CM = 1.5  # in 30 ms at 50 cm/s
-OF_SAMPLES = 50  # one of them is wrong
-
-
-def approaching(seed: int, samples: int) -> tuple[list[float], list[float]]:
-    """Return how far an obstacle is at each ping that comes at 50 cm/s, and what is heard."""
-    draw = random.Random(seed)
-    true = [max(20.0, 160 - STEP_CM * number) for number in range(samples)]
-    heard = list(true)
-    for begin in range(0, samples, OF_SAMPLES):
-        heard[begin + draw.randrange(OF_SAMPLES)] = draw.choice([2, 5, 40, 90, 250, 400])
-    return true, heard
-
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
 def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
-    true, heard = approaching(seed, 100)
+    true, heard = approaching_obstacle(seed, 100)
     board = looking("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard)
-    times = pings(board.ran(START + 2900), wire(board.robot)[0])
+    times = ping_starts_ms(board.ran(START + 2900), sonar_pins(board.robot)[0])
     assert len(times) > 90
     readings = driven_ms(board, 1)
     assert len(readings) > 60
@@ -329,7 +305,7 @@ def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> N
 def test_what_is_suddenly_there_takes_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     board = looking(text, *[before_cm] * 10, 8).ran(START + 500)
-    comes, confirmed = pings(board, wire(board.robot)[0])[10:12]
+    comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]
     assert shown(board, confirmed) == 10
     assert shown(board, confirmed + 2) == 90
     assert confirmed - comes < SPACING_MS + 2

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.firmware.test_board_devices import WORKSHOP
 from tests.machines.board import MS, Board
-from tests.support.board_states import START, STEADY, STOPS, on_board, pulses, started
+from tests.support.board_states import START, STEADY, STOPS, WORKSHOP, on_board, pulses, started
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 

@@ -14,7 +14,16 @@ import pytest
 from tests.machines.uno import needed
 from tests.support.board_builds import each_board
 from tests.support.platformio import copied, pio
-from tests.support.robot_on_uno import BAUD, FORWARD, NAMES, OFF, computer, states, switched_on
+from tests.support.robot_on_uno import (
+    BAUD,
+    FORWARD,
+    NAMES,
+    OBSTACLE_LINES,
+    OFF,
+    computer,
+    states,
+    switched_on,
+)
 from tiniscript import robots
 from tiniscript.flash import building
 from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
@@ -27,10 +36,6 @@ STOP_MS = 2  # the same for S
 PROGRAM_MS = 10  # and for the last line of the obstacle program
 STOP_CYCLES = 192  # from the last byte of a stop to the pins: 12 us
 BYTE_MS = 10_000 / BAUD
-OBSTACLE = (
-    "SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);", "    STOP;",
-    "    R(1, 60);", "  ENDIF;", "END_LOOP;",
-)  # fmt: skip
 
 
 def typed(uno: Uno, text: str, milliseconds: float) -> list[str]:
@@ -104,7 +109,7 @@ def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
 @each_board
 def test_the_obstacle_program_in_lines(robot: Uno) -> None:
     robot.sonar("trigger", "echo", 40)
-    *lines, last = OBSTACLE
+    *lines, last = OBSTACLE_LINES
     for line in lines:
         assert typed(robot, f"{line}\r\n", 40) == []
     assert states(robot) == OFF

@@ -3,37 +3,21 @@
 from __future__ import annotations
 
 import random
-import subprocess
-from collections.abc import Iterable, Sequence
 
 import pytest
 
-from tests.machines.host import FLAGS, SOURCES, compiled
 from tests.machines.uno import needed
-from tests.support.casefile import ROOT
+from tests.support.button_signals import ButtonEvents, button_events
 from tests.support.robot_on_uno import AWAY, OFF, computer, send, states
 from tools.uno import CYCLES_PER_MS, Uno
 
-Told = list[tuple[int, str]]  # when in us, and P, H or R
 SPIKE_US = 150
 TURNS_US = (100, 370, 1000, 2900, 8000)  # of the main loop
 STEADY_US = 30_000
 
 
-def answers_to(cases: Iterable[tuple[int, int, Sequence[int]]]) -> list[Told]:
-    """Return what the button tells in each case: the turn, the first look, and the edges."""
-    button = SOURCES / "src" / "boards" / "button.cpp"
-    program = compiled([button, ROOT / "tests" / "button" / "main.cpp"], FLAGS)
-    lines = "\n".join(" ".join(map(str, (turn, first, *edges))) for turn, first, edges in cases)
-    completed = subprocess.run(
-        [program], input=lines + "\n", capture_output=True, text=True, check=True
-    )
-    rows = [row.split() for row in completed.stdout.splitlines()]
-    return [list(zip(map(int, row[::2]), row[1::2], strict=True)) for row in rows]
-
-
-def letters(answers_to: Told) -> str:
-    return "".join(letter for _, letter in answers_to)
+def letters(events: ButtonEvents) -> str:
+    return "".join(letter for _, letter in events)
 
 
 def spikes(count: int, spacing_us: int) -> list[int]:
@@ -48,7 +32,7 @@ def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
         for first in range(0, turn, max(50, turn // 5))
         for spacing_ms in range(1, 201)
     ]
-    found = answers_to(cases)
+    found = button_events(cases)
     assert len(found) == len(cases) > 1000
     assert not [each for each in found if "R" in letters(each) or "H" in letters(each)]
     assert any(letters(each) for each in found), "the spikes fell between all looks"
@@ -62,7 +46,7 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
         chatter = sorted(chance.sample(range(1, 5000), 4))
         up_us = chance.randrange(300_000, 500_000)
         cases.append((turn, 0, [0, *chatter, up_us, *(up_us + each for each in chatter)]))
-    for (_, _, edges), found in zip(cases, answers_to(cases), strict=True):
+    for (_, _, edges), found in zip(cases, button_events(cases), strict=True):
         assert letters(found) == "PHR"
         pressed, held, released = (us for us, _ in found)
         assert pressed <= 5000 + turn
@@ -79,7 +63,7 @@ def test_a_release_that_does_not_last_is_none() -> None:
         for turn in TURNS_US
         for spacing_ms in range(1, 201)
     ]
-    for found in answers_to(cases):
+    for found in button_events(cases):
         assert letters(found) == "PHR"
         assert found[-1][0] >= 2_000_000 + STEADY_US - 1000
 
@@ -87,7 +71,7 @@ def test_a_release_that_does_not_last_is_none() -> None:
 def test_a_press_after_a_spike_is_told() -> None:
     """Its first edge may be taken for the spike's chatter: then it is told when it has lasted."""
     cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
-    for (_, _, edges), found in zip(cases, answers_to(cases), strict=True):
+    for (_, _, edges), found in zip(cases, button_events(cases), strict=True):
         assert letters(found) in ("PHR", "PPHR")
         first = min(us for us, letter in found[1:] if letter in "PH")
         assert edges[2] <= first <= edges[2] + STEADY_US + 1000

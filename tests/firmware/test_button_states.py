@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import pytest
 
-from tests.firmware.test_button import answers_to
+from tests.support.button_signals import button_events
 from tests.support.button_states import LINE, OTHER, SAVED, STATES, TYPED, Table
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
@@ -47,7 +47,7 @@ FOR_EVER = "held for ever"
 @lru_cache
 def letters() -> dict[str, list[tuple[int, str]]]:
     """Return what the button tells of each press: the millisecond, and P, H or R."""
-    found = answers_to([(100, 0, edges) for edges, _ in PRESSES.values()])
+    found = button_events([(100, 0, edges) for edges, _ in PRESSES.values()])
     rows = {}
     for name, row in zip(PRESSES, found, strict=True):
         rows[name] = [(us // 1000, letter) for us, letter in row]

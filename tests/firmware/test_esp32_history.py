@@ -17,16 +17,15 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.firmware.test_esp32_next_client import PLACES, with_wrong_key
-from tests.firmware.test_history import first_difference, told_of, without_counts
 from tests.machines.esp32 import Esp32Robot, Kept
 from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, wanted
+from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
 from tests.support.esp32_radio import Bytes, Client, End, talk
-from tests.support.esp32_wifi import joined, remote, school_in_reach
+from tests.support.esp32_wifi import joined, remote, remote_with_wrong_key, school_in_reach
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import Make
+from tests.support.robot_on_esp32 import TRANSPORTS, Make
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS, STOP_BYTES
@@ -53,7 +52,7 @@ LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
 # What is told of the program in memory, which none has saved.
 OF_MEMORY = ("program", "length", "slot", "saved")
-MAKES: list[Make | None] = [None, *PLACES]  # None: the cable
+MAKES: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
 NETWORK = 3  # which has several places
 OVER_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
 
@@ -92,7 +91,7 @@ class Scene:
         if what == "owner":
             return remote(self.robot, keys, self.nonce)
         if what == "thief":
-            return with_wrong_key(self.robot, keys, self.nonce)
+            return remote_with_wrong_key(self.robot, keys, self.nonce)
         return remote(self.robot, None, self.nonce) if what == "stranger" else Bytes()
 
     def come(self, place: int, what: str) -> Guest | None:
@@ -168,7 +167,7 @@ def seen(scene: Scene, first: int, rng: random.Random) -> list[object]:
         elif isinstance(who, Bytes):
             who.said = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
-        found.append((name, told_of(request, *OF_MEMORY)))
+        found.append((name, answer_without_counts(request, *OF_MEMORY)))
         for _, client, *_ in guests:
             if isinstance(client, Session):
                 found.append([without_counts(event) for event in client.events()])

@@ -20,31 +20,20 @@ from tests.support.esp32_radio import (
     takes,
     talk,
 )
-from tests.support.esp32_wifi import far_owner, owned, remote
+from tests.support.esp32_wifi import far_owner, owned, remote, remote_with_wrong_key
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tests.support.robot_on_esp32 import AWAY, Ends, Make, ended, uploaded
+from tests.support.robot_on_esp32 import AWAY, TRANSPORTS, Ends, Make, ended, uploaded
 from tests.support.robot_on_host import happened
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
-from tiniscript.link.session import Session
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
 drawn = pytest.mark.sampled(of="places of clients", keep=1)
 
-PLACES: list[Make] = [LowEnergy, SerialPort, Network]
-
-
-def with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
-    wrong = Keys()
-    wrong.stored_keys = [
-        robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.stored_keys
-    ]
-    return remote(robot, wrong, nonce)
-
 
 def shows_wrong_keys(robot: Esp32Robot, end: End, keys: Keys) -> None:
-    thief = with_wrong_key(robot, keys, 1)
+    thief = remote_with_wrong_key(robot, keys, 1)
     for _ in range(10):
         assert ended(robot, [(end, thief)], thief.start()) != "OK"
 
@@ -90,7 +79,7 @@ def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
 
 
 @pytest.mark.sampled("make", "wrong", keep=3)
-@pytest.mark.parametrize("make", PLACES)
+@pytest.mark.parametrize("make", TRANSPORTS)
 @pytest.mark.parametrize("wrong", WRONGS)
 def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
     def place() -> tuple[Esp32Robot, Keys]:
@@ -116,7 +105,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
 
 
 @pytest.mark.sampled("make")
-@pytest.mark.parametrize("make", PLACES[:2])
+@pytest.mark.parametrize("make", TRANSPORTS[:2])
 @pytest.mark.parametrize("typed", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
 def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> None:
     robot, _ = owned(Keys())
@@ -147,7 +136,7 @@ CUT_STOPS = [
 
 
 @pytest.mark.sampled("make")
-@pytest.mark.parametrize("make", PLACES)
+@pytest.mark.parametrize("make", TRANSPORTS)
 @pytest.mark.parametrize("pause_ms", [0, 300])
 def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
     robot, end, owner = far_owner(Keys())

@@ -9,8 +9,8 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network
 from tests.support.esp32_wifi import joined
+from tests.support.foreign_protocols import FOREIGN_GREETINGS
 from tests.support.owners import Keys
-from tests.virtual.test_protocol_sniffer import NOT_FOR_ROBOTS
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
@@ -20,10 +20,10 @@ def knocked_at() -> Esp32Robot:
     return joined(Keys())[0]
 
 
-@pytest.mark.parametrize("name", NOT_FOR_ROBOTS)
+@pytest.mark.parametrize("name", FOREIGN_GREETINGS)
 def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name: str) -> None:
     """In one piece and byte by byte: the robot hangs up and answers nothing."""
-    robot, data = knocked_at, NOT_FOR_ROBOTS[name]
+    robot, data = knocked_at, FOREIGN_GREETINGS[name]
     for size in (len(data), 1 if len(data) < 1000 else 97):
         end = Network(robot)
         for k in range(0, len(data), size):
@@ -53,7 +53,7 @@ def sniffed(robot: Esp32Robot, data: bytes) -> bool | None:
 
 def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robot) -> None:
     chance = Random(5)
-    words = [*(data[:300] for data in NOT_FOR_ROBOTS.values()), b"PING|\n", b"POST = 5\n",
+    words = [*(data[:300] for data in FOREIGN_GREETINGS.values()), b"PING|\n", b"POST = 5\n",
              b"GET  /", b"S", b"a\xc3\xb1o = 5\n", b"https://x", b"HTTP/1.1",
              b"http:", b"\r\n", b"\0", b" ",
              b"\t", b"*", b"POST", b"pri", b"!x", b"="]  # fmt: skip
@@ -64,6 +64,6 @@ def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robo
             at = chance.randrange(len(data))
             data = data[:at] + chance.randbytes(1) + data[at + 1 :]
         assert sniffed(knocked_at, data) is sniff_robot_client(data), data
-    for data in NOT_FOR_ROBOTS.values():
+    for data in FOREIGN_GREETINGS.values():
         for k in range(min(len(data), 400)):
             assert sniffed(knocked_at, data[:k]) is sniff_robot_client(data[:k]), data[:k]

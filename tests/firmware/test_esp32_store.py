@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_store import STORE
 from tests.machines.esp32 import STAND_INS, flags_of
 from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made
 
+STORE = SOURCES / "src" / "store" / "store.cpp"
 NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
 OTHERS = [
     SOURCES / "src" / "vm" / "crc32.cpp",

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -21,6 +21,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, wanted
+from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
 from tests.support.robot_on_host import KIT
@@ -30,7 +31,6 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, KEY_OWNER, KEY_TEACHER
 from tiniscript.link.outcomes import TextEvent
-from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 Asks = Callable[[Session, random.Random], PendingRequest[Any]]
@@ -174,7 +174,8 @@ class Scene:
         request = make(self.session, rng)
         while request.outcome is None and self.robot.now_ms < begun_ms + most_ms:
             self.robot.talk(self.session, 1)
-        self.told.append((name, told_of(request, *(() if self.is_saved else ("slot", "saved")))))
+        but = () if self.is_saved else ("slot", "saved")
+        self.told.append((name, answer_without_counts(request, *but)))
         self.note(name, begun_ms)
 
     def talk(self, milliseconds: int) -> None:
@@ -195,26 +196,6 @@ class Scene:
         self.robot.talk(self.session, 1, RELEASED)
         self.robot.talk(self.session, RUNS_MS)
         self.note("a press", begun_ms)
-
-
-COUNTS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
-
-
-def told_of(request: PendingRequest[Any] | None, *but: str) -> object:
-    """Return what somebody was told who has asked for something."""
-    if request is None or request.outcome is None:
-        return None
-    outcome = request.outcome
-    return outcome.status, without_counts(outcome.values, *but) if outcome.status == OK else None
-
-
-def without_counts(values: Any, *but: str) -> object:
-    """Return values without some, and without what is counted since the robot was switched on."""
-    if not hasattr(values, "_asdict"):
-        return values
-    return [
-        (name, value) for name, value in values._asdict().items() if name not in (*COUNTS, *but)
-    ]
 
 
 # -- what comes before --------------------------------------------------------------------------
@@ -462,7 +443,7 @@ def in_the_end(scene: Scene, how: Behind) -> list[object]:
     robot.until(session, trim)
     robot.talk(session, 1500)
     kept = robot.memory() if how.is_cut else b""
-    return [(values.id, values.name, values.features, told_of(trim)), kept]
+    return [(values.id, values.name, values.features, answer_without_counts(trim)), kept]
 
 
 @lru_cache(maxsize=1)
@@ -524,14 +505,6 @@ def are_alike(one: object, other: object, apart_ms: int) -> bool:
         pairs = zip(one, other, strict=False)
         return len(one) == len(other) and all(are_alike(a, b, apart_ms) for a, b in pairs)
     return one == other
-
-
-def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
-    """Return what two have in common, and what only the first one has then."""
-    alike = 0
-    while found[alike : alike + 1] == wanted[alike : alike + 1]:
-        alike += 1
-    return f"{found[:alike]}\n{found[alike:][:4]}\nnot\n{wanted[alike:][:4]}"
 
 
 KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}

@@ -9,11 +9,11 @@ import random
 
 import pytest
 
-from tests.link.test_remote_control import NONE, readings
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import SmallRobot
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
+from tests.support.remote_readings import RELEASED, remote_readings
 from tests.support.robot_on_host import KIT, computer
 from tests.support.text_robot import typed
 from tiniscript.link.messages import HOLD_MS
@@ -50,11 +50,11 @@ def test_a_line_holds_what_it_says_for_half_a_second(
     robot = booted(kind)
     typed(robot, "KEY_LEFT\n")
     assert typed(robot, line + "\n") == []
-    assert robot.remote() == readings(held)
+    assert robot.remote() == remote_readings(held)
     robot.wait(HOLD_MS - 40)
-    assert robot.remote() == readings(held)
+    assert robot.remote() == remote_readings(held)
     robot.wait(40)
-    assert robot.remote() == NONE and robot.did == []
+    assert robot.remote() == RELEASED and robot.did == []
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
@@ -76,7 +76,7 @@ def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
             before = "".join(rng.choice(BEFORE) for _ in range(rng.randint(0, 3)))
             text = before + blanks() + words + end
             assert typed(robot, text, 20) == [], repr(text)
-            assert robot.remote() == readings(held), repr(text)
+            assert robot.remote() == remote_readings(held), repr(text)
             robot.wait(HOLD_MS)
 
 
@@ -91,7 +91,7 @@ def test_any_other_line_is_read_as_before(line: str) -> None:
     typed(robot, "KEY_A\n")
     typed(robot, line + "\n")
     robot.wait(HOLD_MS)
-    assert robot.remote() == NONE
+    assert robot.remote() == RELEASED
 
 
 def test_who_presses_is_told_once_that_no_program_reads_it() -> None:
@@ -113,7 +113,7 @@ def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None
     for _ in range(40):
         for _ in range(28):
             robot.wait(10)
-            assert robot.remote() == readings(UP)
+            assert robot.remote() == remote_readings(UP)
         robot.latched_while(20, line, is_spread=True)
 
 
@@ -126,15 +126,15 @@ def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
         robot.did.clear()
         for _ in range(4):
             session.receive(robot.wait(20, b"KEY_A\n"), robot.now_ms)
-            assert robot.remote() == readings(A), kind
+            assert robot.remote() == remote_readings(A), kind
             robot.talk(session, 250)
         assert robot.did == [] and session.is_running
 
 
 def test_in_an_open_block_the_line_is_the_programs() -> None:
     robot = booted()
-    assert typed(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == NONE
-    assert robot.remote() == NONE
+    assert typed(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED
+    assert robot.remote() == RELEASED
 
 
 @pytest.mark.parametrize("how", ["text", "zeros", "button"])
@@ -174,7 +174,7 @@ def test_text_that_may_not_drive_presses_nothing() -> None:
     table.claimed(keys)
     table.robot.wait(3000)
     typed(table.robot, "KEY_A\n", 1500)
-    assert table.robot.remote() == NONE
+    assert table.robot.remote() == RELEASED
 
 
 def test_a_thousand_lines_in_a_burst() -> None:
@@ -182,5 +182,5 @@ def test_a_thousand_lines_in_a_burst() -> None:
     robot.wait(10, b"KEY_B\n" * 1000)
     robot.wait(1000)
     typed(robot, "KEY_A\n", 20)
-    assert robot.remote() == readings(A)
+    assert robot.remote() == remote_readings(A)
     assert robot.did == []

@@ -10,7 +10,16 @@ import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
-from tests.support.kept_programs import EACH, FIRST, SECOND, bytes_of, saved
+from tests.support.kept_programs import (
+    EACH,
+    FIRST,
+    LATER_VERSION,
+    SECOND,
+    bytes_of,
+    eeprom_with,
+    later_version_image,
+    saved,
+)
 from tests.support.robot_on_host import computer, happened, send, switched_on
 from tiniscript.bytecode.image import REFUSALS, pack, unpack, with_checksum
 from tiniscript.link.requests import OK
@@ -19,25 +28,6 @@ from tiniscript.link.session import Session
 OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
 # `F(5, 80)`, as version 0.1.0 has compiled it: it does not say how long its header is.
 VERSION_1 = bytes.fromhex("54530100000000000300101604fa443250")
-
-
-def version_3(code: bytes, start: str = "SI") -> bytes:
-    """Return an image of a later version, 3.0."""
-    image = pack(start, 0, code)
-    return with_checksum(image[:2] + b"\3\0" + image[4:])
-
-
-VERSION_3 = version_3(b"\x44\x32\x50")
-
-
-def kept(*slots: tuple[int, int, bytes]) -> bytes:
-    """Return an EEPROM with images: the place of each slot, its generation, and what it holds."""
-    memory = bytearray(EMPTY)
-    for place, generation, image in slots:
-        mark = generation ^ 0xA5
-        body = bytes([image[0] ^ generation]) + image[1:]
-        memory[place : place + 4 + len(image)] = bytes([generation, mark, mark, mark]) + body
-    return bytes(memory)
 
 
 def met(memory: bytes) -> tuple[HostFirmware, Session]:
@@ -50,7 +40,7 @@ def met(memory: bytes) -> tuple[HostFirmware, Session]:
 @pytest.mark.parametrize("place", [FIRST, SECOND])
 @pytest.mark.parametrize("length", [0, 3, 389])
 def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
-    memory = kept((place, 7, version_3(random.Random(length).randbytes(length))))
+    memory = eeprom_with((place, 7, later_version_image(random.Random(length).randbytes(length))))
     robot, session = met(memory)
     assert saved(robot, session) == "OTHER_VERSION"
     for ask in (session.start, session.fetch):
@@ -64,7 +54,9 @@ def test_a_robot_says_that_its_program_is_of_another_version(place: int, length:
 
 
 def test_the_next_program_replaces_it() -> None:
-    robot, session = met(kept((FIRST, 0, version_3(bytes(20), "SB")), (SECOND, 1, VERSION_3)))
+    robot, session = met(
+        eeprom_with((FIRST, 0, later_version_image(bytes(20), "SB")), (SECOND, 1, LATER_VERSION))
+    )
     assert saved(robot, session) == "OTHER_VERSION"
     image = image_of("SB|F(0.1, 60)")
     assert robot.until(session, session.upload(image)) == OK
@@ -77,24 +69,24 @@ def test_the_next_program_replaces_it() -> None:
 
 @pytest.mark.parametrize("place", [FIRST, SECOND])
 def test_a_program_of_version_1_counts_as_none(place: int) -> None:
-    robot, session = met(kept((place, 7, VERSION_1)))
+    robot, session = met(eeprom_with((place, 7, VERSION_1)))
     assert saved(robot, session) == "NOTHING"
     assert robot.memory()[place : place + 2] == b"\xff\xff", "the slot is empty"
 
 
 def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
-    robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, VERSION_3)))
+    robot, session = met(eeprom_with((FIRST, 3, mine), (SECOND, 4, LATER_VERSION)))
     assert saved(robot, session) == "STORED"
     later = with_checksum(mine[:3] + b"\2" + mine[4:])  # of a later minor version
-    robot, session = met(kept((FIRST, 3, later), (SECOND, 2, VERSION_3)))
+    robot, session = met(eeprom_with((FIRST, 3, later), (SECOND, 2, LATER_VERSION)))
     assert saved(robot, session) == "OTHER_VERSION"
 
 
 def test_a_program_with_a_longer_header_is_run() -> None:
     image = unpack(bytes_of("SB|F(0.1, 60)"))
     longer = pack("SB", image.devices, image.code, b"what a later version says")
-    robot, session = met(kept((FIRST, 3, longer)))
+    robot, session = met(eeprom_with((FIRST, 3, longer)))
     assert saved(robot, session) == "STORED"
     assert robot.done(session, session.fetch()).image == longer
     robot.push()
@@ -104,7 +96,7 @@ def test_a_program_with_a_longer_header_is_run() -> None:
 
 def test_name_and_trim_outlive_an_update() -> None:
     """They lie where they lay, whatever version the program is of."""
-    robot, session = met(kept((FIRST, 0, VERSION_3)))
+    robot, session = met(eeprom_with((FIRST, 0, LATER_VERSION)))
     assert robot.until(session, session.name(b"Ada")) == OK
     memory = bytearray(robot.memory())
     assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
@@ -117,13 +109,13 @@ def test_name_and_trim_outlive_an_update() -> None:
 def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
     """Numbers that no trim of this version has would make levels beyond those of a motor."""
     body = struct_pack("<I16s3s", 77, b"Ada", trim)
-    robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
+    robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
     assert session.robot is not None
     assert (session.robot.id, session.robot.name) == (77, "Ada")
     values = robot.done(session, session.trim())
     assert (values.wheels, values.balance, values.least) == (0, 0, 0)
     sound = body[:-3] + b"\1\5\7"
-    robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
+    robot, session = met(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
     assert robot.done(session, session.trim()).least == 7
 
 
@@ -132,7 +124,7 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     """What no line leads through would end a way too early: the kit's speed holds."""
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body
-    robot, session = met(kept((4 + 2 * EACH, 3, record)))
+    robot, session = met(eeprom_with((4 + 2 * EACH, 3, record)))
     values = robot.done(session, session.trim())
     assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)

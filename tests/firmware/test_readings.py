@@ -7,64 +7,23 @@ from __future__ import annotations
 
 import random
 from math import inf
-from struct import pack
-from typing import NamedTuple
 
 import pytest
 
-from tests.machines.host_firmware import TICKS
 from tests.support.debugging import Debugged
 from tests.support.robot_on_host import KIT
-from tests.support.shown_in_loops import Did, apart_ms, program
+from tests.support.sensed_runs import BYTE_TICKS, MOST_APART_MS, is_steady, sensed_run
+from tests.support.shown_in_loops import apart_ms, program
 from tiniscript.link import handshake
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, READINGS, STATUSES, UNTOLD, encode_payload
-from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 MOST_BYTES = 17  # of READING on the line, as SHOW
-RUN_MS = 2500
-BYTE_TICKS = round(TICKS * 10_000 / 9600)
 FAST_TICKS = 0  # a line that takes no time
-MOST_APART_MS = 1  # a byte
 READING = BY_NAME["READING"]
-
-
-class Ran(NamedTuple):
-    did: list[Did]
-    events: list[Event]
-    seen: list[list[int]]  # what each sensor had, one after the other
-
-    @property
-    def readings(self) -> list[ReadingEvent]:
-        return [event for event in self.events if isinstance(event, ReadingEvent)]
-
-
-def ran(text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30) -> Ran:
-    """Run a program while what its sensors see changes; it is told or not."""
-    robot = Debugged(text)
-    assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
-    rng, seen = random.Random(seed), [[0] for _ in KIT.sensors]
-    first = len(robot.robot.did)
-    robot.start()
-    robot.robot.ask(b"P", bytes([byte_ticks]))
-    events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
-    while robot.robot.now_ms < end_ms:
-        for each in seen:
-            each.append(each[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
-        values = [each[-1] for each in seen]
-        robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
-        events += robot.talk(rng.randint(1, most_ms))
-    rows = (line.split(" ", 1) for line in robot.robot.did[first:])
-    return Ran([(float(ms), what) for ms, what in rows], events, seen)
-
-
-def is_steady(text: str, seed: int) -> bool:
-    """Whether a program does the same at the same times on a line that is 5 % slower or faster."""
-    usual, *others = (ran(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
-    return all(apart_ms(usual, other) <= MOST_APART_MS for other in others)
 
 
 @pytest.mark.sampled("seed", keep=10)
@@ -73,7 +32,7 @@ def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -
     """Of a program whose times do not depend on whether its line is 5 % slower or faster: in
     others a SHOW that waits, a byte longer or shorter, changes all that follows."""
     text = program(random.Random(seed))
-    alone, told = (ran(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
+    alone, told = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
     apart = apart_ms(alone.did, told.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= MOST_APART_MS or not is_steady(text, seed), text
@@ -87,7 +46,9 @@ def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
     """A line that takes no time tells all; one that does tells the same, or that it does not."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
     every_ms = 5 if seed % 2 else 30
-    whole, told = (ran(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS))
+    whole, told = (
+        sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
+    )
     assert not [event for event in whole.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
         all_of_it = [event for event in whole.readings if event.sensor == sensor]
@@ -106,7 +67,7 @@ def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
 
 def test_a_line_that_is_too_slow_says_so() -> None:
     text = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
-    told = ran(text, 1, True, BYTE_TICKS, most_ms=5)
+    told = sensed_run(text, 1, True, BYTE_TICKS, most_ms=5)
     assert [event for event in told.readings if event.sensor & UNTOLD]
 
 
@@ -115,7 +76,7 @@ def test_a_line_that_is_too_slow_says_so() -> None:
 def test_the_end_of_a_run_is_told_after_its_readings(seed: int, wait_s: float) -> None:
     """However many of them the line had no room for."""
     text = f"SI|LOOP(40);X = LIGHT_L + LIGHT_R + DISTANCE;W({wait_s});END_LOOP"
-    names = [event.name for event in ran(text, seed, True, BYTE_TICKS, most_ms=5).events]
+    names = [event.name for event in sensed_run(text, seed, True, BYTE_TICKS, most_ms=5).events]
     assert names.count("DONE") == 1 and names[-1] == "DONE" and "READING" in names
 
 

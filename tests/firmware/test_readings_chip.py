@@ -16,11 +16,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_readings import BYTE_TICKS, is_steady
-from tests.firmware.test_readings import ran as on_line
 from tests.support.campaign import failure_text
 from tests.support.images import image_of
 from tests.support.robot_on_uno import KIT, MOTORS, computer, switched_on
+from tests.support.sensed_runs import BYTE_TICKS, is_steady, sensed_run
 from tests.support.shown_in_loops import Did, apart_ms, program
 from tests.support.uno_trace import power
 from tiniscript import robots
@@ -73,7 +72,7 @@ def steady_programs(first: int) -> Iterator[tuple[int, str]]:
     the same."""
     for seed in count(first):
         text = program(random.Random(seed)).replace("DISTANCE", "LIGHT_R")  # no echo is waited for
-        if len(on_line(text, seed, False, BYTE_TICKS).did) > 1 and is_steady(text, seed):
+        if len(sensed_run(text, seed, False, BYTE_TICKS).did) > 1 and is_steady(text, seed):
             yield seed, text
 
 

@@ -11,10 +11,17 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_authority import is_accepted
 from tests.support.campaign import wanted
 from tests.support.images import image_of
-from tests.support.owners import FOREVER, PRESSED, Keys, Owned, owner_of, state_of
+from tests.support.owners import (
+    FOREVER,
+    PRESSED,
+    Keys,
+    Owned,
+    grants_key_request,
+    owner_of,
+    state_of,
+)
 from tests.support.thief import Thief, wire_of
 from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -364,7 +371,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
         found[how] += 1
         sent = robot.wait(2, b"\0" + data + b"\0")
         said = [part for part in sent.split(b"\0") if part]
-        found["accepted"] += sum(is_accepted(each) or _is_sealed(each) for each in said)
+        found["accepted"] += sum(grants_key_request(each) or _is_sealed(each) for each in said)
         found["accepted"] += len([line for line in robot.did if "MOTORS" in line])
         robot.did.clear()
     found["accepted"] += robot.memory() != memory

@@ -17,14 +17,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_board_text import OBSTACLE
 from tests.machines.host import once
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tests.support.platformio import firmware, shared
-from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OFF, states
+from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OBSTACLE_LINES, OFF, states
 from tests.support.stop_spellings import (
     ALL,
     FRAMED,
@@ -313,12 +312,12 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     uno, _ = uno_at
     uno.sonar("trigger", "echo", 40)
     drive(uno)
-    for line in OBSTACLE[:-1]:
+    for line in OBSTACLE_LINES[:-1]:
         uno.send(line.encode() + b"\r\n")
         uno.run_ms(60)
     assert states(uno) == OFF
     before = len(uno.sent_bytes)
-    uno.send(OBSTACLE[-1].encode() + b"\r\n")
+    uno.send(OBSTACLE_LINES[-1].encode() + b"\r\n")
     uno.run_ms(60)
     assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
 

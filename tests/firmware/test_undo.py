@@ -11,15 +11,16 @@ from itertools import product
 
 import pytest
 
-from tests.firmware.test_other_versions import VERSION_3, kept
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import OTHER, SAVED, STATES, Table
 from tests.support.images import image_of
 from tests.support.kept_programs import (
     DRIVES,
     FIRST,
+    LATER_VERSION,
     SECOND,
     bytes_of,
+    eeprom_with,
     name_after_power_off,
     program_after_power_off,
     saved,
@@ -72,7 +73,7 @@ def with_byte(text: str, at: int, value: int) -> bytes:
 OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
 THAT_NO_VERIFIER_TAKES = with_checksum(with_byte(A, -1, 0xFE))
 CANNOT_RUN = {
-    "version": VERSION_3,
+    "version": LATER_VERSION,
     "kit": OF_ANOTHER_KIT,
     "minor": with_checksum(with_byte(A, 3, ISA_MINOR + 1)),
     "verifier": THAT_NO_VERIFIER_TAKES,
@@ -85,7 +86,7 @@ CANNOT_RUN = {
 def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
     good = bytes_of(A)
     places = (FIRST, SECOND) if is_first else (SECOND, FIRST)
-    robot = HostFirmware(KIT, kept((places[0], 7, good), (places[1], 6, image)))
+    robot = HostFirmware(KIT, eeprom_with((places[0], 7, good), (places[1], 6, image)))
     session = computer()
     robot.wait(400)
     for _ in range(2):
@@ -111,7 +112,7 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     """Its checksum is right, so that only the verifier or the kit says no."""
     good = bytes_of(A)
     before = [(SECOND, 6, good)] if has_good else []
-    robot, session = HostFirmware(KIT, kept(*before, (FIRST, 7, image))), computer()
+    robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST, 7, image))), computer()
     robot.wait(400)
     assert saved(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good

@@ -6,9 +6,9 @@ import re
 
 import pytest
 
+from tests.support.text_only_words import CODE, ENDS, has_line_on_floor, text_only_words
 from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
-from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.forms import BLOCKS, TEXT, in_form
@@ -17,26 +17,6 @@ from tiniscript.studio import block_speech, page_lessons
 from tiniscript.studio.checking import profile_of
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
-CODE = re.compile("`([^`]*)`")
-LINES = {"en": r"\blines?\b", "es": r"\bl[ií]neas?\b", "pt": r"\blinhas?\b"}
-WRITING = {"en": r"\b(writ\w+|wrote)\b", "es": r"\bescri\w+", "pt": r"\bescr[ei]\w+"}
-ENDS = re.compile(r"\bEND\w*")
-CALLED = re.compile(r"\w\(|`; `|\[\[|\]\]")
-STOP = "STOP"  # a button of the page
-CAPITALS = re.compile(r"\b[A-Z][A-Z_]*\b")
-
-
-def of_text(sentences: str, language: str, *, is_line_on_floor: bool = False) -> list[str]:
-    """Return what in a sentence for blocks is only in a text, code aside."""
-    prose = CODE.sub("``", sentences)
-    patterns = [WRITING[language], *([] if is_line_on_floor else [LINES[language]])]
-    found = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
-    found += [match[0] for pattern in (ENDS, CALLED) for match in pattern.finditer(prose)]
-    return found + [word for word in CAPITALS.findall(prose) if word in WORDS and word != STOP]
-
-
-def has_line_on_floor(number: int) -> bool:
-    return bool(catalogue.load(catalogue.folder_of(str(number))).world.lines)
 
 
 def is_on_a_block(code: str, spoken: dict[str, dict[str, object]]) -> bool:
@@ -55,7 +35,7 @@ def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language:
     spoken = page_lessons.spoken_blocks(number, language)
     is_line_on_floor = has_line_on_floor(number)
     for each in sentences:
-        assert of_text(each, language, is_line_on_floor=is_line_on_floor) == [], each
+        assert text_only_words(each, language, is_line_on_floor=is_line_on_floor) == [], each
         for code in CODE.findall(each):
             assert is_on_a_block(code, spoken), (code, each)
 
@@ -109,7 +89,9 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
             terminal, on_blocks = (sentence(finding, language, form) for form in (TEXT, BLOCKS))
             assert not re.search(r"`|\[\[|\]\]", terminal)
             is_line_on_floor = "follows" in key
-            assert of_text(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], on_blocks
+            assert text_only_words(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], (
+                on_blocks
+            )
             spoken = block_speech.blocks_of(CODE.findall(on_blocks), kit)
             for code in CODE.findall(on_blocks):
                 assert is_on_a_block(code, spoken), (code, on_blocks)

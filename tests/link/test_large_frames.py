@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import random
 import struct
-from collections.abc import Callable
-from typing import Any
 
 import pytest
 from cobs import cobs
 
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.link import CppLink, cpp_link
+from tests.support.large_frames import BAUD, CODE, IMAGE, AnsweringRobot, InOrderReceiver
 from tests.support.link_cases import KIT, packets_of
 from tiniscript import robots
 from tiniscript.bytecode.image import HEADER_BYTES, LEAST_ISA, pack, unpack
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, checksum, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
@@ -32,7 +29,6 @@ from tiniscript.link.messages import (
     SMALL_FRAME,
     STATUSES,
     decode_payload,
-    encode_payload,
     payload_bytes,
 )
 from tiniscript.link.outcomes import LOST
@@ -47,9 +43,6 @@ DATA, HELLO, FETCH, LIVE, PING = (
 REQUESTS = [message.number for message in MESSAGES if message.number < FIRST_EVENT]
 OK, STALE = STATUSES["OK"], STATUSES["STALE"]
 EPOCH = 9  # of the robot when it begins; HELLO makes it one more
-CODE = large_upload.program(1500).code
-IMAGE = unpack(pack("SI", 0, CODE))
-BAUD = 115_200
 
 
 # -- the robot ------------------------------------------------------------------------------------
@@ -188,80 +181,6 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
 # -- the computer ---------------------------------------------------------------------------------
 
 
-class Answering:
-    """A robot as a computer sees it: says what it is in HELLO, and takes DATA as `takes` says.
-
-    `takes` gets each DATA that is answered: the number of it, its offset and its bytes. It returns
-    the status and what is wanted next, or None where the frame or its answer is lost.
-    """
-
-    def __init__(
-        self, takes: Callable[[int, int, bytes], tuple[int, int] | None],
-        largest: int = LARGE_FRAME, window: int = LARGE_WINDOW, baud: int = BAUD,
-    ) -> None:  # fmt: skip
-        self.takes = takes
-        self.session = Session(3, baud, KIT)
-        self.largest, self.window = largest, window
-        self.waiting: list[Frame] = []  # that are not answered yet
-        self.data: list[tuple[int, int, int]] = []  # numbers, offsets, bytes of DATA that came
-        self.most_waiting = self.longest = 0
-        self.has_commit = False
-        self.now_ms = 0
-
-    def run(self, request: PendingRequest[Any], most_ms: int = 25_000, late_ms: int = 30) -> int:
-        """Answer what came `late_ms` before; return the status of the request."""
-        due: list[tuple[int, Frame]] = []
-        while request.outcome is None and self.now_ms < most_ms:
-            for packet in self.session.poll(self.now_ms).split(b"\0"):
-                frame = decode_frame(packet) if packet else None
-                if frame is not None:
-                    self.longest = max(self.longest, len(packet))
-                    due.append((self.now_ms + late_ms, frame))
-            self.most_waiting = max(self.most_waiting, len(due))
-            while due and due[0][0] <= self.now_ms:
-                self.answer(due.pop(0)[1])
-            self.now_ms += 5
-        assert request.outcome, "no end"
-        return request.outcome.status
-
-    def answer(self, frame: Frame) -> None:
-        payload: bytes | None = bytes([OK])
-        message = BY_NAME["HELLO"]
-        if frame.number == HELLO:
-            values = {field.name: 0 if field.kind != "rest" else b"R" for field in message.reply}
-            values |= {"major": MAJOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT}
-            values |= {"largest": self.largest, "window": self.window, "room": 8192}
-            payload = bytes([OK]) + encode_payload(message.reply, values)
-        elif frame.number == BY_NAME["BEGIN"].number:
-            payload = struct.pack("<BH", OK, 0)
-        elif frame.number == DATA:
-            (offset,) = struct.unpack("<H", frame.payload[:2])
-            self.data.append((frame.seq, offset, len(frame.payload) - 2))
-            found = self.takes(len(self.data), offset, frame.payload[2:])
-            payload = None if found is None else struct.pack("<BH", *found)
-        elif frame.number == BY_NAME["COMMIT"].number:
-            self.has_commit = True
-            payload = struct.pack("<BIBBB", OK, IMAGE.checksum, 1, 0, 3)
-        if payload is not None:
-            reply = frame._replace(payload=payload, is_reply=True)
-            self.session.receive(b"\0" + encode_frame(reply), self.now_ms)
-
-
-class Taking:
-    """Takes what begins at `next`, but for DATA that are lost before it or whose answers are."""
-
-    def __init__(self, lost: tuple[int, ...] = (), unanswered: tuple[int, ...] = ()) -> None:
-        self.lost, self.unanswered = lost, unanswered
-        self.found = b""
-
-    def __call__(self, number: int, offset: int, data: bytes) -> tuple[int, int] | None:
-        if number in self.lost:
-            return None
-        if offset == len(self.found):
-            self.found += data
-        return None if number in self.unanswered else (OK, len(self.found))
-
-
 WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after the checksum
 
 
@@ -279,8 +198,8 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after
 def test_what_is_lost_is_sent_again_and_no_more(
     lost: tuple[int, ...], unanswered: tuple[int, ...], count: int
 ) -> None:
-    taking = Taking(lost, unanswered)
-    robot = Answering(taking)
+    taking = InOrderReceiver(lost, unanswered)
+    robot = AnsweringRobot(taking)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.found == WHOLE and robot.has_commit
     assert len(robot.data) == count
@@ -293,8 +212,8 @@ def test_what_is_lost_is_sent_again_and_no_more(
     (255, 255), (251, 2), (100, 200),  # they say more than there is
 ])  # fmt: skip
 def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window: int) -> None:
-    taking = Taking()
-    robot = Answering(taking, largest, window)
+    taking = InOrderReceiver()
+    robot = AnsweringRobot(taking, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.found == WHOLE
     is_small = largest <= SMALL_FRAME
@@ -304,7 +223,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
 
 
 def test_a_slow_line_has_little_before_a_stop() -> None:
-    robot = Answering(Taking(), baud=9600)
+    robot = AnsweringRobot(InOrderReceiver(), baud=9600)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert robot.most_waiting * robot.longest <= 9600 // 10 * 0.25
 
@@ -319,7 +238,7 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
     ],
 )
 def test_a_robot_that_takes_nothing_is_given_up(found: tuple[int, int] | None, status: int) -> None:
-    robot = Answering(lambda *_: found)
+    robot = AnsweringRobot(lambda *_: found)
     assert robot.run(robot.session.upload(IMAGE)) == status
     assert not robot.has_commit
     assert len(robot.data) <= (TRIES + 2) * LARGE_WINDOW
@@ -327,19 +246,19 @@ def test_a_robot_that_takes_nothing_is_given_up(found: tuple[int, int] | None, s
 
 def test_a_robot_that_jumps_to_and_fro_has_an_end() -> None:
     draw = random.Random(5)
-    robot = Answering(lambda *_: (OK, draw.randrange(len(WHOLE))))
+    robot = AnsweringRobot(lambda *_: (OK, draw.randrange(len(WHOLE))))
     assert robot.run(robot.session.upload(IMAGE)) == LOST
     assert not robot.has_commit
 
 
 def test_what_the_robot_says_to_have_beyond_the_end_is_left_to_commit() -> None:
-    robot = Answering(lambda *_: (OK, 0xFFFF))
+    robot = AnsweringRobot(lambda *_: (OK, 0xFFFF))
     assert robot.run(robot.session.upload(IMAGE)) == OK  # its receipt has the checksum
     assert robot.has_commit
 
 
 def test_a_stop_ends_the_pieces() -> None:
-    robot = Answering(Taking())
+    robot = AnsweringRobot(InOrderReceiver())
     request = robot.session.upload(IMAGE)
     robot.session.receive(b"", 0)
     robot.takes = lambda *_: None

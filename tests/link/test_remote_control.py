@@ -15,6 +15,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import KIT, Keys, Owned
 from tests.support.queued_requests import OWN, STOPS
+from tests.support.remote_readings import RELEASED, remote_readings
 from tests.support.session_frames import greeted as described
 from tests.support.unsent_requests import greeted, image
 from tiniscript.base.kit import YES_NO, Device, Kit
@@ -45,13 +46,6 @@ UP, LEFT, A = (remote_state_of([name]) for name in ("UP", "LEFT", "A"))
 DRIVES = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
 KEYS = BY_NAME["KEYS"]
 LIVE = BY_NAME["LIVE"]
-
-
-def readings(held: RemoteState) -> tuple[int, ...]:
-    return (*(held.keys >> key & 1 for key in range(6)), held.x * 1000, held.y * 1000)
-
-
-NONE = readings(NOTHING_PRESSED)
 
 
 class Hand:
@@ -116,9 +110,9 @@ def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     ):
         one.holds(held)
         one.talk(40)
-        assert one.robot.remote() == readings(held)
+        assert one.robot.remote() == remote_readings(held)
         one.talk(700)
-        assert one.robot.remote() == readings(held)
+        assert one.robot.remote() == remote_readings(held)
     assert set(one.outcomes) <= {OK, CANCELLED}
     assert [event.name for event in one.session.events()] == []
 
@@ -176,10 +170,10 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
         one.loses = lambda: False
         one.holds(rng.choice([UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
         one.talk(rng.randint(60, 400))
-        assert one.robot.remote() == readings(one.held)
+        assert one.robot.remote() == remote_readings(one.held)
         one.loses = lambda: True
         one.talk(HOLD_MS)
-        assert one.robot.remote() == NONE
+        assert one.robot.remote() == RELEASED
         one.loses = lambda: False
         one.holds(NOTHING_PRESSED)
         one.talk(250)
@@ -199,11 +193,11 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
         for _ in range(20):
             one.talk(50)
             looks += 1
-            read += one.robot.remote() == readings(one.held)
+            read += one.robot.remote() == remote_readings(one.held)
         one.holds(NOTHING_PRESSED)
         one.talk(HOLD_MS)
         for _ in range(10):
-            assert one.robot.remote() == NONE
+            assert one.robot.remote() == RELEASED
             one.talk(20)
     assert read > 0.9 * looks, (read, looks)
     assert one.session.is_open
@@ -220,7 +214,7 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
         one.talk(rng.randint(1, 60))
     one.loses = lambda: False
     one.talk(250)
-    assert one.robot.remote() == readings(one.held)
+    assert one.robot.remote() == remote_readings(one.held)
 
 
 def test_who_falls_silent_holds_nothing() -> None:
@@ -228,9 +222,9 @@ def test_who_falls_silent_holds_nothing() -> None:
     session, robot = greeted()
     session.press(*UP)
     robot.talk(session, HOLD_MS - 50)
-    assert robot.remote() == readings(UP)
+    assert robot.remote() == remote_readings(UP)
     robot.talk(session, 100)
-    assert robot.remote() == NONE
+    assert robot.remote() == RELEASED
 
 
 def test_two_who_press_on_one_line() -> None:
@@ -239,13 +233,13 @@ def test_two_who_press_on_one_line() -> None:
     session.press(*UP, 1)
     session.press(A.keys, 10, 20, 2)
     robot.talk(session, 100)
-    assert robot.remote() == readings(remote_state_of(["UP", "A"], 10, 20))
+    assert robot.remote() == remote_readings(remote_state_of(["UP", "A"], 10, 20))
     session.press(UP.keys, -5, 0, 1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(remote_state_of(["UP", "A"], -5, 0))
+    assert robot.remote() == remote_readings(remote_state_of(["UP", "A"], -5, 0))
     session.press(speaker=1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(remote_state_of(["A"], 10, 20))
+    assert robot.remote() == remote_readings(remote_state_of(["A"], 10, 20))
 
 
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
@@ -260,7 +254,7 @@ def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: st
         assert one.robot.now_ms < 30_000
     assert request.outcome.status == OK
     one.talk(250)
-    assert one.robot.remote() == readings(one.held)
+    assert one.robot.remote() == remote_readings(one.held)
 
 
 def test_keys_that_never_rest_leave_others_their_turn() -> None:
@@ -285,7 +279,7 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
     for held in (UP, NOTHING_PRESSED, A, NOTHING_PRESSED):
         one.holds(held)
         one.talk(60)
-        assert one.robot.remote() == readings(held)
+        assert one.robot.remote() == remote_readings(held)
     while name.outcome is None:
         one.talk(1)
     assert name.outcome.status == STATUSES["SAVING"]
@@ -321,7 +315,7 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
     session.press(*UP)
     robot.talk(session, 60)
-    assert robot.remote() == readings(UP)
+    assert robot.remote() == remote_readings(UP)
     if how == "button":
         robot.push()
     else:
@@ -329,10 +323,10 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     robot.talk(session, 1000)  # it hears of the stop
     begins_with_nothing_held(session, robot)
     robot.talk(session, HOLD_MS)
-    assert robot.remote() == NONE
+    assert robot.remote() == RELEASED
     session.press(*UP)
     robot.talk(session, 60)
-    assert robot.remote() == readings(UP)
+    assert robot.remote() == remote_readings(UP)
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -357,7 +351,7 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     for _ in range(70):
         robot.talk(session, 10)
         has_begun = has_begun or bool(robot.codes())
-        assert not has_begun or robot.remote() == NONE, how
+        assert not has_begun or robot.remote() == RELEASED, how
     assert has_begun, how
 
 
@@ -365,10 +359,10 @@ def test_a_program_begins_with_nothing_held() -> None:
     one = hand()
     one.holds(UP)
     one.talk(60)
-    assert one.robot.remote() == readings(UP)
+    assert one.robot.remote() == remote_readings(UP)
     begins_with_nothing_held(one.session, one.robot)
     one.talk(250)
-    assert one.robot.remote() == readings(UP)
+    assert one.robot.remote() == remote_readings(UP)
 
 
 def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
@@ -376,7 +370,7 @@ def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
     for _ in range(500):
         session.receive(robot.step(session.poll(robot.now_ms)), robot.now_ms)
         if robot.codes():
-            assert robot.remote() == NONE
+            assert robot.remote() == RELEASED
             return
     raise AssertionError((request.outcome, run))
 
@@ -390,7 +384,7 @@ def test_a_lost_link_and_one_that_is_found_again() -> None:
     assert LOST in one.outcomes and "LOST" in [event.name for event in one.session.events()]
     one.loses = lambda: False
     one.talk(3000)
-    assert one.robot.remote() == readings(UP), "who goes on pressing is heard again"
+    assert one.robot.remote() == remote_readings(UP), "who goes on pressing is heard again"
 
 
 # -- who may -------------------------------------------------------------------------------------
@@ -428,17 +422,17 @@ def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     assert table.robot.until(stranger, stranger.hello()) == OK
     refused = stranger.press(*UP)
     assert table.robot.until(stranger, refused) == STATUSES["NOT_OWNER"]
-    assert table.robot.remote() == NONE
+    assert table.robot.remote() == RELEASED
     owner = table.session(keys, nonce=4)
     assert table.robot.until(owner, owner.hello()) == OK
     assert table.robot.until(owner, owner.press(*UP)) == OK
-    assert table.robot.remote() == readings(UP)
+    assert table.robot.remote() == remote_readings(UP)
     table.robot.wait(5000)  # the robot knows its seal no more
     owner.press(*A)
     table.robot.talk(owner, 400)
     owner.press(*A)
     table.robot.talk(owner, 200)
-    assert table.robot.remote() == readings(A)
+    assert table.robot.remote() == remote_readings(A)
 
 
 # -- frames --------------------------------------------------------------------------------------
@@ -476,7 +470,7 @@ def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> 
     wire = Wire()
     assert wire.answer(wire.keys(UP)) == "OK"
     assert wire.answer(wire.frame("KEYS", payload)) == "BAD_VALUE"
-    assert wire.robot.remote() == readings(UP)
+    assert wire.robot.remote() == remote_readings(UP)
     assert wire.answer(wire.frame("KEYS", payload + b"\0")) == "BAD_LENGTH"
 
 
@@ -485,7 +479,7 @@ def test_a_word_of_an_earlier_epoch_is_stale() -> None:
     late = wire.keys(UP)
     wire.robot.wait(10, bytes(4))
     assert wire.answer(late) == "STALE"
-    assert wire.robot.remote() == NONE
+    assert wire.robot.remote() == RELEASED
     assert wire.answer(wire.keys(UP, wire.epoch + 1)) == "OK"
     assert wire.robot.is_latched
 
@@ -497,13 +491,13 @@ def test_a_word_that_comes_twice_counts_once() -> None:
     assert wire.answer(word) == "OK"
     assert wire.answer(wire.keys(NOTHING_PRESSED)) == "OK"
     assert wire.answer(word) == "STALE"
-    assert wire.robot.remote() == NONE
+    assert wire.robot.remote() == RELEASED
     last = wire.keys(A)
     assert wire.answer(last) == "OK"
     wire.robot.wait(HOLD_MS - 100)
     assert wire.answer(last) == "OK"
     wire.robot.wait(100)
-    assert wire.robot.remote() == NONE
+    assert wire.robot.remote() == RELEASED
 
 
 @pytest.mark.parametrize("cut", range(1, 14))
@@ -512,10 +506,10 @@ def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
     word = wire.keys(remote_state_of(["B"], -100, 100))
     wire.robot.wait(30, word[:cut])
     wire.robot.wait(30, word[cut:])
-    assert wire.robot.remote() == readings(remote_state_of(["B"], -100, 100))
+    assert wire.robot.remote() == remote_readings(remote_state_of(["B"], -100, 100))
     slow = wire.keys(LEFT)
     wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
-    assert wire.robot.remote() == readings(LEFT)
+    assert wire.robot.remote() == remote_readings(LEFT)
 
 
 def test_a_thousand_words_in_a_burst() -> None:
@@ -524,9 +518,9 @@ def test_a_thousand_words_in_a_burst() -> None:
     burst = b"".join(wire.keys(RemoteState(k % 64, 0, 0)) for k in range(1000))
     wire.robot.wait(10, burst)
     assert wire.answer(wire.keys(A)) == "OK"
-    assert wire.robot.remote() == readings(A)
+    assert wire.robot.remote() == remote_readings(A)
     wire.robot.wait(HOLD_MS)
-    assert wire.robot.remote() == NONE
+    assert wire.robot.remote() == RELEASED
 
 
 def test_keys_between_the_pieces_of_a_program() -> None:
@@ -541,7 +535,7 @@ def test_keys_between_the_pieces_of_a_program() -> None:
         piece = at.to_bytes(2, "little") + rest[at : at + 40]
         assert wire.answer(wire.frame("DATA", piece)) == "OK"
     assert wire.answer(wire.keys(UP)) == "OK"
-    assert wire.robot.remote() == readings(UP)
+    assert wire.robot.remote() == remote_readings(UP)
     commit = made.checksum.to_bytes(4, "little")
     wire.robot.wait(60, wire.frame("COMMIT", commit))
     assert wire.session.status() is not None

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.link.test_large_frames import IMAGE, Answering, Taking
+from tests.support.large_frames import IMAGE, AnsweringRobot, InOrderReceiver
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     FIRST_EVENT,
@@ -124,7 +124,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
 def no_two_zeros_come_before_a_frame(sender: TextSender, draw: random.Random) -> None:
     """Of a session that sends a program over a line that loses much, stops and says HELLO."""
     lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
-    robot = Answering(Taking(lost), baud=draw.choice((9600, 115_200)))
+    robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
     session = robot.session
     session._sender = sender
     sent: list[bytes] = []

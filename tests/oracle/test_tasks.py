@@ -6,60 +6,25 @@ C++ as well.
 
 from __future__ import annotations
 
-import random
 from collections import Counter
-from collections.abc import Sequence
 from functools import partial
 
 import pytest
 
-from tests.machines import MACHINES, Machine, Senses
-from tests.machines.python import run_python
-from tests.oracle.interpreter import PAPER_KIT, Mistake, run
-from tests.oracle.task_programs import task_program
+from tests.machines import MACHINES
+from tests.oracle.interpreter import Mistake, run
 from tests.support.campaign import each_seed, wanted
 from tests.support.rows import each_row
-from tiniscript import Compilation, compile_text, robots
-from tiniscript.base.source import Source
-from tiniscript.bytecode.image import unpack
-from tiniscript.syntax.formatter import format_source
+from tests.support.task_agreement import KIT, compare_task_program
+from tiniscript import compile_text
 
-KIT = robots.load("tinibot").kit
-MAX_MS = 600
 BATCH = 50
-
-
-def check_program(seed: int, machines: Sequence[Machine] = (run_python,), needs: int = 0) -> str:
-    """Compare the traces of one random program on some machines; return how it ended.
-
-    With the `needs` of a way it has some.
-    """
-    rng = random.Random(seed)
-    both: list[Compilation] = []
-    while not both or unpack(both[0].image).needs & needs != needs:
-        text, senses = task_program(rng, ways=needs != 0)
-        both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
-        try:
-            want = run(text, PAPER_KIT, senses, MAX_MS)
-        except Mistake:  # DEFs that are called too deep in all tasks together
-            assert not any(each.is_right for each in both), f"seed {seed}:\n{text}"
-            both = []
-            continue
-        assert all(each.is_right for each in both), f"seed {seed}:\n{text}"
-    for image in dict.fromkeys(each.image for each in both):  # often they are the same
-        for machine in machines:
-            got = machine(image, KIT, Senses(senses, MAX_MS))
-            assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
-    laid_out = format_source(Source(text))
-    assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
-    assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"
-    return want.split()[-1]
 
 
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH))
 def test_random_programs(first: int) -> None:
-    ends = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    ends = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
     assert set(ends) == {"DONE", "LIMIT"}
 
 
@@ -129,4 +94,4 @@ def test_programs_without_tasks_say_the_version_without_them() -> None:
 
 if __name__ == "__main__":
     both = [MACHINES[name] for name in ("python", "host")]
-    each_seed(partial(check_program, machines=both), wanted(100_000, 0))
+    each_seed(partial(compare_task_program, machines=both), wanted(100_000, 0))

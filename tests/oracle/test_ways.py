@@ -16,11 +16,11 @@ from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
 from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
-from tests.oracle.test_tasks import check_program as check_tasks
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
+from tests.support.task_agreement import compare_task_program
 from tests.support.vm_agreement import same
 from tiniscript import Compilation, compile_text
 from tiniscript.base.source import Source
@@ -61,7 +61,7 @@ def test_random_programs(first: int) -> None:
 
 def test_random_programs_with_tasks() -> None:
     seeds = range(4 * BATCH, 5 * BATCH)  # two of them go without power
-    ends = Counter(check_tasks(seed, needs=GO) for seed in seeds)
+    ends = Counter(compare_task_program(seed, needs=GO) for seed in seeds)
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
 
 
@@ -162,7 +162,7 @@ def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
 
 def either(seed: int) -> str:
     machines = [MACHINES[name] for name in ("python", "host")]
-    return check_program(seed, machines) if seed % 2 else check_tasks(seed, machines, GO)
+    return check_program(seed, machines) if seed % 2 else compare_task_program(seed, machines, GO)
 
 
 if __name__ == "__main__":

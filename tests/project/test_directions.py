@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.imported_modules import modules_imported_by
 from tiniscript.base.languages import catalogue, languages
 from tools import measures
 
@@ -32,17 +33,9 @@ def test_no_circle_of_files() -> None:
     assert not measures.circles(measures.imports_of(FILES))
 
 
-def imported_by(statement: str) -> set[str]:
-    code = f"import sys; {statement}; print(' '.join(sys.modules))"
-    completed = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
-    )
-    return set(completed.stdout.split())
-
-
 def test_the_road_needs_the_standard_library_alone() -> None:
     """So that it runs in a browser, and starts fast."""
-    modules = imported_by(
+    modules = modules_imported_by(
         "from tiniscript import compile_text, robots; "
         "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
     )
@@ -55,7 +48,9 @@ def test_the_road_needs_the_standard_library_alone() -> None:
 
 def test_importing_the_package_imports_nothing_else() -> None:
     """What the library offers is imported when it is asked for."""
-    found = {name for name in imported_by("import tiniscript") if name.startswith("tiniscript")}
+    found = {
+        name for name in modules_imported_by("import tiniscript") if name.startswith("tiniscript")
+    }
     assert found == {"tiniscript"}
 
 
@@ -86,7 +81,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
     for language in languages():  # have what a command asks for made, as in a package
         for name in ("command", "messages"):
             catalogue(name, language)
-    modules = imported_by(
+    modules = modules_imported_by(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
     )
@@ -104,7 +99,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
 
 def test_programs_need_no_link() -> None:
     uses = "compile('SI|F(5,80)'), check('SI|F(5,'), run('SI|F(5,80)'), show('SI|F(5,80)')"
-    modules = imported_by(f"from tiniscript import check, compile, run, show; {uses}")
+    modules = modules_imported_by(f"from tiniscript import check, compile, run, show; {uses}")
     unwanted = {"serial", "cobs", "wasmtime", "tiniscript.link", "tiniscript.virtual",
                 "tiniscript.cli"}  # fmt: skip
     assert not unwanted & modules
@@ -113,7 +108,7 @@ def test_programs_need_no_link() -> None:
 def test_every_verb_is_there_without_the_extras() -> None:
     """A real robot needs nothing of a virtual one, and who has no radio installed has a cable."""
     verbs = [path.stem for path in (PACKAGE / "cli" / "commands").glob("*.py")]
-    imported_by(
+    modules_imported_by(
         "sys.modules.update(dict.fromkeys(('bleak', 'paho', 'PIL', 'wasmtime', 'zeroconf'))); "
         "from importlib import import_module; "
         f"[import_module('tiniscript.cli.commands.' + each) for each in {verbs}]"
@@ -153,7 +148,7 @@ def test_the_link_has_no_port_and_no_clock() -> None:
 
 def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
     """It moves when its thread has begun, and that would wait for it."""
-    modules = imported_by(
+    modules = modules_imported_by(
         "from tiniscript.cli import main; "
         "assert main(['upload', '-e', 'SI|S', '--virtual', '--hurry', 'max']) == 0"
     )

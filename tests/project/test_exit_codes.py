@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.project.test_setup import is_terminal, loaded
 from tests.support.casefile import ROOT
+from tests.support.first_command import load_first_command, set_terminals
 from tools import CannotMake, environment
 from tools.generate import __main__ as generate
 from tools.release import __main__ as release
@@ -144,8 +144,8 @@ def test_the_first_command_fails_as_what_it_starts(
     monkeypatch.setattr(subprocess, "run", run)
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     monkeypatch.setattr("builtins.input", lambda question: "y")
-    is_terminal(monkeypatch, "stdin", "stdout")
-    assert loaded().main() == 5
+    set_terminals(monkeypatch, "stdin", "stdout")
+    assert load_first_command().main() == 5
 
 
 def test_the_generator_fails_where_any_file_is_stale(

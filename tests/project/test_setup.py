@@ -9,13 +9,12 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.first_command import load_first_command, set_terminals
 from tests.support.rows import each_row
 from tools import environment
 
@@ -293,21 +292,12 @@ def test_who_cannot_install_venv_is_not_told_to_do_it_again(
 # -- tools/try.py, for every system
 
 
-def loaded() -> ModuleType:
-    """Return `tools/try.py`, whose name no `import` can have."""
-    spec = spec_from_file_location("first_command", ROOT / "tools" / "try.py")
-    assert spec and spec.loader
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_windows_has_its_interpreter_and_its_line_elsewhere() -> None:
     from tools import environment
 
     assert environment.python_of(Path("x"), "nt") == Path("x/Scripts/python.exe")
     assert environment.python_of(Path("x"), "posix") == Path("x/bin/python")
-    first = loaded()
+    first = load_first_command()
     assert first.activation("nt") == r".venv\Scripts\Activate.ps1"
     assert first.activation("posix") == ". .venv/bin/activate"
 
@@ -354,7 +344,7 @@ def test_the_first_command_drives_the_virtual_robot(
     monkeypatch.setenv("LC_ALL", "es_MX.UTF-8")
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     before = (ROOT / "way.png").exists()
-    assert loaded().main() == 0
+    assert load_first_command().main() == 0
     capture_result = capfd.readouterr()
     assert (ROOT / "way.png").is_file()
     if not before:
@@ -380,11 +370,6 @@ class Calls:
         return subprocess.CompletedProcess(words, 0, f"{self.megabytes}\n", "")
 
 
-def is_terminal(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
-    for name in ("stdin", "stdout", "stderr"):
-        monkeypatch.setattr(getattr(sys, name), "isatty", lambda name=name: name in names)
-
-
 @each_row(
     "typed, language, megabytes, question, opens",
     [
@@ -405,9 +390,9 @@ def test_the_first_command_ends_with_the_studio(
     monkeypatch.setenv("LC_ALL", f"{language}.UTF-8")
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     monkeypatch.setattr(sys, "stdin", io.StringIO(typed))
-    is_terminal(monkeypatch, "stdin", "stdout")
+    set_terminals(monkeypatch, "stdin", "stdout")
     calls = Calls(monkeypatch, megabytes)
-    assert loaded().main() == 0
+    assert load_first_command().main() == 0
     assert question in capsys.readouterr().out
     assert (["-m", "tiniscript", "studio", "--yes"] in calls.words) == opens
 
@@ -420,9 +405,9 @@ def test_the_first_command_asks_nobody_who_is_not_there(
 
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
-    is_terminal(monkeypatch, *there)
+    set_terminals(monkeypatch, *there)
     calls = Calls(monkeypatch, 40)
-    assert loaded().main() == 0
+    assert load_first_command().main() == 0
     assert [words[2] for words in calls.words] == ["upload"]
 
 
@@ -439,7 +424,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
     monkeypatch.setattr(serving, "is_built", lambda: True)
     assert page_build.megabytes() == 0
     completed = subprocess.run(
-        [sys.executable, "-c", loaded().MEGABYTES_CODE], capture_output=True, text=True
+        [sys.executable, "-c", load_first_command().MEGABYTES_CODE], capture_output=True, text=True
     )
     assert completed.stdout.strip().isdigit(), completed.stderr
 
@@ -447,7 +432,7 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
 def test_every_sentence_of_the_first_command_has_all_languages() -> None:
     from tools import environment
 
-    for table in (environment.TEXTS, loaded().TEXTS):
+    for table in (environment.TEXTS, load_first_command().TEXTS):
         for said in table.values():
             assert len({*said}) == len(environment.LANGUAGES)
             assert len({frozenset(re.findall(r"\{\w+\}", each)) for each in said}) == 1

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.base.source import Source
+from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
@@ -139,3 +140,24 @@ def _rows(entry: Entry) -> list[str]:
     if _mended(program, marked, rows) == entry.mended:
         return [*above, *marked, *rows]
     return [*above, *said, *(f"= {line}".rstrip() for line in mended)]
+
+
+# Mistakes whose repair writes a number in another way: a unit, a letter for a digit, `X++`, `50.`,
+# and how often `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
+OTHER_NUMBERS = (
+    codes.UNIT,
+    codes.BAD_NUMBER,
+    codes.OTHER_ASSIGNMENT,
+    codes.LINE_NUMBER,
+    codes.SETUP_UNKNOWN,  # `S1|` is SI
+    codes.SETUP_NEEDS_BAR,  # and so is `S1;`
+    codes.LOOP_COUNTS,
+    codes.NEEDLESS_FRAME,  # with its `return 0`
+    codes.LISTS,  # `V[0]` is V_1
+    codes.PASTED,  # `[20:14] Luis:`
+    codes.NO_BRACKETS_HERE,  # `TASK(1)`
+)
+
+
+def mistake_count(diagnostics: list[Diagnostic]) -> int:
+    return sum(diagnostic.is_mistake for diagnostic in diagnostics)

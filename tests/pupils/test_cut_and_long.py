@@ -7,7 +7,7 @@ import re
 import pytest
 
 from tests.pupils.corpus import check, entries
-from tests.pupils.test_growth import work
+from tests.support.checking_work import calls_of_check
 from tiniscript.recovery.told import MOST_CHARACTERS
 
 WORDS = re.compile(r"\w+|[^\w\s]")
@@ -54,4 +54,4 @@ def test_all_cut_programs_end() -> None:
 def test_a_long_row_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
     most = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
-    assert work(program) < most * len(program)
+    assert calls_of_check(program) < most * len(program)

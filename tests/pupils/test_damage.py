@@ -12,8 +12,7 @@ from functools import partial
 
 import pytest
 
-from tests.pupils.corpus import check
-from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
+from tests.pupils.corpus import OTHER_NUMBERS, check, mistake_count
 from tests.support.damaged_programs import programs
 from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
@@ -58,7 +57,7 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
         edits = edits_of(diagnostic)
         assert edits is None or apply_edits(text, edits) != text
     done = repair_program(text, check)
-    assert mistakes(done.diagnostics_left) <= mistakes(diagnostics)
+    assert mistake_count(done.diagnostics_left) <= mistake_count(diagnostics)
     assert done.diagnostics_left == check(done.text)
     assert repair_program(done.text, check).text == done.text
     for diagnostic in diagnostics[:20]:  # each alone

@@ -2,33 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from types import FrameType
-
 import pytest
 
-from tiniscript import robots
+from tests.support.checking_work import ROBOT, calls_of_check
 from tiniscript.library.compiling import compile_source
 
-ROBOT = robots.load("tinibot")
 LEAST = 4_000  # pieces
-
-
-def work(text: str) -> int:
-    """Return how many calls, of Python's functions and C's, the check of a text makes."""
-    calls = 0
-
-    def count(frame: FrameType, event: str, what: object) -> None:
-        nonlocal calls
-        calls += event in ("call", "c_call")
-
-    before = sys.getprofile()
-    sys.setprofile(count)
-    try:
-        compile_source(text.encode(), ROBOT, "prog.ts", is_strict=False)
-    finally:
-        sys.setprofile(before)
-    return calls
 
 
 @pytest.mark.sampled("begin", "piece", "end")
@@ -41,7 +20,7 @@ def work(text: str) -> int:
     ],
 )  # fmt: skip
 def test_a_long_text_takes_no_more_than_in_proportion(begin: str, piece: str, end: str) -> None:
-    short, long = (work(f"{begin}{piece * count}{end}") for count in (LEAST, 4 * LEAST))
+    short, long = (calls_of_check(f"{begin}{piece * count}{end}") for count in (LEAST, 4 * LEAST))
     assert long < 4.8 * short
 
 
@@ -62,4 +41,4 @@ def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, between: st
     one = mistake.replace("{k}", "1")
     compile_source(one.encode(), ROBOT, "prog.ts", is_strict=False)  # the tables are read
     text = "".join(mistake.replace("{k}", str(k)) + between for k in range(MISTAKES))
-    assert work(text) < MOST_CALLS * len(text)
+    assert calls_of_check(text) < MOST_CALLS * len(text)

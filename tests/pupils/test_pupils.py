@@ -12,39 +12,19 @@ from pathlib import Path
 import pytest
 
 from tests.pupils import cover
-from tests.pupils.corpus import Entry, check, entries, found_in, write
+from tests.pupils.corpus import OTHER_NUMBERS, Entry, check, entries, found_in, mistake_count, write
 from tests.pupils.cover import LIST, add, chosen, forks, head, stale
 from tests.support.rows import go_through
 from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of, edits_offered, repair_program
 
-# Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
-# often `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
-OTHER_NUMBERS = (
-    codes.UNIT,
-    codes.BAD_NUMBER,
-    codes.OTHER_ASSIGNMENT,
-    codes.LINE_NUMBER,
-    codes.SETUP_UNKNOWN,  # `S1|` is SI
-    codes.SETUP_NEEDS_BAR,  # and so is `S1;`
-    codes.LOOP_COUNTS,
-    codes.NEEDLESS_FRAME,  # with its `return 0`
-    codes.LISTS,  # `V[0]` is V_1
-    codes.PASTED,  # `[20:14] Luis:`
-    codes.NO_BRACKETS_HERE,  # `TASK(1)`
-)
 # A digit for a sign on its key, or turned round; a power; a point between thousands; a sound; a
 # number that counts lines.
 SHIFTED = re.compile(
     r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\*\* ?2|\.000$|^4WARD|^W8|^\d+[.)] [A-Za-z]"
 )
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
-
-
-def mistakes(diagnostics: list[Diagnostic]) -> int:
-    return sum(diagnostic.is_mistake for diagnostic in diagnostics)
 
 
 def numbers(text: str) -> list[str]:
@@ -129,12 +109,13 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
         if not edits or not diagnostic.is_mistake:
             continue
         after = check(apply_edits(entry.program, edits))
-        if mistakes(after) > mistakes(diagnostics):  # it has uncovered several: no button makes it
+        if mistake_count(after) > mistake_count(diagnostics):
+            # it has uncovered several: no button makes it
             assert not edits_offered(
                 entry.program, diagnostics, diagnostics.index(diagnostic), check
             )
-        assert mistakes(after) <= mistakes(diagnostics) or not (repair and repair.is_sure)
-        if mistakes(after) == mistakes(diagnostics):  # it has uncovered another one
+        assert mistake_count(after) <= mistake_count(diagnostics) or not (repair and repair.is_sure)
+        if mistake_count(after) == mistake_count(diagnostics):  # it has uncovered another one
             assert diagnostic not in after
         fix = diagnostic.values.get("fix", "")
         is_counted = re.match(r"LOOP\(|W\(|\w+ = \d+;LOOP\(", fix) is not None
@@ -174,7 +155,7 @@ def offers_what_it_says(entry: Entry) -> None:
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:
             after = check(apply_edits(text, edits))
-            assert mistakes(after) <= mistakes(diagnostics) and diagnostic not in after
+            assert mistake_count(after) <= mistake_count(diagnostics) and diagnostic not in after
             assert diagnostic.repair is None
 
 
@@ -185,4 +166,4 @@ def test_what_is_repaired_is_repaired_once(programs: tuple[Entry, ...]) -> None:
 def repaired_once(entry: Entry) -> None:
     if entry.mended is not None:
         assert repair_program(entry.mended, check).text == entry.mended
-        assert mistakes(check(entry.mended)) <= mistakes(check(entry.program))
+        assert mistake_count(check(entry.mended)) <= mistake_count(check(entry.program))

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.advised_programs import ADVISED_PROGRAMS
 from tests.support.rows import each_row
 from tests.support.texts import said
 from tiniscript import check_text, robots
@@ -20,109 +21,7 @@ from tiniscript.syntax.lexer import scan
 KIT = robots.load("tinibot").kit
 
 
-ADVISED = [
-    ("LOOP(2);BREAK;S;END_LOOP", "TS802"),
-    ("IF(DISTANCE < 5);LOOP(FOREVER);W(1);END_LOOP;ELSE;LOOP(FOREVER);W(1);END_LOOP;ENDIF;S",
-     "TS802"),
-    ("L(2 - 2, 80)", "TS803"),
-    ("WHILE(TRUE);X = DISTANCE;SHOW(X);END_WHILE", "TS804"),
-    ("DISTANCE;F(2, 80)", "TS840"),
-    ("LOOP(3);DISTANCE;LIGHT_L;SHOW(LIGHT_L);END_LOOP", "TS840"),
-    ("LOOP(3);F(1, 80);IF(DISTANCE < 10);S;ENDIF;END_LOOP", "TS805"),
-    ("LOOP(3);F(0.5, 80);DISTANCE;IF(5 > DISTANCE);S;ENDIF;END_LOOP", "TS805"),
-    ("LOOP(3);B(0.5, 80);DISTANCE;IF(5 > DISTANCE);S;ENDIF;END_LOOP", "TS821"),
-    ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "TS821"),
-    ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "TS821"),
-    ("LOOP(3);F(1, 60);IF(DISTANCE < 50 AND LIGHT_L > 500);R(1, 60);ENDIF;END_LOOP", "TS805"),
-    ("D = 20;LOOP(3);F(1, 60);IF(DISTANCE < D);R(1, 60);ENDIF;END_LOOP", "TS805"),
-    ("D = DISTANCE;F(5, 60) UNTIL(D = 20)", "TS822"),
-    ("D = DISTANCE;WHILE(D < 0);F(0.2, 60);END_WHILE", "TS823"),
-    ("D = DISTANCE;LOOP(FOREVER);IF(D = 20);B(1, 60);ENDIF;W(1);END_LOOP", "TS823"),
-    ("F(5, 60) UNTIL(DISTANCE > 0)", "TS824"),
-    ("B(5, 60) UNTIL(DISTANCE < 400)", "TS824"),
-    ("WHILE(DISTANCE < 10);F(0.2, 60);END_WHILE", "TS824"),
-    ("SHOW(RANDOM(1, 6));LOOP(RANDOM(1, 6));W(1);END_LOOP", "TS843"),
-    ("D = LIGHT_L;IF(D > 50);S;W(1);ELSEIF(D < 50);W(1);ELSE;W(2);ENDIF", "TS825"),
-    ("X = MAX(80, MIN(20, DISTANCE));F(1, X)", "TS827"),
-    ("IF(RANDOM(1, 2) = 1);S;W(1);ELSEIF(RANDOM(1, 2) = 2);W(1);ENDIF", "TS843"),
-    ("W(9);WHILE(TIME < 5);BEEP(1, 440);END_WHILE", "TS827"),
-    ("IF(DISTANCE < 15);B(1, 70);ENDIF;F(10, 50)", "TS805"),
-    ("WHILE(TIME < 10000);F(1, 50);B(1, 50);END_WHILE", "TS811"),
-    ("F(007, 60)", "TS831"),
-    ("F(1, 80) // voy; W(2); S", "TS816"),
-    ("F(1, 50) // voy; LOOP(2); F(1, 50); END_LOOP", "TS816"),
-    ("X = 5", "TS806"),
-    ("DEF A;S;END_DEF", "TS807"),
-    ("SHOW(5 % (3 - 3))", "TS808"),
-    ("IF(2147483 * 2 > DISTANCE);S;ENDIF", "TS808"),
-    ("F(500, 50)", "TS811"),
-    ("VEL1 = 80;X = 2;F(VEL1, X)", "TS810"),
-    ("SHOW(ROUND(1, DISTANCE))", "TS810"),
-    ("WHILE(ROUND(2, TIME / 3) < 9);W(1);END_WHILE", "TS810"),
-    ("BEEP(440, 1000)", "TS811"),
-    ("X = 80;SEGUNDOS = 2;R(X, SEGUNDOS)", "TS810"),
-    ("R(200, 50)", "TS811"),
-    ("L(30, 60)", "TS811"),
-    ("B(61, 60)", "TS811"),
-    ("R(90, 60) UNTIL(DISTANCE < 9)", "TS811"),
-    ("W(250)", "TS811"),
-    ("F(2, 0) UNTIL(DISTANCE < 9)", "TS820"),
-    ("F(1, 80);SHOW(DISTANCE);IF(LIGHT_L < 10);BEEP(1, 440);STOP;ENDIF;R(1, 60)", "TS821"),
-    ("LOOP(FOREVER);IF(DISTANCE < 10);S;ENDIF;F(5, 60);END_LOOP", "TS821"),
-    ("IF(DISTANCE < 10);S;ENDIF;F(5, 60)", "TS821"),
-    ("X = 5;W(FOREVER) UNTIL(X > 5)", "TS822"),
-    ("LOOP(3);D = DISTANCE;F(5, 60) UNTIL(D < 20);END_LOOP", "TS822"),
-    ("D = DISTANCE;WHILE(D > 10);F(0.2, 60);END_WHILE", "TS823"),
-    ("N = 0;K = 0;DEF A;K = K + 1;END_DEF;WHILE(N < 3);A;W(1);END_WHILE;SHOW(K)", "TS823"),
-    ("IF(500 = LIGHT_L);S;ENDIF", "TS825"),
-    ("M(80, 80)", "TS826"),
-    ("DEF A;M(80, 80);F(1, 60);END_DEF;A", "TS826"),
-    ("LOOP(3);F(0.4, 80);IF(DISTANCE < 10);S;ENDIF;END_LOOP", "TS821"),
-    ("IF(DISTANCE < 60);W(1);ELSEIF(DISTANCE < 20);S;ENDIF", "TS830"),
-    ("IF(5 <= LIGHT_L);W(1);ELSEIF(LIGHT_R < 9);W(1);ELSEIF(LIGHT_L > 5);S;ENDIF", "TS830"),
-    ("L(039, 60)", "TS831"),
-    ("D = DISTANCE;LOOP(FOREVER);LOOP(2);IF(D < 9);S;ENDIF;END_LOOP;F(1,60);END_LOOP", "TS823"),
-    ("IF(DISTANCE < 5);W(1);M(80, 80);ENDIF", "TS826"),
-    ("IF(LIGHT_L > 1023);S;ENDIF", "TS827"),
-    ("WHILE(0 > DISTANCE);W(1);END_WHILE", "TS827"),
-    ("LOOP(4.5);S;END_LOOP", "TS829"),
-    ("LOOP(2);F(2, 80);END_LOOP // R(1, 60)", "TS816"),
-    ("TASK;F(4, 60);END_TASK;TASK;L(4, 60);END_TASK", "TS832"),
-    ("TASK;F(4, 60);END_TASK;L(4, 60)", "TS832"),
-    ("TASK;BEEP(0.2, 440);W(1);END_TASK;F(9, 60)", "TS833"),
-    ("DEF A;BEEP(1, 440);END_DEF;TASK\n  A\n  W(0.5)\nENDTASK\nF(9, 60)", "TS833"),
-    ("LOOP(FOREVER);F(1, 60);END_LOOP;WHEN(DISTANCE < 10);S;END_WHEN", "TS834"),
-    ("WHEN (DISTANCE < 10) // a hand\nSHOW(1);S;END_WHEN;F(FOREVER, 60)", "TS834"),
-    ("DEF A;S;END_DEF;WHEN(DISTANCE < 9);A;END_WHEN;TASK;LOOP(FOREVER);F(1, 60);W(1);END_LOOP\n"
-     "END_TASK", "TS834"),
-    ("IF(10 > DISTANCE AND DISTANCE >= 10);W(1);ENDIF", "TS827"),
-    ("IF(DISTANCE >= 10 OR DISTANCE < 10);W(1);ENDIF", "TS827"),
-    ("F(5, 60) UNTIL(TIME < 9 AND TIME > 30)", "TS827"),
-    ("F(FOREVER, 60);TASK;LOOP(FOREVER);W(1);M(50, 50);END_LOOP;END_TASK", "TS832"),
-    ("F(FOREVER, 60);TASK;W(1);LOOP(FOREVER);L(1, 60);S;R(1, 60);END_LOOP;END_TASK", "TS832"),
-    ("DEF A;L(1, 60);END_DEF;TASK;LOOP(FOREVER);F(1, 60);A;END_LOOP;END_TASK\n"
-     "TASK;LOOP(FOREVER);W(1);A;END_LOOP;END_TASK", "TS832"),
-    ("LOOP(FOREVER);F(1, 60);END_LOOP;TASK;LOOP(FOREVER);M(50, 50);W(1);END_LOOP;END_TASK",
-     "TS832"),
-    ("LOOP(FOREVER);F(1, 60);END_LOOP;TASK;LOOP(FOREVER);IF(DISTANCE < 9);L(1, 60);ENDIF\n"
-     "F(1, 60);END_LOOP;END_TASK", "TS832"),
-    ("F(80, 2)", "TS810"),
-    ("F(2 CM, 0)", "TS808"),
-    ("F(5 * 1, 30 * 5)", "TS841"),
-    ("BEEP(0, 440)", "TS803"),
-    ("BEEP(500, 440)", "TS811"),
-    ("BEEP(1, 3 - 9)", "TS841"),
-    ("LOOP(0.2);S;END_LOOP", "TS812"),
-    ("F(5, 60) UNTIL(DISTANCE = 20)", "TS825"),
-    ("D = DISTANCE;LOOP(5);F(1, 60);SHOW(D);END_LOOP", "TS823"),
-    ("LOOP(FOREVER);X = DISTANCE;SHOW(X);END_LOOP", "TS804"),
-    ("LOOP(4);END_LOOP;F(1, 60)", "TS828"),
-    ("TASK;F(5, 50);BEEP(5, 440);END_TASK", "TS835"),
-    ("IF(KEY_UP);F(1, 60);ENDIF", "TS836"),
-]  # fmt: skip
-
-
-@each_row("text, code", ADVISED)
+@each_row("text, code", ADVISED_PROGRAMS)
 def test_advice(text: str, code: str) -> None:
     found = check_text(text, KIT)
     assert found.is_right
@@ -245,7 +144,7 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
     rows = {at: [*map(watched, its)] for at, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)
-    for text in [*(text for text, _ in ADVISED), *WRONG]:
+    for text in [*(text for text, _ in ADVISED_PROGRAMS), *WRONG]:
         check_text(text, KIT)
     assert reported == {row: set(row.codes) for row in lints.TABLE}
 

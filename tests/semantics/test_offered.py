@@ -8,14 +8,14 @@ from collections import Counter
 import pytest
 
 from tests.pupils.corpus import check, entries
-from tests.semantics.test_lint import ADVISED
+from tests.support.advised_programs import ADVISED_PROGRAMS
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
 
 WARNED = re.compile(r"[0-9]+ TS8")
-PROGRAMS = [text for text, _ in ADVISED]
+PROGRAMS = [text for text, _ in ADVISED_PROGRAMS]
 PROGRAMS += [entry.program for entry in entries() if any(map(WARNED.match, entry.said))]
 PROGRAMS += [
     program.format(move=move, q=question, d=question.replace("DISTANCE", "D"))

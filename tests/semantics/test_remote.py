@@ -10,7 +10,7 @@ import pytest
 from tests.machines.text_reader import NO_DEFS, TextReader
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tests.vm.test_programs_of_releases import programs
+from tests.support.released_programs import released_programs
 from tiniscript import robots
 from tiniscript.base import kit as kits
 from tiniscript.base.fixed_point import ONE
@@ -56,7 +56,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Byte for byte that of a robot without a remote control."""
-    texts = [old for old in programs() if not re.search("(?i)KEY_|PAD_", old.text)]
+    texts = [old for old in released_programs() if not re.search("(?i)KEY_|PAD_", old.text)]
     assert len(texts) > 300
 
     def images() -> list[tuple[bytes, bytes]]:

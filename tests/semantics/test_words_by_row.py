@@ -7,7 +7,7 @@ from itertools import product
 
 import pytest
 
-from tests.semantics.test_lint import ADVISED
+from tests.support.advised_programs import ADVISED_PROGRAMS
 from tests.support.casefile import all_cases
 from tests.support.new_word import CHEEP, TOOT
 from tests.support.rows import each_row
@@ -52,7 +52,7 @@ def texts_with_beep() -> list[str]:
     catalogue = (FOLDER / "en" / "messages.toml").read_text("utf-8")
     texts = re.findall(r'(?m)^"TS\d+/(?:wrong|right)".* = "(.*)"$', catalogue)
     texts += [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
-    texts += [text for text, _ in ADVISED]
+    texts += [text for text, _ in ADVISED_PROGRAMS]
     return [text for text in texts if re.search(r"\bBEEP\b", text)]
 
 

@@ -14,6 +14,7 @@ import pytest
 
 from tests.support.command import Command, inside, process
 from tests.support.port_strangers import driven, registration_of
+from tests.support.socket_pairs import connected_pair
 from tests.support.virtual_command import Robot, robot, visitor
 from tests.support.waiting import HANGS_S
 from tiniscript.base import files
@@ -23,6 +24,7 @@ from tiniscript.virtual import directory
 from tiniscript.virtual.transports import Transports
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
+
 NOBODY = 65534
 LINE = b"SI|F(0.1,50)\r\n"
 # Says a line as another user; then hangs up at once, resets the connection, or stays.
@@ -43,15 +45,9 @@ peer.close()
 """
 
 
-def pair() -> tuple[socket.socket, socket.socket]:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        there = socket.create_connection(server.getsockname())
-        return server.accept()[0], there
-
-
 @linux
 def test_the_end_of_a_connection_has_its_user() -> None:
-    here, there = pair()
+    here, there = connected_pair()
     with here, there:
         found = peers._socket_owner(here.getpeername(), here.getsockname())
         assert found == (os.geteuid(), os.fstat(there.fileno()).st_ino)
@@ -62,7 +58,7 @@ def test_the_end_of_a_connection_has_its_user() -> None:
 
 @linux
 def test_whoever_has_hung_up_can_have_been_anybody() -> None:
-    here, there = pair()
+    here, there = connected_pair()
     with here:
         there.sendall(LINE)
         there.close()
@@ -93,7 +89,7 @@ def test_which_ends_are_let_in(
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
     monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.SocketOwner(user, inode))
-    here, there = pair()
+    here, there = connected_pair()
     with here, there:
         assert peers.is_of_this_user(here) == is_let_in
 
@@ -105,7 +101,7 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
         return other_end
 
-    here, there = pair()
+    here, there = connected_pair()
     with here, there:
         monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(here)

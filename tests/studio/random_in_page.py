@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from tests.oracle import interpreter as oracle
 from tests.oracle import programs as oracle_programs
-from tests.studio.test_page import checks
 from tests.support import studio
 from tests.support.studio import Pages
 from tiniscript import ProgramError, compile
@@ -44,8 +43,9 @@ def wanted(text: str) -> str:
 
 def images(page: Page, texts: list[str]) -> list[str]:
     """Return what the page's compiler makes of texts; empty where they are wrong."""
-    requests = [{"text": text, "robot": "tinibot", "language": "en"} for text in texts]
-    return [answer["image"] for answer in checks(page, requests)]
+    request = {"do": "check", "robot": "tinibot", "language": "en"}
+    requests = [{**request, "text": text} for text in texts]
+    return [answer["image"] for answer in studio.asked(page, requests)]
 
 
 def without_places(form: Any) -> Any:

@@ -11,6 +11,7 @@ import pytest
 from tests.oracle import programs as oracle_programs
 from tests.pupils import corpus
 from tests.studio.programs import Program, programs
+from tests.support.block_agreement import check_blocks, comment_words, touched_form
 from tests.support.block_words import of_word
 from tests.support.kits import KITS
 from tests.support.new_word import HORN
@@ -34,7 +35,6 @@ from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
 from tiniscript.studio.worker import MOST_BLOCKS, answer
 from tiniscript.syntax.formatter import format_source
-from tiniscript.syntax.lexer import scan
 
 TINIBOT = robots.load("tinibot").kit
 
@@ -43,40 +43,10 @@ def kinds(text: str, kit: Kit = TINIBOT) -> list[str]:
     return [block.kind for block in in_order(read_blocks(text, kit).body)]
 
 
-def comments(text: str) -> list[str]:
-    """Return the words of all comments: joined and moved to the next line they are the same."""
-    found = " ".join(token.text[2:] for token in scan(text).comments)
-    return [word for word in found.split() if word != "//"]
-
-
 def words(text: str) -> list[str]:
     """Return the words and numbers of a text, comments included, in any order."""
     kept = "".join(letter if letter.isalnum() or letter == "_" else " " for letter in text.upper())
     return sorted(ALIASES.get(word, word) for word in kept.split())
-
-
-def check(text: str, kit: Kit) -> None:
-    """A right program keeps its image and its comments, has no grey block, and is laid out."""
-    before = compile_text(text, kit)
-    for form in (read_blocks(text, kit), touched(read_blocks(text, kit))):
-        check_form(form, text, kit, before.image)
-    if "///" not in text and not text.startswith("PING"):
-        assert format_blocks(read_blocks(text, kit)).text == format_source(Source(text)), text
-
-
-def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
-    assert "grey" not in [block.kind for block in in_order(form.body)], text
-    printed = format_blocks(from_data(json.loads(json.dumps(data_of(form)))))
-    after = compile_text(printed.text, kit)
-    assert after.is_right and after.image == image, printed.text
-    assert format_source(Source(printed.text)) == printed.text
-    assert comments(printed.text) == comments(text), printed.text
-    again = read_blocks(printed.text, kit)
-    assert format_blocks(again).text == printed.text
-    found = zip(in_order(again.body), printed.places, strict=True)
-    for block, place in found:
-        if block.kind != "comment":
-            assert block.place == place, (block, place, printed.text)
 
 
 @each_row("program", programs())
@@ -84,7 +54,7 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
     """Those of the paper, of all documents and cases, and the examples."""
     kit = robots.load(program.robot).kit
     if compile_text(program.text, kit).is_right:
-        check(program.text, kit)
+        check_blocks(program.text, kit)
     else:
         format_blocks(read_blocks(program.text, kit))
 
@@ -94,7 +64,7 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
 def test_random_programs_are_the_same_from_their_blocks(first: int) -> None:
     for seed in range(first, first + 250):
         theirs, kit = KITS[seed % len(KITS)]
-        check(oracle_programs.program(random.Random(seed), theirs), kit)
+        check_blocks(oracle_programs.program(random.Random(seed), theirs), kit)
 
 
 @pytest.mark.parametrize("first", range(0, 500, 250))
@@ -123,7 +93,7 @@ def test_what_pupils_write_becomes_blocks_and_text() -> None:
 @each_row("word", [name for name, word in WORDS.items() if word.role.name != "later"])
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
-    check(text, TINIBOT)
+    check_blocks(text, TINIBOT)
     printed = format_blocks(read_blocks(text, TINIBOT)).text
     assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
     assert sorted(words(printed)) == sorted(words(text))
@@ -132,14 +102,14 @@ def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
 @pytest.mark.parametrize("word", ["F", "B", "L", "R", "W"])
 def test_moves_and_waits_can_have_an_until(word: str) -> None:
     arguments = "FOREVER" if word == "W" else "FOREVER, 80"
-    check(f"{word}({arguments}) UNTIL(DISTANCE < 10)", TINIBOT)
+    check_blocks(f"{word}({arguments}) UNTIL(DISTANCE < 10)", TINIBOT)
 
 
 @pytest.mark.parametrize(("word", "unit"), UNIT_OF.items())
 def test_a_way_is_a_move_with_another_unit(word: str, unit: str) -> None:
     way = f"{word}(X * 2 {unit}, 60)"
     for until, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
-        check(f"X = 20;{way}{until}", TINIBOT)
+        check_blocks(f"X = 20;{way}{until}", TINIBOT)
         (block,) = read_blocks(way + until, TINIBOT).body
         assert (block.kind, block.word) == (kind, f"{word} {unit}")
     assert kinds(way.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
@@ -150,10 +120,10 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
         kit = robots.load(name).kit
         for sensor in kit.sensors:
             assert kinds(sensor.name, kit) == ["read"]
-            check(f"{sensor.name};SHOW({sensor.name})", kit)
+            check_blocks(f"{sensor.name};SHOW({sensor.name})", kit)
         for actuator in kit.actuators:
             assert kinds(f"{actuator.name}(1)", kit) == ["set"]
-            check(f"{actuator.name}({'TRUE' if actuator.is_yes_no else 1})", kit)
+            check_blocks(f"{actuator.name}({'TRUE' if actuator.is_yes_no else 1})", kit)
 
 
 def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -198,19 +168,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     ],
 )  # fmt: skip
 def test_what_blocks_are_as_text(text: str, printed: str) -> None:
-    assert format_blocks(touched(read_blocks(text, TINIBOT))).text == printed
-
-
-def touched(form: Form) -> Form:
-    """Return blocks of which nothing is known but what they are now."""
-
-    def of(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
-        return tuple(
-            Block(block.kind, block.word, block.values, tuple(map(of, block.bodies)), block.note,
-                  block.is_apart) for block in blocks
-        )  # fmt: skip
-
-    return form._replace(body=of(form.body))
+    assert format_blocks(touched_form(read_blocks(text, TINIBOT))).text == printed
 
 
 def test_who_changes_a_block_changes_its_line_alone() -> None:
@@ -276,7 +234,7 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
 def test_other_comments_with_three_signs_stay_comments(text: str) -> None:
     form = read_blocks(text, TINIBOT)
     assert form.loose == () and form.body[0].kind == "comment"
-    assert comments(format_blocks(form).text) == comments(text)
+    assert comment_words(format_blocks(form).text) == comment_words(text)
 
 
 def test_what_is_typed_into_a_field_stays_in_its_line() -> None:

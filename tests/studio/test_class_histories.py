@@ -14,23 +14,18 @@ from typing import Any
 
 import pytest
 
-from tests.support.class_room import FakeRobot, Room
-from tiniscript.studio import classroom
+from tests.support.class_room import FakeRobot, Room, without_ports
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import HERE_S, PLACE_S, QUEUE_S, REST_S
 from tiniscript.studio.robot_link import BadRequest
 
+__all__ = ["without_ports"]  # a fixture
 Json = dict[str, Any]
 SEEDS = 20
 STEPS = 80
 ROBOTS = 2
 NAMES = ("Ana", "Luz", "Teo", "Eva", "Ivo")
 LESSONS = ("01_first_line", "02_there_and_back", "03_turns")
-
-
-@pytest.fixture(autouse=True)
-def without_ports(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(classroom, "list_ports", list)
 
 
 class Page:

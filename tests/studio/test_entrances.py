@@ -14,9 +14,9 @@ from typing import Any
 
 import pytest
 
-from tests.sharing.test_peers import linux, pair
 from tests.support import page_server
 from tests.support.page_server import serves
+from tests.support.socket_pairs import connected_pair
 from tests.support.waiting import HANGS_S, until
 from tiniscript.link.sharing import peers
 from tiniscript.studio import serving
@@ -61,7 +61,7 @@ class Clock:
 @pytest.fixture
 def peer() -> Iterator[socket.socket]:
     """A connection of this user."""
-    here, there = pair()
+    here, there = connected_pair()
     with here, there:
         yield here
 
@@ -170,7 +170,7 @@ def post(own: str, token: str, request: object, path: str = serving.ROBOTS_PATH)
     return status, json.loads(data) if status == 200 else data.decode()
 
 
-@linux
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
 @pytest.mark.root
 @pytest.mark.parametrize("is_class", [False, True])
 def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(

@@ -13,8 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.studio.test_class_histories import without_ports  # noqa: F401
-from tests.support.class_room import HERE, Room
+from tests.support.class_room import HERE, Room, without_ports
 from tests.support.waiting import HANGS_S, until
 from tiniscript.studio import groups
 from tiniscript.studio.class_keeping import MOST_PUPILS
@@ -23,6 +22,7 @@ from tiniscript.studio.robot_link import BadRequest
 from tiniscript.together.form import data_of_change
 from tiniscript.together.page import Page
 
+__all__ = ["without_ports"]  # a fixture
 Json = dict[str, Any]
 NAMES = ("Ana", "Luz", "Teo", "Eva", "Ivo")
 TEXT = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"

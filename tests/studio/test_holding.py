@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import pytest
 
-from tests.studio.test_simulation import lines, started_run
 from tests.support.casefile import ROOT
+from tests.support.page_simulation import started_simulation, trace_of
 from tiniscript import run
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
@@ -44,17 +44,17 @@ def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
 
 
 def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
-    simulation = started_run(COUNT, is_held=True)
+    simulation = started_simulation(COUNT, is_held=True)
     assert simulation.state()["events"] == [[simulation.robot.now_ms, "START", -1]]
     assert list(steps(COUNT, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
     wanted = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
-    assert list(steps(text, started_run(text, is_held=True))) == wanted
+    assert list(steps(text, started_simulation(text, is_held=True))) == wanted
 
 
 def test_variables_are_told_where_it_is_held() -> None:
-    simulation = started_run(COUNT, is_held=True)
+    simulation = started_simulation(COUNT, is_held=True)
     found = []
     while simulation.held_at is not None:
         found.append(simulation.state()["variables"])
@@ -93,18 +93,18 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
     found = []
     for at in ((), (2,)):
-        simulation = started_run(text, at)
+        simulation = started_simulation(text, at)
         while simulation.robot.is_running:
             simulation.go_on()
             simulation.go(50)
-        found.append(lines(simulation))
+        found.append(trace_of(simulation))
     assert found[0] == found[1] == ["2 BEEP 440 100", "100 DONE"]
 
 
 def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
     """The looks of an UNTIL, fifty in a second, are one stay."""
     text = "LOOP(2);\n  W(1) UNTIL(DISTANCE < 3);\nEND_LOOP"
-    simulation = started_run(text, at=(1,))
+    simulation = started_simulation(text, at=(1,))
     times = []
     while simulation.robot.is_running:
         if simulation.held_at is not None:
@@ -115,7 +115,7 @@ def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
 
 
 def test_nothing_passes_while_it_is_held() -> None:
-    simulation = started_run("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
     simulation.go(5000)
     state = simulation.state()
     assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
@@ -125,7 +125,7 @@ def test_nothing_passes_while_it_is_held() -> None:
 
 def test_a_stop_ends_a_held_program() -> None:
     """And nothing of it is done any more."""
-    simulation = started_run("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
     simulation.go(5000)
     simulation.state()
     simulation.set_breakpoints(())
@@ -136,7 +136,7 @@ def test_a_stop_ends_a_held_program() -> None:
 
 
 def test_a_program_that_never_waits_is_held_too() -> None:
-    simulation = started_run(
+    simulation = started_simulation(
         "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), at=(1,)
     )
     for _ in range(5):
@@ -150,7 +150,7 @@ def test_a_program_that_never_waits_is_held_too() -> None:
 
 
 def test_its_button_starts_a_program_that_can_be_held_again() -> None:
-    simulation = started_run("SB|F(0.2, 80);SHOW(5)", at=(1,))
+    simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", at=(1,))
     for ends in (simulation.stop, simulation.go_on):
         simulation.go(100)
         simulation.push()
@@ -162,8 +162,10 @@ def test_its_button_starts_a_program_that_can_be_held_again() -> None:
 
 
 def test_offsets_outside_of_the_program_hold_nothing() -> None:
-    simulation = started_run("F(0.1, 80)")
+    simulation = started_simulation("F(0.1, 80)")
     simulation.set_breakpoints([-1, 5000, 70_000, 1 << 40])
     simulation.go(2000)
     assert not simulation.robot.is_running
-    assert lines(simulation) == [f"{event.ms} {event.text}" for event in run("F(0.1, 80)").events]
+    assert trace_of(simulation) == [
+        f"{event.ms} {event.text}" for event in run("F(0.1, 80)").events
+    ]

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.studio.test_lost_requests import Asker
+from tests.support.asking_page import AskingPage
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript import compile, robots
@@ -25,7 +25,7 @@ STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
 HERE = "192.0.2.9"
 
 
-class Hand(Asker):
+class Hand(AskingPage):
     """A page that drives by hand."""
 
     number = 0

@@ -10,15 +10,15 @@ import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
-from typing import Any, ClassVar, cast
+from typing import ClassVar, cast
 
 import pytest
 
-from tests.support.command import FOREVER
+from tests.support.asking_page import AskingPage, Json
 from tests.support.node import in_node
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
-from tiniscript import compile, robots
+from tiniscript import robots
 from tiniscript.studio import classroom
 from tiniscript.studio import hosting as hosting_of
 from tiniscript.studio.attending import Attending
@@ -26,7 +26,6 @@ from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import RobotLink
 
-Json = dict[str, Any]
 BEAT_MS = 100
 LOOK_MS = 20
 RUN = {"do": "upload", "runs": True}
@@ -260,38 +259,6 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
         assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
 
 
-class Asker:
-    """A page of `tsc studio`, or a pupil's, with a robot behind a pty."""
-
-    def __init__(self, answer: Callable[[Json], Json], port: str) -> None:
-        self.answer = answer
-        self.port = port
-        self.news: list[Json] = []
-        self._number = 0
-
-    def asks(self, do: str, *asked: Json, connection: int = 1, **more: object) -> Json:
-        seen = max((each["number"] for each in self.news), default=0)
-        request = {"do": do, "page": "me", "connection": connection, "port": self.port,
-                   "robot": "tinibot", "language": "en", "seen": seen, "asked": list(asked),
-                   **more}  # fmt: skip
-        answer = self.answer(request)
-        self.news += [each for each in answer.get("news", ()) if each["number"] > seen]
-        return answer
-
-    def beats_until(self, is_so: Callable[[Json], object], what: str, **more: Any) -> None:
-        def looks() -> bool:
-            self.asks("beat", **more)
-            return any(is_so(each) for each in self.news)
-
-        until(looks, what)
-
-    def run(self, stops: int) -> Json:
-        self._number += 1
-        seen = max(each["number"] for each in self.news)
-        return {"do": "upload", "id": self._number, "image": compile(FOREVER).image.hex(),
-                "robot": "tinibot", "runs": True, "stops": stops, "seen": seen}  # fmt: skip
-
-
 @pytest.fixture
 def robot() -> Iterator[PtyRobot]:
     with PtyRobot(robots.load("tinibot").kit) as pty_robot:
@@ -301,18 +268,18 @@ def robot() -> Iterator[PtyRobot]:
 @pytest.fixture(params=["page", "pupil"])
 def asker(
     request: pytest.FixtureRequest, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Asker]:
+) -> Iterator[AskingPage]:
     """One that has met its robot, and may ask as often as a test looks."""
     monkeypatch.setattr(classroom, "REQUEST_RATE", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
-        made = Asker(hosting.answer, robot.port)
+        made = AskingPage(hosting.answer, robot.port)
     else:
         room = Classroom(hosting, [robot.port])
         join = {"do": "join", "code": room.code, "name": "Ana"}
         token = room.answer("", "192.0.2.9", join)["token"]
         room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
-        made = Asker(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
+        made = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
     assert made.asks("connect") == {}
     made.beats_until(lambda each: "connected" in each, "it is met")
     yield made
@@ -320,7 +287,7 @@ def asker(
 
 
 def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
-    asker: Asker, robot: PtyRobot
+    asker: AskingPage, robot: PtyRobot
 ) -> None:
     def heard(stops: int) -> bool:
         return "news" in asker.asks("beat", stops=stops)
@@ -347,7 +314,9 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
         drives(1)
 
 
-def test_a_connect_whose_answer_is_lost_is_offered_again(asker: Asker, robot: PtyRobot) -> None:
+def test_a_connect_whose_answer_is_lost_is_offered_again(
+    asker: AskingPage, robot: PtyRobot
+) -> None:
     """It is the same one, or the page's next one takes its port over; one that is late does
     nothing."""
 

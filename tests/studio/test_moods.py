@@ -7,7 +7,7 @@ import random
 from pathlib import Path
 from typing import Any
 
-from tests.studio.test_robot_drawing import STILL, of, pictures
+from tests.support.drawn_robots import STANDING_STILL, drawings_of, shapes
 from tests.support.node import in_node
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
@@ -103,15 +103,15 @@ def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
     calm = {"mood": "calm", "ahead": 0, "aside": 0, "isBlinking": False}
     looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
     for name in ("tinibot", "liner", "grabber"):
-        drawn = pictures(*((name, None, {**STILL, "face": face}) for face in looks))
+        drawn = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
         assert len({json.dumps(each) for each in drawn}) == len(looks), name
-        ahead, left = pictures(
-            (name, None, {**STILL, "face": {**calm, "ahead": 1}}),
-            (name, None, {**STILL, "face": {**calm, "aside": 1}}),
+        ahead, left = drawings_of(
+            (name, None, {**STANDING_STILL, "face": {**calm, "ahead": 1}}),
+            (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
-        pupils = [of(each, "fill", "#20242a") for each in (drawn[0], ahead, left)]
+        pupils = [shapes(each, "fill", "#20242a") for each in (drawn[0], ahead, left)]
         still, to_front, to_left = ([row for row in each if len(row) == 5] for each in pupils)
         assert [a[0] > b[0] for a, b in zip(to_front, still, strict=True)].count(True) == 2
         assert [a[1] > b[1] for a, b in zip(to_left, still, strict=True)].count(True) == 2
-        (own,) = pictures((name, None, {**STILL, "colours": ["#123456", "#654321"]}))
-        assert of(own, "fill", "#123456") and of(own, "stroke", "#654321")
+        (own,) = drawings_of((name, None, {**STANDING_STILL, "colours": ["#123456", "#654321"]}))
+        assert shapes(own, "fill", "#123456") and shapes(own, "stroke", "#654321")

@@ -11,12 +11,11 @@ from typing import Any
 
 import pytest
 
-from tests.studio.test_second_time_page import made
-from tests.support.node import in_node
+from tests.support.node import in_node, page_data
 from tiniscript.link.remote import REPEAT_MS
 from tiniscript.studio import classroom
 
-__all__ = ["made"]
+__all__ = ["page_data"]
 
 WAYS_SCRIPT = Path(__file__).with_name("keys_in_node.mjs")
 SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
@@ -37,55 +36,55 @@ def told(path: Path, *story: Any) -> list[Any]:
     return [[ms, *held] for ms, _, *held in played(path, *story)["told"]]
 
 
-def test_it_is_said_at_each_change_and_again_while_it_is_held(made: Path) -> None:
+def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
     found = told(
-        made, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
+        page_data, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
     )  # fmt: skip
     assert REPEAT_MS == 200
     assert found == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
 
 
-def test_a_stick_goes_where_the_finger_is_and_returns_with_it(made: Path) -> None:
+def test_a_stick_goes_where_the_finger_is_and_returns_with_it(page_data: Path) -> None:
     found = told(
-        made, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
+        page_data, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
         ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
     )  # fmt: skip
     assert found == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NOTHING]]
 
 
-def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(made: Path) -> None:
+def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: Path) -> None:
     found = told(
-        made, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
+        page_data, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
         ["down", "stick", 3, 99, 60], ["move", "stick", 3, 99, 60], ["up", "stick", 3],
         ["up", "stick", 1], ["down", "KEY_A", 4], ["up", "KEY_A", 2], ["cancel", "KEY_A", 4],
     )  # fmt: skip
     assert found == [[0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING]]
 
 
-def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(made: Path) -> None:
+def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data: Path) -> None:
     both = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
-    assert told(made, WHOLE, *both) == [
+    assert told(page_data, WHOLE, *both) == [
         [0, UP, 0, 0], [0, UP | A, 0, 0], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
     stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
-    assert told(made, stick, *both) == [
+    assert told(page_data, stick, *both) == [
         [0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
-    assert told(made, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
+    assert told(page_data, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
         [0, 0, 0, 100], [0, 0, -71, 71],
     ]  # fmt: skip
 
 
 @pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
-def test_keys_that_are_somebody_elses(made: Path, more: dict[str, Any]) -> None:
+def test_keys_that_are_somebody_elses(page_data: Path, more: dict[str, Any]) -> None:
     """Of a field, of the browser, or of one that was held before."""
-    assert told(made, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
+    assert told(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
 
 
-def test_a_button_that_has_the_focus_is_held_by_the_space_bar(made: Path) -> None:
+def test_a_button_that_has_the_focus_is_held_by_the_space_bar(page_data: Path) -> None:
     on = {"on": "KEY_A"}
-    assert told(made, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
+    assert told(page_data, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
         [0, A, 0, 0],
         [0, *NOTHING],
     ]
@@ -97,10 +96,10 @@ LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
 
 
 @pytest.mark.parametrize("end", LET_GO, ids=str)
-def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(made: Path, end: list[Any]) -> None:
+def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: list[Any]) -> None:
     gamepad = ["gamepads", [[0, -1], [0]]]
     found = told(
-        made, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
+        page_data, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
         ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
         WHOLE, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}], ["passes", 500],
         ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
@@ -111,15 +110,16 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(made: Path, end: list[
     assert [held for _, *held in found[let_go + 1 :]] == [[32, 0, 0]]
 
 
-def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(made: Path) -> None:
+def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
     """It was let go in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
-    assert [held for _, *held in told(made, WHOLE, *story)] == [[32, 0, 0], NOTHING, [UP, 0, 0]]
+    helds = [held for _, *held in told(page_data, WHOLE, *story)]
+    assert helds == [[32, 0, 0], NOTHING, [UP, 0, 0]]
 
 
-def test_a_gamepad_holds_until_it_is_unplugged(made: Path) -> None:
+def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
     found = told(
-        made, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
+        page_data, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
         ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
         ["passes", 500],
     )  # fmt: skip
@@ -127,31 +127,34 @@ def test_a_gamepad_holds_until_it_is_unplugged(made: Path) -> None:
     assert found[1][0] - found[0][0] <= 20, "it need not be told of"
 
 
-def test_what_the_program_reads_is_there_and_nothing_else(made: Path) -> None:
+def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> None:
     for reads in (ALL, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
         driven = ["offer", "driving", {"reads": reads}]
         parts = [each for each in reads if each.startswith("KEY")]
         stick = ["stick"] if any(each.startswith("PAD") for each in reads) else []
-        assert played(made, driven)["shown"] == parts + stick
-    assert played(made, WHOLE, ["offer", "driving", None])["shown"] == []
-    assert played(made, ["offer", "link", {"reads": ALL}])["shown"] == []  # another one is seen
+        assert played(page_data, driven)["shown"] == parts + stick
+    assert played(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
+    another = ["offer", "link", {"reads": ALL}]  # than the one that is seen
+    assert played(page_data, another)["shown"] == []
 
 
-def test_a_robot_without_a_remote_control_is_told_nothing(made: Path) -> None:
+def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
     deaf = ["offer", "link", {"reads": ALL, "isDeaf": True}]
     found = played(
-        made, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
+        page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
         ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
     )  # fmt: skip
     assert found["told"] == [] == found["shown"]
     assert found["said"].startswith("This robot has no remote control.")
 
 
-def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(made: Path) -> None:
+def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
+    page_data: Path,
+) -> None:
     """The one before hears that all is let go."""
     real = ["offer", "link", {"reads": ALL}]
     found = played(
-        made, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
+        page_data, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
         ["passes", 500],
     )  # fmt: skip
@@ -161,15 +164,15 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(made
     ]  # fmt: skip
 
 
-def test_the_same_robot_that_is_offered_again_is_held_on(made: Path) -> None:
-    found = told(made, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190])
+def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> None:
+    found = told(page_data, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190])
     assert found == [[0, UP, 0, 0], [200, UP, 0, 0]]
 
 
 @pytest.mark.parametrize("way", ["host", "direct"])
-def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(made: Path, way: str) -> None:
+def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(page_data: Path, way: str) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
-    found = json.loads(in_node(WAYS_SCRIPT, str(made), way)[0])
+    found = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
     moved = [y for _, y in found["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
     assert found["sent"][-1][1] == 0

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_lost import lose_answer, refuse, tears
 from tests.support import studio
 from tests.support.class_pages import joined, said, teaches
 from tests.support.command import FOREVER
@@ -31,6 +30,7 @@ from tests.support.studio import (
     speak,
     write,
 )
+from tests.support.torn_requests import lose_answer, refuse, tear_requests
 from tests.support.waiting import until
 from tiniscript import compile, robots
 from tiniscript.studio.attending import LATCH_S
@@ -203,7 +203,7 @@ def test_three_pupils_share_a_robot(
 @drawn
 def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(ana: Page, shared: Pages) -> None:
     for tear, times in ((lose_answer, 2), (refuse, 3)):
-        tears(ana, "connect", tear, times)
+        tear_requests(ana, "connect", tear, times)
         asks(ana)
         if times == 3:  # as often as the page tries it by itself
             ana.click("#class_pupil [data-text=link_connect]")

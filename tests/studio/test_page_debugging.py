@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
 from tests.support.page_robot import running, value
 from tests.support.studio import checked, colors_of, in_phase, noted, shown, write
 from tiniscript import run
@@ -17,24 +18,11 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 drawn = pytest.mark.sampled(of="breakpoints of the page", keep=3)
 
-COUNT = """SI|X = 0;
-LOOP(3);
-  X = X + 1; W(0.1);
-  // a note
-  SHOW(X * X);
-
-END_LOOP"""
-
 
 @pytest.fixture
 def page(page: Page) -> Page:
     page.select_option("#speed", "20")
     return page
-
-
-def press_margin(page: Page, line: int) -> None:
-    numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
-    numbers.filter(has_text=str(line)).last.click()
 
 
 def points(page: Page) -> int:
@@ -46,7 +34,7 @@ def held(page: Page, line: int) -> None:
 
 
 def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> None:
-    write(page, COUNT)
+    write(page, COUNTING_PROGRAM)
     press_margin(page, 5)
     page.click("#run")
     for x in (1, 2, 3):
@@ -57,14 +45,14 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
         page.click("#pause")
     in_phase(page, "ended")
     assert value(page, "X") == "3"
-    wanted = [f"{event.ms} {event.text}" for event in run(COUNT).events]
+    wanted = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
 
 
 @drawn
 def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
     """And only the left button sets one."""
-    write(page, COUNT)
+    write(page, COUNTING_PROGRAM)
     numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
     numbers.filter(has_text="5").last.click(button="right")
     numbers.filter(has_text="3").last.click(button="middle")
@@ -115,7 +103,7 @@ def test_one_line_has_several_breakpoints(page: Page) -> None:
 
 @drawn
 def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
-    write(page, COUNT)
+    write(page, COUNTING_PROGRAM)
     press_margin(page, 3)
     page.click("#view_blocks")
     shown(page)
@@ -214,7 +202,7 @@ def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
 
 @drawn
 def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:
-    write(page, COUNT)
+    write(page, COUNTING_PROGRAM)
     page.click("#seen_plot")
     page.click("#run")
     in_phase(page, "ended")

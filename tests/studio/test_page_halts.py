@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio import test_page_debugging as debugging
-from tests.studio.test_page_held import SERIAL
+from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
 from tests.support.page_link import connect, first, first_robot, page, pages, robot, said
 from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
+from tests.support.silent_serial import SILENT_SERIAL
 from tests.support.studio import UPLOADS, Pages, checked, enter, hears, write
 from tiniscript import robots
 from tiniscript.flash.ready import title_of
@@ -31,7 +31,7 @@ __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
 # A program, and the lines of its breakpoints.
 PROGRAMS = {
-    "loop": (debugging.COUNT, (5,)),
+    "loop": (COUNTING_PROGRAM, (5,)),
     "first and last": ("N = 2;\nFAR = 3 > N;\nF(0.05, 60);\nSHOW(FAR);\nN = N / 4", (1, 5)),
     "DEF": ("DEF TWICE(A);\nSHOW(A + A);\nEND_DEF;\nX = 4;\nTWICE(X);\nTWICE(X / 8)", (2, 5)),
     "UNTIL": ("K = 0;\nLOOP(3);\nK = K + 1;\nF(0.2, 80) UNTIL(K > 2);\nEND_LOOP;\nSHOW(K)", (4, 6)),
@@ -52,7 +52,7 @@ def at_rest(page: Page, robot: PtyRobot) -> Iterator[None]:
 def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
     write(page, text)
     for line in lines:
-        debugging.press_margin(page, line)
+        press_margin(page, line)
 
 
 def is_halted(page: Page) -> bool:
@@ -165,7 +165,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     put(page, LOOP, ())
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
-    debugging.press_margin(page, 4)
+    press_margin(page, 4)
     halts(page, 4)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+Home")
@@ -173,14 +173,14 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     checked(page)
     page.click("#link_go_on")
     halts(page, 4)  # of the text that it has
-    debugging.press_margin(page, 5)
+    press_margin(page, 5)
     page.click("#link_go_on")
     robot.until(lambda: robot.moves, "it drives")
     page.wait_for_timeout(500)
     assert page.locator("html[data-halt=running]").count()
     page.click("#stop")
     said(page, "Stopped: ")
-    debugging.press_margin(page, 5)
+    press_margin(page, 5)
     page.click("#link_send")
     said(page, "The robot has the program")
     page.click("#link_start")
@@ -212,7 +212,7 @@ def test_a_robot_has_the_first_four(page: Page) -> None:
         halts(page, line)
         page.click("#link_go_on")
     said(page, "Done.")
-    debugging.press_margin(page, 1)
+    press_margin(page, 1)
     told.wait_for(state="hidden")
 
 
@@ -226,7 +226,7 @@ def test_a_robot_that_cannot_halt_says_so_and_runs(
         connect_again(page, robot)
         write(page, "SHOW(1);\nSHOW(2)")
         assert told.is_hidden()
-        debugging.press_margin(page, 2)
+        press_margin(page, 2)
         assert "This robot cannot stop at breakpoints." in told.inner_text()
         page.click("#link_upload")
         said(page, "Done.")
@@ -260,18 +260,18 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
     other.route("**/*.hex", lambda route: route.fulfill(body=":00"))
     other.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
-    other.add_init_script(SERIAL)
+    other.add_init_script(SILENT_SERIAL)
     enter(other, pages.entrance())
     other.click("#view_text")
     connect(other, robot)
     write(other, "SHOW(1);\nSHOW(2)")
     offered = other.locator("#link_get_halting")
     assert offered.is_hidden()
-    debugging.press_margin(other, 2)
+    press_margin(other, 2)
     offered.wait_for()
-    debugging.press_margin(other, 2)
+    press_margin(other, 2)
     offered.wait_for(state="hidden")
-    debugging.press_margin(other, 2)
+    press_margin(other, 2)
     offered.click()
     said(other, "but the robot no longer reads typed text")
     assert other.locator("html[data-robot=none]").count() == 1

@@ -13,6 +13,7 @@ import pytest
 from tests.support import studio
 from tests.support.node import in_node
 from tests.support.page_link import said
+from tests.support.silent_serial import SILENT_SERIAL
 from tests.support.studio import Pages, checked, enter, hears
 from tiniscript.studio import serving
 
@@ -24,32 +25,6 @@ drawn = pytest.mark.sampled(of="held files and ports", keep=2)
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
 STUCK = "The port no longer accepts data."
-# A serial port that takes no bytes: what is written never ends, until it is aborted.
-SERIAL = """
-const port = window.port = {
-  opened: 0,
-  isOpen: false,
-  getInfo: () => ({}),
-  setSignals: async () => {},
-  async open() {
-    if (this.isOpen) throw new DOMException('open', 'InvalidStateError');
-    this.opened += 1;
-    this.isOpen = true;
-    this.readable = new ReadableStream();
-    let free;
-    this.writable = new WritableStream({
-      start(controller) { controller.signal.addEventListener('abort', () => free?.()); },
-      write: () => new Promise((resolve) => { free = resolve; }),
-    });
-  },
-  async close() {
-    this.isOpen = false;
-  },
-};
-Object.defineProperty(navigator, 'serial', {
-  value: { getPorts: async () => [port], requestPort: async () => port },
-});
-"""
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +71,7 @@ class Held:
 def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -> Page:
     """A page beside a port that takes no bytes; it may be on a clock of the test."""
     page = pages.blank(is_alone=True)
-    page.add_init_script(SERIAL)
+    page.add_init_script(SILENT_SERIAL)
     if has_clock:
         page.clock.install()
     enter(page, server.address)

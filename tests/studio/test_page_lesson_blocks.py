@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.lessons.test_forms import has_line_on_floor, of_text
 from tests.support.page_blocks import drag, offered, start
 from tests.support.sampling import some_of
 from tests.support.studio import SETTLED, Pages, axe, shown, speak
+from tests.support.text_only_words import has_line_on_floor, text_only_words
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio import page_lessons
@@ -203,8 +203,8 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
         for k in range(page.locator("#lesson_steps button").count()):
             page.locator("#lesson_steps button").nth(k).click()
             said, codes, on_blocks, names = page.evaluate(READ)
-            assert of_text(said, language, is_line_on_floor=is_line_on_floor) == []
-            assert of_text(names, language, is_line_on_floor=True) == []
+            assert text_only_words(said, language, is_line_on_floor=is_line_on_floor) == []
+            assert text_only_words(names, language, is_line_on_floor=True) == []
             assert not [code for code in codes if code in WORDS or not code.isidentifier()], codes
             assert not [each for each in on_blocks if NO_LABEL.search(each)], on_blocks
             found += len(on_blocks)

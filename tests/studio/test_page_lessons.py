@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.page_lessons import check_answer, choose_lesson
 from tests.support.sampling import some_of
 from tests.support.studio import (
     SETTLED,
@@ -27,12 +28,11 @@ from tiniscript.lessons import catalogue
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+FOLDERS = catalogue.folders()
 drawn = pytest.mark.sampled(of="details of lessons", keep=3)
 
-FOLDERS = catalogue.folders()
 NIGHT = "39,50,75"
 SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
-PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 
 
 @pytest.fixture
@@ -44,31 +44,14 @@ def page(page: Page) -> Page:
     return page
 
 
-def choose(page: Page, number: int) -> None:
-    """See the task of a lesson."""
-    page.select_option("#lesson", str(number))
-    page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
-    page.locator("#lesson_steps button").last.click()
-    page.locator("#lesson_check:enabled").wait_for()
-
-
-def check(page: Page, program: str) -> tuple[str, list[str]]:
-    """Let the page check a program; return its verdict and its sentences."""
-    write(page, program)
-    page.click("#lesson_check")
-    page.locator("#lesson_said[data-verdict]").wait_for(timeout=PATIENCE_MS)
-    verdict = page.locator("#lesson_said").get_attribute("data-verdict")
-    return str(verdict), page.locator("#lesson_findings li").all_inner_texts()
-
-
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(6))
 def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, part: int) -> None:
     """What `tsc lesson check` says of each answer is tested with the lessons."""
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
         _, wrong = catalogue.answers(folder)
-        choose(page, number)
-        said = check(page, wrong[0].program)
+        choose_lesson(page, number)
+        said = check_answer(page, wrong[0].program)
         assert said == ("failed", [wrong[0].sentence_by_language["en"], *rest(page)]), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
@@ -77,8 +60,8 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
 @pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
 def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     right, _ = catalogue.answers(FOLDERS[number - 1])
-    choose(page, number)
-    assert check(page, right[0].program) == ("passed", [])
+    choose_lesson(page, number)
+    assert check_answer(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
     wanted = f"Done! You solved lesson {number}{worlds}."
@@ -93,34 +76,34 @@ def rest(page: Page) -> list[str]:
 
 @drawn
 def test_any_program_can_be_checked(page: Page) -> None:
-    choose(page, 1)
+    choose_lesson(page, 1)
     for program, verdict in (
         ("", "failed"), ("FF(2, 80)", "mistakes"), ("PING|F(1, 80)", "mistakes"),
         ("\0🤖<b>", "mistakes"), ("SI|SHOW(1 / 0 * DISTANCE)", "failed"),
         ("X = 0; SHOW(1 / X)", "failed"),
     ):  # fmt: skip
-        found, said = check(page, program)
+        found, said = check_answer(page, program)
         assert (found, len(said)) == (verdict, verdict == "failed"), program
 
 
 @drawn
 def test_a_check_can_be_ended(page: Page) -> None:
-    choose(page, 9)
+    choose_lesson(page, 9)
     write(page, SLOW)
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     page.click("#lesson_end")
     assert page.inner_text("#lesson_said") == "You stopped the check, so there is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
-    choose(page, 1)
+    choose_lesson(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])
-    assert check(page, right[0].program) == ("passed", [])  # and not the other one's verdict
+    assert check_answer(page, right[0].program) == ("passed", [])  # and not the other one's verdict
 
 
 @drawn
 def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     """The robot stands at the wall that it touched; then the answer comes."""
-    choose(page, 1)
+    choose_lesson(page, 1)
     write(page, "SI|F(5, 80)")
     page.select_option("#speed", "1")
     page.click("#lesson_check")
@@ -136,7 +119,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
 
 @drawn
 def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
-    choose(page, 2)
+    choose_lesson(page, 2)
     write(page, "F(3, 80); W(9)")
     page.select_option("#speed", "1")
     for button in ("#lesson_end", "#stop"):
@@ -152,7 +135,7 @@ RUNNING = ".blocklyBlockCanvas .running, .cm-running"
 
 def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:
     """Whether it has come to its end, to what it missed, or was skipped or stopped."""
-    choose(page, 4)
+    choose_lesson(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
     ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
@@ -187,7 +170,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
         speak(page, language)
         page.locator("#lesson option", has_text=word).wait_for(state="attached")
         assert page.evaluate(CUT_NAMES) == []
-    choose(page, 2)
+    choose_lesson(page, 2)
     assert page.locator("#lesson selectedcontent svg").is_visible()
     steps = page.locator("#lesson_steps button")
     steps.first.click()
@@ -200,7 +183,7 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     page.click("#lesson_hint summary")
     assert "Three instructions" in page.inner_text("#lesson_hint_said")
     right, _ = catalogue.answers(FOLDERS[1])
-    assert check(page, right[0].program)[0] == "passed"
+    assert check_answer(page, right[0].program)[0] == "passed"
     page.get_by_role("button", name="Next lesson").click()
     page.locator("#lesson_page", has_text="behind a block of houses").wait_for()
     assert page.input_value("#lesson") == "3"
@@ -250,9 +233,9 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
 
 
 def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
-    choose(page, 1)
+    choose_lesson(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])
-    assert check(page, right[0].program)[0] == "passed"
+    assert check_answer(page, right[0].program)[0] == "passed"
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
     page.locator("#lesson_said:not([data-verdict])").wait_for(state="attached")
@@ -266,9 +249,9 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
 
 @drawn
 def test_the_world_where_it_failed_is_seen(page: Page) -> None:
-    choose(page, 12)
+    choose_lesson(page, 12)
     _, wrong = catalogue.answers(FOLDERS[11])
-    assert check(page, wrong[0].program)[0] == "failed"
+    assert check_answer(page, wrong[0].program)[0] == "failed"
     said = page.inner_text("#lesson_said")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
@@ -291,7 +274,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
 
 @drawn
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
-    choose(page, 4)
+    choose_lesson(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
     speak(page, "es")
     page.locator("#lesson_page", has_text="repite cuatro veces").wait_for()
@@ -328,9 +311,9 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
         speak(page, "en")
         page.locator("#lesson option", has_text="first line").wait_for(state="attached")
         assert locator.count() == int(k == 0)
-    choose(page, 2)
+    choose_lesson(page, 2)
     page.select_option("#speed", "20")
-    assert check(page, right[0].program)[0] == "passed"
+    assert check_answer(page, right[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
     counts = (0, 2, len(FOLDERS))
     for count in some_of(
@@ -395,8 +378,8 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     page.select_option("#robot", robot)
     write(page, own)
     page.click("#side_lessons")
-    choose(page, 2)
-    choose(page, number)
+    choose_lesson(page, 2)
+    choose_lesson(page, number)
     lesson = catalogue.load(FOLDERS[number - 1])
     noted(page, "Your program is kept, and comes back after the lesson.")
     page.locator("#lesson:enabled").wait_for()
@@ -427,14 +410,14 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
 @drawn
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     """Nobody is told on the start page, and whoever reads on in another language reads why."""
-    choose(page, 7)
+    choose_lesson(page, 7)
     write(page, SLOW)
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     speak(page, "es")
     page.locator("#lesson_said", has_text="No hay resultado").wait_for()
     speak(page, "en")
-    choose(page, 1)
+    choose_lesson(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])
     write(page, right[0].program)
     page.select_option("#speed", "1")
@@ -453,7 +436,7 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
     """What was written in place of a lesson's program is in the list; one's own comes back."""
     own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
     write(page, own)
-    choose(page, 1)
+    choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
     noted(page, "It is in the program now. Your own program is in My programs")
@@ -462,7 +445,7 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
     page.click("#side_virtual")
     write(page, of_lesson)
     page.click("#side_lessons")
-    choose(page, 11)
+    choose_lesson(page, 11)
     noted(page, "The program of the previous lesson is in My programs.")
     page.click("#home")
     page.click("#start_write")
@@ -479,32 +462,32 @@ def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
     write(page, own)
-    choose(page, 1)
+    choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
     write(page, first)
-    choose(page, 2)
+    choose_lesson(page, 2)
     write(page, second)  # in the program that was there
     page.select_option("#lesson", "1")
     noted(page, "Here is your program for this lesson again.")
     assert editor.inner_text() == first
-    choose(page, 3)
+    choose_lesson(page, 3)
     assert not page.locator("#note").is_visible()  # which has none yet
     page.click("#home")
     page.click("#start_write")
     editor.filter(has_text=own).wait_for()
     page.click("#home")
     page.click("#start_lessons")
-    choose(page, 1)
+    choose_lesson(page, 1)
     editor.filter(has_text=first).wait_for()
-    choose(page, 2)
+    choose_lesson(page, 2)
     editor.filter(has_text=second).wait_for()
     page.reload()
     checked(page)
     assert editor.inner_text() == second
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
-    choose(page, 1)
+    choose_lesson(page, 1)
     editor.filter(has_text=first).wait_for()
     page.click("#home")
     page.click("#start_write")
@@ -516,11 +499,11 @@ def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
     for own in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
         write(page, own)
         for number in (1, 11):
-            choose(page, number)
+            choose_lesson(page, number)
         assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]
 
 
 def test_a_room_that_a_lesson_calls_dark_is_dark(page: Page) -> None:
-    choose(page, 13)
+    choose_lesson(page, 13)
     page.locator("#world option:checked", has_text="13").wait_for(state="attached")
     assert NIGHT in colors_of(page, "#arena")

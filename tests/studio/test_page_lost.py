@@ -12,6 +12,7 @@ from tests.support.command import FOREVER
 from tests.support.page_link import KIT, connect, said
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, checked, drives, hang, hears, write
+from tests.support.torn_requests import lose_answer, refuse, tear_requests
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
@@ -68,36 +69,11 @@ def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     pages.wrong.clear()  # a browser complains of each lost request
 
 
-def tears(page: Page, what: str, tear: Callable[[Route], None], times: int = 1) -> list[str]:
-    """Tear so many requests in which `what` is; return the list of those."""
-    torn: list[str] = []
-
-    def handle(route: Route) -> None:
-        data = route.request.post_data or ""
-        if f'"do":"{what}"' not in data or len(torn) >= times:
-            route.continue_()
-            return
-        torn.append(data)
-        tear(route)
-
-    page.route("**/robots", handle)
-    return torn
-
-
-def lose_answer(route: Route) -> None:
-    route.fetch()
-    route.abort()
-
-
-def refuse(route: Route) -> None:
-    route.fulfill(status=500, body="<html>Internal Server Error</html>")
-
-
 def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):
         drives(page, robot)
-        torn = tears(page, "stop", lambda route: route.abort(), times=9)
+        torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
         hears(page, lambda: not robot.moves, "it stands")
         said(page, CONFIRMED)
@@ -109,11 +85,11 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
 def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     drives(page, robot)
-    torn = tears(page, "beat", refuse, times=2)
+    torn = tear_requests(page, "beat", refuse, times=2)
     hears(page, lambda: len(torn) == 2, "they are refused")
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
-    torn = tears(page, "beat", refuse, times=1000)  # but one that goes on is told
+    torn = tear_requests(page, "beat", refuse, times=1000)  # but one that goes on is told
     said(page, "tsc studio has stopped responding")
     assert torn
 
@@ -123,7 +99,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
 def test_a_connect_that_is_lost_comes_again(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
 ) -> None:
-    torn = tears(page, "connect", tear)
+    torn = tear_requests(page, "connect", tear)
     connect(page, robot)
     assert len(torn) == 1
     drives(page, robot)
@@ -133,7 +109,7 @@ def test_a_connect_that_is_lost_comes_again(
 def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page: Page, robot: PtyRobot
 ) -> None:
-    tears(page, "connect", lose_answer, times=3)
+    tear_requests(page, "connect", lose_answer, times=3)
     page.click("#side_real")
     page.click("#link_look")
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
@@ -232,7 +208,7 @@ def test_who_presses_five_times_stops_once_more_and_is_told_once(
     """Be every request of it lost; and the run after it is stopped by none of them."""
     connect(page, robot)
     drives(page, robot)
-    torn = tears(page, "stop", lambda route: route.abort(), times=99)
+    torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
     page.evaluate(LISTEN)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
     said(page, CONFIRMED)
@@ -251,7 +227,9 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
     for has_come in (False, True):
         connect(page, robot)
         drives(page, robot)
-        tears(page, "stop", lose_answer if has_come else lambda route: route.abort(), times=99)
+        tear_requests(
+            page, "stop", lose_answer if has_come else lambda route: route.abort(), times=99
+        )
         page.click("#stop")
         page.reload()
         hears(page, lambda: not robot.moves, "it stands")
@@ -305,7 +283,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
-    torn = tears(page, "beat", lambda route: route.abort(), times=1)
+    torn = tear_requests(page, "beat", lambda route: route.abort(), times=1)
     hears(page, lambda: torn, "a beat is lost")
     page.unroute_all(behavior="wait")
     hang(page, round(1000 * LEFT_S) + 500)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_lessons import FOLDERS, check, choose
-from tests.studio.test_page_watching import NOTING
 from tests.support import studio
 from tests.support.class_pages import joined, teaches
+from tests.support.noted_effects import NOTE_EFFECTS
+from tests.support.page_lessons import check_answer, choose_lesson
 from tests.support.studio import Pages, axe, colors_of, enter, hears, in_phase, write
 from tiniscript.lessons import catalogue
 
@@ -105,17 +105,18 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
     kept(page, DONE, ["01_first_line"])
     kept(page, STARS, {"01_first_line": 1, "04_none": 2})
-    page.evaluate(NOTING)
+    page.evaluate(NOTE_EFFECTS)
     page.evaluate(CONFETTI)
     if way == "muted":
         page.click("#sound")
     page.select_option("#speed", "20")
     page.click("#side_lessons")
-    right, _ = catalogue.answers(FOLDERS[1])
-    worlds = catalogue.load(FOLDERS[1]).world_count
+    folder = catalogue.folders()[1]
+    right, _ = catalogue.answers(folder)
+    worlds = catalogue.load(folder).world_count
     for _ in range(2):
-        choose(page, 2)
-        assert check(page, right[0].program)[0] == "passed"
+        choose_lesson(page, 2)
+        assert check_answer(page, right[0].program)[0] == "passed"
         assert f"You have {3 + worlds} stars." in page.inner_text("#lesson_said")
     assert page.evaluate("window.fell") == (0 if way == "still" else 2)
     tune = [523, 659, 784, 1047]

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
-from tests.support.page_worlds import drag, put, said, saved
+from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, said, saved
 from tests.support.studio import Pages, checked, hears, image, in_phase, noted, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read

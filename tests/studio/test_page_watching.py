@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 
+from tests.support.noted_effects import NOTE_EFFECTS
 from tests.support.studio import Pages, checked, enter, in_phase, shown, write
 from tests.support.waiting import until
 
@@ -17,32 +18,6 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
-# A browser's sound, which only notes what it is told.
-NOTING = """() => {
-  window.heard = []; window.shaken = window.started = window.stopped = 0;
-  const param = () => ({set value(hertz) { window.heard.push(hertz); },
-    setValueAtTime(hertz) { if (hertz > 1) window.heard.push(hertz); },
-    linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {}});
-  const node = () => ({connect: (to) => to});
-  window.AudioContext = class {
-    destination = {};
-    resume() {}
-    suspend() {}
-    get currentTime() { return performance.now() / 1000; }
-    createGain() {
-      return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
-    }
-    createOscillator() {
-      return {...node(), frequency: param(), addEventListener() {},
-        start() { window.started += 1; }, stop(at) { if (at === undefined) window.stopped += 1; }};
-    }
-  };
-  const animate = Element.prototype.animate;
-  Element.prototype.animate = function (...how) {
-    window.shaken += 1;
-    return animate.apply(this, how);
-  };
-}"""
 # The computer's sound, noted as often as it is opened. What closes it after a while is `rest`: the
 # test says when that is over, for a run on a slow computer may last longer.
 OPENED = """window.opened = []; window.closings = 0; window.rest = null;
@@ -82,7 +57,7 @@ def listening(page: Page) -> Page:
     if not page.evaluate("'heard' in window"):
         page.reload()  # what has sounded before is not noted
         checked(page)
-        page.evaluate(NOTING)
+        page.evaluate(NOTE_EFFECTS)
     page.evaluate("window.heard = []; window.shaken = window.started = 0")
     erase(page)
     return page
@@ -117,7 +92,7 @@ def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page
     page.evaluate("() => { window.AudioContext = function () { throw new DOMException('no'); }; }")
     run(page, "BEEP(0.1, 440); SHOW(7)")  # a computer without sound
     assert "SHOW 7" in (page.locator("#trace").text_content() or "")
-    page.evaluate(NOTING)
+    page.evaluate(NOTE_EFFECTS)
     run(page, "BEEP(0.1, 550)")
     assert page.evaluate("window.heard") == [550]
 

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_worlds import drag, on_screen, put, read_start, said, saved
+from tests.support.page_worlds import (
+    NO_BORDER,
+    drag,
+    draw_wall,
+    on_screen,
+    put,
+    read_start,
+    said,
+    saved,
+)
 from tests.support.studio import Pages, checked, in_phase, speak, write
 from tiniscript.virtual import worlds
 
@@ -16,24 +25,6 @@ if TYPE_CHECKING:
 drawn = pytest.mark.sampled(of="kept worlds", keep=2)
 
 OBSTACLES_START = (56, 82.5)
-NO_BORDER = b"""[floor]
-width_cm = 120.06
-height_cm = 80.04
-border = false
-[start]
-x_cm = 118
-y_cm = 78
-"""
-
-
-def draw_wall(page: Page) -> None:
-    """Make a world of one's own, with a wall."""
-    page.select_option("#world", "obstacles")
-    page.click("#world_draw")
-    page.click("#world_add_walls")
-    drag(page, [(60, 30), (100, 60)])
-    assert len(saved(page).walls) == 1
-    page.click("#world_done")
 
 
 def listed(page: Page) -> list[str]:

@@ -4,29 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.support.drawn_robots import DRAW_SCRIPT, STANDING_STILL, Drawing, drawings_of, shapes
 from tests.support.node import in_node
 from tiniscript import compile
 from tiniscript.studio.description import description
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
-SCRIPT = Path(__file__).with_name("draw_in_node.mjs")
-STILL: dict[str, Any] = {"rolled": [0, 0], "isBeeping": False}
 TREAD, LIT, WAVE = "#b9c2cb", "#fff3a8", "#7a2fb8"
-Drawn = list[tuple[str, list[float], str]]
-
-
-def pictures(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawn]:
-    """Return what is drawn of robots, each with its name, its state and what else is seen."""
-    known = {each["name"]: each for each in description()["robots"]}
-    asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
-    found: list[Drawn] = json.loads(in_node(SCRIPT, given=json.dumps(asked))[0])
-    return found
 
 
 def after(text: str, robot: str, ms: int) -> dict[str, Any]:
@@ -34,10 +23,6 @@ def after(text: str, robot: str, ms: int) -> dict[str, Any]:
     simulation = Simulation(robot, worlds.load("obstacles"), compile(text, robot).image)
     simulation.go(ms)
     return json.loads(json.dumps(simulation.state()))  # type: ignore[no-any-return]
-
-
-def of(drawn: Drawn, how: str, color: str) -> list[list[float]]:
-    return [numbers for kind, numbers, found in drawn if (kind, found) == (how, color)]
 
 
 def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
@@ -48,27 +33,27 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
     both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
     asked = [
-        {"robot": robot, "state": {**state, "turned": turned}, "seen": STILL}
+        {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in both
     ]
-    ahead, right = json.loads(in_node(SCRIPT, given=json.dumps(asked))[0])
-    (cone,), (turned_cone,) = (of(drawn, "fill", "#e0452f33") for drawn in (ahead, right))
+    ahead, right = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
+    (cone,), (turned_cone,) = (shapes(drawn, "fill", "#e0452f33") for drawn in (ahead, right))
     assert [a - b for a, b in zip(turned_cone[-2:], cone[-2:], strict=True)] == pytest.approx(
         [-math.pi / 4] * 2
     )
-    jaws = [of(drawn, "stroke", "#37434f") for drawn in (ahead, right)]
+    jaws = [shapes(drawn, "stroke", "#37434f") for drawn in (ahead, right)]
     assert len(jaws[0]) == len(jaws[1]) + 2
 
 
 def test_wheels_turn_as_far_as_they_have_rolled() -> None:
-    still, ahead, back, around, turned = pictures(
-        *(("tinibot", None, {**STILL, "rolled": rolled})
+    still, ahead, back, around, turned = drawings_of(
+        *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
 
-    def treads(drawn: Drawn, is_left: bool) -> list[float]:
+    def treads(drawn: Drawing, is_left: bool) -> list[float]:
         """Where the treads of a wheel are, from the back to the front."""
-        rows = [each for each in of(drawn, "stroke", TREAD) if (each[1] > 0) == is_left]
+        rows = [each for each in shapes(drawn, "stroke", TREAD) if (each[1] > 0) == is_left]
         return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
@@ -84,40 +69,44 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
 def test_what_is_on_is_seen() -> None:
     """A lamp, the robot's own light where its button would start it, and the buzzer's sound."""
     of_rows = (
-        ("grabber", after("LED(TRUE);W(1)", "grabber", 300), STILL),
-        ("grabber", after("W(1)", "grabber", 300), STILL),
-        ("tinibot", after("SB|F(1, 80)", "tinibot", 300), STILL),
-        ("tinibot", after("F(1, 80)", "tinibot", 300), STILL),
-        ("tinibot", None, {**STILL, "isBeeping": True}),
-        ("tinibot", None, STILL),
+        ("grabber", after("LED(TRUE);W(1)", "grabber", 300), STANDING_STILL),
+        ("grabber", after("W(1)", "grabber", 300), STANDING_STILL),
+        ("tinibot", after("SB|F(1, 80)", "tinibot", 300), STANDING_STILL),
+        ("tinibot", after("F(1, 80)", "tinibot", 300), STANDING_STILL),
+        ("tinibot", None, {**STANDING_STILL, "isBeeping": True}),
+        ("tinibot", None, STANDING_STILL),
     )
-    lit, dark, waiting, driving, loud, silent = pictures(*of_rows)
-    assert of(lit, "fill", LIT) and not of(dark, "fill", LIT)
-    assert of(waiting, "fill", "#ffd84d") and not of(driving, "fill", "#ffd84d")
-    assert of(loud, "stroke", WAVE) and not of(silent, "stroke", WAVE)
+    lit, dark, waiting, driving, loud, silent = drawings_of(*of_rows)
+    assert shapes(lit, "fill", LIT) and not shapes(dark, "fill", LIT)
+    assert shapes(waiting, "fill", "#ffd84d") and not shapes(driving, "fill", "#ffd84d")
+    assert shapes(loud, "stroke", WAVE) and not shapes(silent, "stroke", WAVE)
 
 
 def test_the_jaws_are_as_open_as_they_are() -> None:
-    def gap(drawn: Drawn) -> float:
-        right, left = of(drawn, "stroke", "#37434f")
+    def gap(drawn: Drawing) -> float:
+        right, left = shapes(drawn, "stroke", "#37434f")
         return left[-1] - right[-1]
 
     states = [after(f"GRIPPER({each});W(1)", "grabber", 300) for each in (0, 90, 180)]
-    closed, half, wide = map(gap, pictures(*(("grabber", state, STILL) for state in states)))
+    closed, half, wide = map(
+        gap, drawings_of(*(("grabber", state, STANDING_STILL) for state in states))
+    )
     assert closed < half < wide
     assert half - closed == pytest.approx(wide - half)
 
 
 def test_a_cone_is_as_long_as_what_is_read() -> None:
     state = after("W(1)", "tinibot", 300)
-    [drawn] = pictures(("tinibot", state, STILL))
-    [cone] = of(drawn, "fill", "#e0452f33")
+    [drawn] = drawings_of(("tinibot", state, STANDING_STILL))
+    [cone] = shapes(drawn, "fill", "#e0452f33")
     assert cone[4] == state["readings"][2]["value"] > 0  # after the tip and the middle
     far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
     far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
     dim, bright = (
         [color for _, _, color in picture if color.startswith("#e08a1e")]
-        for picture in pictures(("tinibot", far, STILL), ("tinibot", near, STILL))
+        for picture in drawings_of(
+            ("tinibot", far, STANDING_STILL), ("tinibot", near, STANDING_STILL)
+        )
     )
     assert dim[0] < bright[0] and dim[1] == bright[1]  # the other one has not changed
 

@@ -11,9 +11,8 @@ from typing import Any
 
 import pytest
 
-from tests.lessons.test_forms import CAPITALS
-from tests.studio.test_second_time_page import made
-from tests.support.node import in_node
+from tests.support.node import in_node, page_data
+from tests.support.text_only_words import CAPITAL_WORDS
 from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
 from tiniscript.base.words import WORDS
@@ -33,7 +32,7 @@ NEAR = 2  # words beside a block
 STEM = 4  # letters that the forms of a word share
 AGAIN = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
 
-__all__ = ["made"]
+__all__ = ["page_data"]
 
 Parts = list[tuple[bool, str]]
 
@@ -89,11 +88,11 @@ def found_sentences(language: str) -> Iterator[str]:
             )
 
 
-def seen(made: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
+def seen(page_data: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
     """Return the parts of sentences as a page in a language shows them."""
-    (made / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
+    (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
     given = "\n".join(json.dumps(row) for row in rows)
-    lines = in_node(SCRIPT, str(made), given=given)
+    lines = in_node(SCRIPT, str(page_data), given=given)
     assert len(lines) == len(rows)
     return [[(bool(is_block), said) for is_block, said in json.loads(line)] for line in lines]
 
@@ -103,7 +102,7 @@ def spoken_in(found: str) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language: str) -> None:
+def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, language: str) -> None:
     rows = []
     for number in range(1, len(catalogue.folders()) + 1):
         robot = catalogue.load(catalogue.folder_of(str(number))).robot
@@ -112,7 +111,7 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language:
                  for each in sentences_of(number, language, BLOCKS)]  # fmt: skip
     rows += [{"robot": "tinibot", "sentence": each, "spoken": spoken_in(each)}
              for each in found_sentences(language)]  # fmt: skip
-    parts = seen(made, language, rows)
+    parts = seen(page_data, language, rows)
     assert sum(is_block for row in parts for is_block, _ in row) > 100
     wrong = {"".join(f"[{said}]" if is_block else said for is_block, said in row): found
              for row in parts if (found := twice(row))}  # fmt: skip
@@ -120,7 +119,7 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(made: Path, language:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_a_warning_names_its_code_as_blocks_do(made: Path, language: str) -> None:
+def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -> None:
     """Of each code the program that its explanation has; the end of a block has no name."""
     learn = json.dumps({"do": "check", "robot": "tinibot", "language": language})
     warned = [code for code, about in CODES.items() if not about.is_mistake]
@@ -133,11 +132,11 @@ def test_a_warning_names_its_code_as_blocks_do(made: Path, language: str) -> Non
     said = [finding["on_blocks"] for finding in findings]
     rows = [{"robot": "tinibot", "sentence": each[part], "spoken": each["spoken"]}
             for each in said for part in ("message", "fix")]  # fmt: skip
-    parts = seen(made, language, rows)
+    parts = seen(page_data, language, rows)
     assert {finding["code"] for finding in findings} > set(warned[:5])
     assert sum(is_block for row in parts for is_block, _ in row) > len(warned)
     plain = [part for row in parts for is_block, part in row if not is_block]
-    left = [part for part in plain for word in CAPITALS.findall(part)
+    left = [part for part in plain for word in CAPITAL_WORDS.findall(part)
             if word in WORDS and not word.startswith("END")]  # fmt: skip
     assert left == []
 

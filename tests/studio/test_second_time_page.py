@@ -12,12 +12,9 @@ from typing import Any
 
 import pytest
 
-from tests.support.node import in_node
-from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
-from tiniscript.studio import block_kinds
-from tiniscript.studio.description import description
-from tools.builds.page_texts import page_texts
+from tests.support.node import in_node, page_data
 
+__all__ = ["page_data"]  # a fixture
 SCRIPT = Path(__file__).with_name("second_time_in_node.mjs")
 SEEDS = 80
 # What the first one has to have met, for the row to be about something.
@@ -62,22 +59,10 @@ ENDS = {
 }
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the build makes for the page's sources."""
-    folder = tmp_path_factory.mktemp("made")
-    content = {"languages": [(code, language_info(code).name) for code in languages()], "lock": {},
-               "description": description(), "blocks": block_kinds.table_data(),
-               "texts": page_texts(SOURCE_LANGUAGE)}  # fmt: skip
-    for name, value in content.items():
-        (folder / f"{name}.json").write_text(json.dumps(value), encoding="utf-8")
-    return folder
-
-
 @pytest.mark.sampled("part", keep=3)
 @pytest.mark.parametrize("part", ENDS)
-def test_it_is_as_on_a_page_that_was_just_loaded(made: Path, part: str) -> None:
-    lines = in_node(SCRIPT, str(made), part, str(SEEDS))
+def test_it_is_as_on_a_page_that_was_just_loaded(page_data: Path, part: str) -> None:
+    lines = in_node(SCRIPT, str(page_data), part, str(SEEDS))
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == SEEDS
     assert ENDS[part] <= {end for row in rows for end in row["ends"]}

@@ -9,29 +9,15 @@ from collections.abc import Callable, Iterable
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.page_simulation import started_simulation, trace_of
 from tests.support.virtual_robot import Talk, trace
 from tiniscript import compile
 from tiniscript.robots import load
 from tiniscript.studio import worker
 from tiniscript.studio.checking import check
-from tiniscript.studio.simulation import Marks, Simulation
+from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
-
-
-def lines(simulation: Simulation) -> list[str]:
-    events = simulation.robot.take_events()
-    return trace(events)
-
-
-def started_run(
-    text: str, at: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
-) -> Simulation:
-    """Return a simulation of a program with breakpoints in front of those parts of its text."""
-    found = check(text.encode(), robot, "en")
-    parts = tuple(place.offset for place in found.places)
-    marks = Marks(parts, tuple(parts[k] for k in at), len(found.variables), is_held)
-    return Simulation(robot, worlds.load("obstacles"), found.image, marks)
 
 
 @pytest.mark.parametrize(
@@ -50,14 +36,14 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
     talk = Talk(other)
     talk.upload(text)
     talk.wait(8000)
-    ours, theirs = lines(simulation), trace(other.take_events())
+    ours, theirs = trace_of(simulation), trace(other.take_events())
     shorter = min(len(ours), len(theirs)) - 5  # the two were uploaded at other times
     assert shorter > 10 and ours[:shorter] == theirs[:shorter]
 
 
 def test_it_is_told_which_part_of_the_text_runs() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
-    simulation = started_run(text)
+    simulation = started_simulation(text)
     simulation.go(300)
     assert simulation.state()["at"] in range(3) and not simulation.state()["is_held"]
     simulation.step(5000)
@@ -84,7 +70,7 @@ END_TASK
 
 def test_it_is_told_where_each_task_is() -> None:
     """The parts that wait; a task that has ended is nowhere."""
-    simulation = started_run(TASKS, robot="tinibot32")
+    simulation = started_simulation(TASKS, robot="tinibot32")
     places = check(TASKS.encode(), "tinibot32", "en").places
 
     def lit() -> set[int]:
@@ -102,21 +88,21 @@ def test_it_is_told_where_each_task_is() -> None:
     assert lit() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
-    plain = started_run("W(1)")
+    plain = started_simulation("W(1)")
     plain.go(500)
     assert plain.state()["places"] == [plain.state()["at"]]
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
-    free, simulation = (started_run(TASKS, at, robot="tinibot32") for at in ((), parts))
+    free, simulation = (started_simulation(TASKS, at, robot="tinibot32") for at in ((), parts))
     free.go(600)
     held: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
         held.add(simulation.held_at)
         simulation.go_on()
         simulation.go(1)
-    assert lines(simulation) == lines(free)
+    assert trace_of(simulation) == trace_of(free)
     places = [place.offset for place in check(TASKS.encode(), "tinibot32", "en").places]
     assert {places[k] for k in parts} <= held
 
@@ -143,7 +129,10 @@ PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> None:
     """Each stop is one, whatever has stopped the robot before."""
     rng = random.Random(seed)
-    fresh, simulation = started_run(PUSHED), started_run(PUSHED, is_held=rng.random() < 0.3)
+    fresh, simulation = (
+        started_simulation(PUSHED),
+        started_simulation(PUSHED, is_held=rng.random() < 0.3),
+    )
     parts = simulation.marks.part_offsets
     acts: list[Callable[[], object]] = [
         simulation.push,
@@ -169,7 +158,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
         each.push()
         each.go(1500)
         assert each.held_at is None
-        seen.append(lines(each))
+        seen.append(trace_of(each))
     assert seen[0] == seen[1] and len(seen[0]) > 10
 
 
@@ -185,7 +174,7 @@ def test_a_fault_is_named() -> None:
     found = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
     place = max(place for place in found.places if place.offset <= state["fault_at"])
     assert (place.line, place.column) == (1, 14)
-    state = started_run("X = 0; SHOW(1 / X)").state()  # at once
+    state = started_simulation("X = 0; SHOW(1 / X)").state()  # at once
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
 
 
@@ -194,7 +183,7 @@ STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
 
 def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
     """For half a second of the robot's time, however long that takes."""
-    simulation = started_run(STICK)
+    simulation = started_simulation(STICK)
     for _ in range(5):
         simulation.press(0, 0, 60)
         simulation.go(400)
@@ -210,7 +199,7 @@ def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
 
 
 def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
-    simulation = started_run(STICK, at=(1,))
+    simulation = started_simulation(STICK, at=(1,))
     simulation.go(100)
     assert simulation.held_at is not None
     for _ in range(3):

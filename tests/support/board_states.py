@@ -104,3 +104,20 @@ ISR(PCINT1_vect) { tiniscript::motors_stop(); }
 __attribute__((constructor)) static void begin() { PCICR = 1 << 1; PCMSK1 = 1 << 5; }
 """
 LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
+# What the shipped robots do not have: a lamp that is on when its pin is low, a fan, a threshold
+WORKSHOP = (
+    ("[[kit.sensors]]", '[[kit.sensors]]\nname = "BRIGHT"\nkind = "yes/no"\n\n[[kit.sensors]]'),
+    (
+        "[board]\n",
+        '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-30000, 30000]\n\n' + LAMP,
+    ),
+    ("bluetooth_state = 12", ""),
+    ("right_forward = 9", "right_forward = 12"),
+    (
+        "[body]\n",
+        '[board.actuators.FAN]\ndriver = "pwm"\npin = 9\n\n'
+        '[board.actuators.LAMP]\ndriver = "digital"\npin = "A5"\nyes_is_low = true\n\n'
+        '[board.sensors.BRIGHT]\ndriver = "threshold"\npin = "A2"\nthreshold = 600\n'
+        "yes_is_low = true\n\n[body]\n",
+    ),
+)

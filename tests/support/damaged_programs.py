@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from tests.pupils.corpus import check
-from tests.pupils.test_pupils import mistakes
+from tests.pupils.corpus import check, mistake_count
 from tests.support.casefile import ROOT, read
 
 
@@ -15,4 +14,4 @@ def programs() -> list[str]:
     found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
     for page in sorted((*ROOT.glob("tests/cases/*.md"), *ROOT.glob("docs/*/lang*.md"))):
         found += [case.parts["tiniscript"] for case in read(page) if "tiniscript" in case.parts]
-    return [text for text in found if len(text) < 600 and not mistakes(check(text))]
+    return [text for text in found if len(text) < 600 and not mistake_count(check(text))]

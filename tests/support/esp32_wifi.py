@@ -58,3 +58,11 @@ def state(robot: Esp32Robot, owner: Session) -> tuple[str, str]:
 
 def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
     return Session(nonce, 115200, robot.robot.kit.fingerprint, keys=keys)
+
+
+def remote_with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
+    wrong = Keys()
+    wrong.stored_keys = [
+        robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.stored_keys
+    ]
+    return remote(robot, wrong, nonce)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tests.machines.host_firmware import HostFirmware
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
 from tests.support.robot_on_host import computer, outcome, switched_on
-from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.image import pack, with_checksum
 from tiniscript.link.messages import SAVED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -36,3 +36,22 @@ def program_after_power_off(robot: HostFirmware) -> bytes:
 def bytes_of(text: str) -> bytes:
     image = image_of(text)
     return pack(image.start, image.devices, image.code)
+
+
+def later_version_image(code: bytes, start: str = "SI") -> bytes:
+    """Return an image of a later version, 3.0."""
+    image = pack(start, 0, code)
+    return with_checksum(image[:2] + b"\3\0" + image[4:])
+
+
+LATER_VERSION = later_version_image(b"\x44\x32\x50")
+
+
+def eeprom_with(*slots: tuple[int, int, bytes]) -> bytes:
+    """Return an EEPROM with images: the place of each slot, its generation, and what it holds."""
+    memory = bytearray(EMPTY)
+    for place, generation, image in slots:
+        mark = generation ^ 0xA5
+        body = bytes([image[0] ^ generation]) + image[1:]
+        memory[place : place + 4 + len(image)] = bytes([generation, mark, mark, mark]) + body
+    return bytes(memory)

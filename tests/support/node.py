@@ -1,14 +1,21 @@
-"""The page's own sources in node: a script of the tests plays a part of the page, no browser."""
+"""The page's own sources and data in node: a script plays a part of the page, no browser."""
 
 from __future__ import annotations
 
+import json
 import subprocess
 from pathlib import Path
 
+import pytest
+
 from tests.support.needs import need
 from tests.support.waiting import HANGS_S
+from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
+from tiniscript.studio import block_kinds
 from tiniscript.studio.building import SOURCES
+from tiniscript.studio.description import description
 from tools import CannotMake
+from tools.builds.page_texts import page_texts
 from tools.builds.studio import find_tools
 
 
@@ -25,3 +32,15 @@ def in_node(script: Path, *words: str, given: str = "") -> list[str]:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
+
+
+@pytest.fixture(scope="module")
+def page_data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the build makes for the page's sources."""
+    folder = tmp_path_factory.mktemp("page_data")
+    content = {"languages": [(code, language_info(code).name) for code in languages()], "lock": {},
+               "description": description(), "blocks": block_kinds.table_data(),
+               "texts": page_texts(SOURCE_LANGUAGE)}  # fmt: skip
+    for name, value in content.items():
+        (folder / f"{name}.json").write_text(json.dumps(value), encoding="utf-8")
+    return folder

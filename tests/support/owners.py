@@ -13,12 +13,13 @@ from tiniscript import robots
 from tiniscript.link.authority import KeyRing, RobotKey, ownership_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
-from tiniscript.link.messages import BY_NAME, STATUS_NAMES
+from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, STATUS_NAMES
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit
 PRESSED, RELEASED, HELD = 1, 2, 32
 FOREVER = "SI|F(200, 40)"
+OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}  # of a robot with an owner
 
 
 class Keys(KeyRing):
@@ -149,3 +150,16 @@ def owner_of(table: Owned, session: Session) -> str:
 
 def state_of(table: Owned, session: Session) -> int:
     return table.robot.done(session, session.status()).state
+
+
+def grants_key_request(sent: bytes) -> bool:
+    """Return whether an answer says that something was done for which it takes a key."""
+    frame = decode_frame(sent)
+    if frame is None or frame.number not in BY_NUMBER or not frame.payload:
+        return False
+    message = BY_NUMBER[frame.number]
+    if message.name == "AUTHENTICATE":  # a challenge is for anybody
+        is_open = len(frame.payload) == 1 + 2 + 8
+    else:
+        is_open = message.name in OPEN_TO_ALL or message.number >= FIRST_EVENT
+    return frame.payload[0] == 0 and not is_open

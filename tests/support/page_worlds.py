@@ -15,6 +15,14 @@ if TYPE_CHECKING:
 
 
 Place = tuple[float, float]
+NO_BORDER = b"""[floor]
+width_cm = 120.06
+height_cm = 80.04
+border = false
+[start]
+x_cm = 118
+y_cm = 78
+"""
 
 
 def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
@@ -63,3 +71,13 @@ def put(page: Page, data: bytes, name: str = "own.toml") -> None:
     page.set_input_files(
         "#world_file", {"name": name, "mimeType": "application/toml", "buffer": data}
     )
+
+
+def draw_wall(page: Page) -> None:
+    """Make a world of one's own, with a wall."""
+    page.select_option("#world", "obstacles")
+    page.click("#world_draw")
+    page.click("#world_add_walls")
+    drag(page, [(60, 30), (100, 60)])
+    assert len(saved(page).walls) == 1
+    page.click("#world_done")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Client, End, LowEnergy, SerialPort, talk
+from tests.support.esp32_radio import Client, End, LowEnergy, Network, SerialPort, talk
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
@@ -16,6 +16,7 @@ from tiniscript.link.session import Session
 AWAY = "SI|F(60, 80)"
 Make = Callable[[Esp32Robot], End]
 RADIOS: list[Make] = [LowEnergy, SerialPort]
+TRANSPORTS: list[Make] = [*RADIOS, Network]
 Ends = list[tuple[End | None, Client]]
 
 

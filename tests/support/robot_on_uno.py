@@ -23,6 +23,10 @@ MOTORS = [name for name in NAMES if "left" in name or "right" in name]
 OFF = dict.fromkeys(MOTORS, "low")
 FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
 AWAY = "SI|F(70, 80)"
+OBSTACLE_LINES = (
+    "SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);", "    STOP;",
+    "    R(1, 60);", "  ENDIF;", "END_LOOP;",
+)  # fmt: skip
 
 
 def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:

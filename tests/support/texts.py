@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 from tiniscript.base.languages import languages, texts
+from tiniscript.diagnostics import rendering
 
 LANGUAGES = languages()
 
@@ -21,3 +23,13 @@ def said(language: str, name: str = "command") -> dict[str, str]:
 def in_all(key: str) -> list[str]:
     """Return a text of the command in each language, English first."""
     return [said(language)[key] for language in languages()]
+
+
+def gap_names(code: str) -> set[str]:
+    """Return the names of the gaps in a code's message and thing to try, which all need a value.
+
+    Of several texts only the last one has to be filled: it is taken where no other is.
+    """
+    both = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
+                   for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip
+    return set(re.findall(r"\{@?(\w+)\}", both))

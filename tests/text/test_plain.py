@@ -14,6 +14,7 @@ from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import ROOT
 from tests.support.images import image_for
 from tests.support.kits import KITS
+from tests.support.number_codes import NUMBER_CODES
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
 from tests.support.vm_agreement import same
@@ -116,22 +117,7 @@ def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
     assert names(text) == says
 
 
-NUMBERS = [
-    ("0", "b0"), ("-0", "b0"), ("10", "ba"), ("11", "01 0b"), ("20", "bb"), ("90", "c2"),
-    ("100", "c3"), ("110", "01 6e"), ("255", "01 ff"), ("256", "02 00 01"), ("-1", "0c f6"),
-    ("-12.8", "0c 80"), ("-12.9", "03 9c cd"), ("-13", "02 f3 ff"), ("12.7", "0c 7f"),
-    ("12.8", "03 00 32"), ("0.001", "03 01 00"), ("32.767", "03 ff 7f"), ("-32.768", "03 00 80"),
-    ("32.768", "04 00 80 00 00"), ("-32.769", "04 ff 7f ff ff"), ("32767", "02 ff 7f"),
-    ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("-32769", "04 18 fc 0b fe"),
-    ("300.5", "04 d4 95 04 00"), ("2147483.647", "04 ff ff ff 7f"),
-    ("-2147483.6484", "04 00 00 00 80"),
-    # what is after the third decimal is rounded
-    ("1.0005", "03 e9 03"), ("0.0995", "0c 01"), ("0.9995", "b1"), ("0.0004999", "b0"),
-    ("-0.0005", "03 ff ff"), ("000000000000000005.000000000", "b5"),
-]  # fmt: skip
-
-
-@each_row("number, code", NUMBERS)
+@each_row("number, code", NUMBER_CODES)
 def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
     """In optimised code, too."""
     assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"

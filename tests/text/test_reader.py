@@ -8,10 +8,10 @@ import pytest
 
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
 from tests.support.casefile import all_cases
+from tests.support.number_codes import NUMBER_CODES
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
-from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import MOST_CHARACTERS, PROBLEMS
@@ -404,7 +404,7 @@ def test_a_way_keeps_its_bracket_open() -> None:
 # -- code ---------------------------------------------------------------------------------------
 
 
-@each_row("number, code", NUMBERS)
+@each_row("number, code", NUMBER_CODES)
 def test_shortest_push(number: str, code: str) -> None:
     assert one(f"SHOW({number})").code.hex(" ") == f"{code} 39"
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import ssl
 from random import Random
 from time import monotonic
 
 import pytest
 
+from tests.support.foreign_protocols import FOREIGN_GREETINGS, tls_hello
 from tests.support.rows import each_row
 from tests.support.simulator_visits import PING, received, until, until_answered, visit
 from tests.support.virtual_robot import floor, robot_in
@@ -28,15 +28,6 @@ from tiniscript.virtual.transports import MOST_CALLERS
 def verdicts(data: bytes) -> list[bool | None]:
     """Return what is found of all beginnings of data, the shortest first."""
     return [sniff_robot_client(data[:k]) for k in range(len(data) + 1)]
-
-
-def tls_hello() -> bytes:
-    """What a browser says first for https."""
-    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
-    tls = ssl.create_default_context().wrap_bio(there, back, server_hostname="localhost")
-    with contextlib.suppress(ssl.SSLWantReadError):
-        tls.do_handshake()
-    return back.read()
 
 
 def frame(name: str, epoch: int = 0, seq: int = 1, **values: int | bytes) -> bytes:
@@ -58,36 +49,10 @@ def program() -> bytes:
     return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
 
 
-STUN = bytes.fromhex("2112a442") + bytes(range(1, 13))  # its cookie and a transaction
-NOT_FOR_ROBOTS = {
-    "get": b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
-    "get of old": b"GET /\r\n",
-    "post": b"POST /any?a=b HTTP/1.1\r\nContent-Length: 5\r\n\r\n",
-    "lower case": b"post / http/1.1\r\n",
-    "options": b"OPTIONS * HTTP/1.1\r\n",
-    "head": b"HEAD / HTTP/1.0\n",
-    "connect": b"CONNECT localhost:80 HTTP/1.1\r\n",
-    "proxy": b"GET http://localhost/ HTTP/1.1\r\n",
-    "any method": b"PING| / HTTP/1.1\r\n",
-    "a method like a program": b"SI|F / HTTP/1.1\r\n",
-    "http 2": b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-    "tabs": b"POST\t/\tHTTP/1.1\r\n",
-    "empty lines": b"\r\n\r\nPOST / HTTP/1.1\r\n",
-    "after a zero": b"\0POST / HTTP/1.1\r\n",
-    "a long address": b"ANY /" + b"a" * 10_000 + b" HTTP/1.1\r\n",
-    "tls": tls_hello(),
-    "ssl 3": b"\x16\x03\x00\x00\x50\x01",
-    "stun": b"\0\1\0\x14" + STUN,
-    "turn": b"\0\3\0\x08" + STUN,
-    "framed stun": b"\0\x28\0\1\0\x14" + STUN,
-    "long framed stun": b"\2\x28\0\1\2\x14" + STUN,
-}
-
-
-@each_row("name", NOT_FOR_ROBOTS)
+@each_row("name", FOREIGN_GREETINGS)
 def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
     """However slowly it comes, byte by byte."""
-    data = NOT_FOR_ROBOTS[name]
+    data = FOREIGN_GREETINGS[name]
     found = verdicts(data)
     assert True not in found
     assert found[-1] is False
@@ -160,7 +125,7 @@ def _has_moved(simulator: Simulator) -> bool:
 
 
 def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
-    for header in (NOT_FOR_ROBOTS["post"], NOT_FOR_ROBOTS["any method"], tls_hello(), b""):
+    for header in (FOREIGN_GREETINGS["post"], FOREIGN_GREETINGS["any method"], tls_hello(), b""):
         with visit(simulator) as client:
             for part in (header[:3], header[3:], program()):
                 with contextlib.suppress(ConnectionError):
@@ -179,7 +144,7 @@ def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulato
         first.sendall(PING)
         until(simulator, lambda: simulator.transports.visit_count == 1)
         with visit(simulator) as page:
-            page.sendall(NOT_FOR_ROBOTS["post"] + program())
+            page.sendall(FOREIGN_GREETINGS["post"] + program())
             simulator.turn(0.01)
             until_let_go(simulator, page)
     until(simulator, lambda: not simulator.transports.is_connected)

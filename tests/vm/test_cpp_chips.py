@@ -29,11 +29,11 @@ from tests.oracle import programs
 from tests.support import avr_tasks, cpp_checks
 from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import Case
+from tests.support.edge_codes import kit_with_sensors, unverified_code
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
 from tests.support.random_codes import jump, random_codes, simple
 from tests.support.vm_cases import disassemblies_alone, having
-from tests.vm.test_cpp_edges import changed_code, kit_of
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import assemble
@@ -157,9 +157,9 @@ def test_some_random_codes(chip: str, seed: int) -> None:
 @some_chips(avr.UNO)
 def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not too early."""
-    kit, senses = kit_of(SENSORS), Senses(max_ms=100, max_steps=100)
+    kit, senses = kit_with_sensors(SENSORS), Senses(max_ms=100, max_steps=100)
     endings = set()
-    for code, caught in changed_code(len(kit.readings)):
+    for code, caught in unverified_code(len(kit.readings)):
         if code not in LENIENT:
             want = "DONE" if caught is None else "BAD_CODE"
             said = avr.answer(chip, b"U" + run_request(code, kit, senses))

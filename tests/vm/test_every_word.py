@@ -18,7 +18,7 @@ from tests.machines.python import run_python
 from tests.oracle import interpreter
 from tests.oracle.programs import WIDE_KIT
 from tests.sketch.agreement import with_wide_kit
-from tests.studio import test_blocks as blocks
+from tests.support.block_agreement import check_blocks
 from tests.support.reader_agreement import check_bytes, check_program
 from tests.support.sampling import some_of
 from tests.support.text_lines import check_line
@@ -65,7 +65,7 @@ def check(text: str) -> bool:
             got = run(image, KIT, SENSES)
             assert same(want, got), f"{text}\n{got}not\n{want}"
     assert compile_text(format_source(Source(text)), KIT).image == compiled.image, text
-    blocks.check(text, KIT)
+    check_blocks(text, KIT)
     check_line(text, KIT)
     check_program(text.encode(), KIT, SENSES)
     program = compiled.program

@@ -15,32 +15,25 @@ import re
 import zlib
 from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
 from tests.support.casefile import ROOT, all_cases, example_robot
+from tests.support.released_programs import (
+    FIRST_VERSION,
+    FOLDER,
+    ReleasedProgram,
+    file_of_version,
+    released_programs,
+)
 from tiniscript import ProgramError, __version__, check, robots, run
 from tiniscript.base.kit import KIT_WORDS_SINCE
 from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.library.named_robot import shipped_name_in
 
-FOLDER = Path(__file__).parent
-FIRST = "0.2.0"
 READINGS = (50, 9, 300, 20)  # of each sensor, as far as it reaches
 ROWS = 12  # of a trace that are written out
-
-
-class Old(NamedTuple):
-    robot: str
-    text: str
-    trace: str
-
-
-def file_of(version: str) -> Path:
-    return FOLDER / f"programs_of_{version.replace('.', '_')}.txt"
 
 
 def versions() -> list[str]:
@@ -49,13 +42,7 @@ def versions() -> list[str]:
     return sorted(name.replace("_", ".") for name in names)
 
 
-def programs(version: str = FIRST) -> list[Old]:
-    parts = re.findall(r"(?m)^= (\w+)\n((?:.*\n)*?)((?:> .*\n)*)(?:\n|\Z)(?=\Z|= )",
-                       file_of(version).read_text(encoding="utf-8"))  # fmt: skip
-    return [Old(robot, text, trace) for robot, text, trace in parts]
-
-
-def trace_of(old: Old) -> str:
+def trace_of(old: ReleasedProgram) -> str:
     """Return the trace as the file has it."""
     kit = robots.load(old.robot).kit
     sensors: dict[str, list[float | bool]] = {
@@ -75,23 +62,25 @@ def names_a_newer_word(text: str) -> bool:
     return any(re.search(rf"(?i)\b(?:{word}\s*=|DEF\s+{word})", text) for word in VERSION_OF_WORD)
 
 
-def of_this_version() -> Iterator[Old]:
+def of_this_version() -> Iterator[ReleasedProgram]:
     """Yield the programs of documents, examples, cases and lessons: some compile, some do not."""
     for path in sorted((ROOT / "examples").glob("*.ts")):
-        yield Old(example_robot(path), path.read_text(encoding="utf-8"), "")
+        yield ReleasedProgram(example_robot(path), path.read_text(encoding="utf-8"), "")
     for case in all_cases():
         named = re.search(r"(?m)^robot = (\w+)", case.parts.get("senses", ""))
-        yield Old(named[1] if named else "tinibot", case.parts.get("tiniscript", ""), "")
+        yield ReleasedProgram(
+            named[1] if named else "tinibot", case.parts.get("tiniscript", ""), ""
+        )
     for folder in catalogue.folders():
         robot = catalogue.load(folder).robot
         for answers in catalogue.answers(folder):
-            yield from (Old(robot, answer.program, "") for answer in answers)
+            yield from (ReleasedProgram(robot, answer.program, "") for answer in answers)
 
 
 def written() -> str:
     """Return the file of this version."""
     before = [version for version in versions() if version != __version__]
-    earlier = {old[:2] for version in before for old in programs(version)}
+    earlier = {old[:2] for version in before for old in released_programs(version)}
     parts: dict[tuple[str, str], str] = {}
     for old in of_this_version():
         text = old.text.rstrip("\n") + "\n"
@@ -99,14 +88,14 @@ def written() -> str:
         is_plain = text.strip() and not re.search("(?m)^[=>] ", text)
         if is_plain and (robot, text) not in earlier and robot in robots.names():
             with suppress(ProgramError):
-                parts[robot, text] = trace_of(Old(robot, text, ""))
+                parts[robot, text] = trace_of(ReleasedProgram(robot, text, ""))
     return "\n".join(f"= {robot}\n{text}{trace}" for (robot, text), trace in parts.items())
 
 
 @pytest.mark.parametrize("version", versions())
 def test_they_compile_still_and_do_the_same(version: str) -> None:
-    olds = [old for old in programs(version) if not names_a_newer_word(old.text)]
-    assert len(olds) > (300 if version == FIRST else 0)
+    olds = [old for old in released_programs(version) if not names_a_newer_word(old.text)]
+    assert len(olds) > (300 if version == FIRST_VERSION else 0)
     changed = []
     for old in olds:
         try:
@@ -121,7 +110,7 @@ def test_they_compile_still_and_do_the_same(version: str) -> None:
 def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
     """Each of these words is a name in one of them."""
     named = set()
-    for old in programs():
+    for old in released_programs():
         messages = [message for message in check(old.text, old.robot) if message.code == "TS842"]
         if messages:
             assert all(message.severity == "warning" for message in messages)
@@ -130,7 +119,7 @@ def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
 
 
 def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
-    olds = [old for old in programs() if names_a_newer_word(old.text)]
+    olds = [old for old in released_programs() if names_a_newer_word(old.text)]
     assert len(olds) >= 5
     for old in olds:
         (message,) = check(old.text, old.robot)
@@ -156,10 +145,10 @@ def test_each_release_has_its_programs() -> None:
     """From the first one on that kept them, as CHANGELOG names them: a patch has no new ones."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     released = re.findall(r"(?m)^## (\d+\.\d+\.0) \(", text)
-    assert released[released.index(FIRST) :: -1] == versions(), (
+    assert released[released.index(FIRST_VERSION) :: -1] == versions(), (
         "python -m tests.vm.test_programs_of_releases writes those of this version"
     )
 
 
 if __name__ == "__main__":
-    file_of(__version__).write_text(written(), encoding="utf-8")
+    file_of_version(__version__).write_text(written(), encoding="utf-8")

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from tests.machines import Senses
-from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tests.support.cpp_checks import check_round, run_late, some_task_programs
+from tests.support.imported_modules import modules_imported_by
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
@@ -141,7 +141,7 @@ def test_without_wasmtime_the_next_step_is_said(tsc: Tsc, monkeypatch: pytest.Mo
 
 def test_python_runs_without_wasmtime() -> None:
     """Nobody waits for what they did not ask for."""
-    modules = imported_by(
+    modules = modules_imported_by(
         "from tiniscript.cli import main; assert main(['run', '-e', 'F(1, 50)']) == 0"
     )
     assert "tiniscript.vm.machine" in modules

@@ -12,9 +12,15 @@ from collections.abc import Callable
 from statistics import median
 from typing import NamedTuple
 
-from tests.firmware.test_board_sonar import US_PER_CM, approaching, driven_ms, pings, wire
 from tests.machines.board import BUILT_IN, Board, built
 from tests.support.board_states import START, STEADY
+from tests.support.sonar import (
+    US_PER_CM,
+    approaching_obstacle,
+    driven_ms,
+    ping_starts_ms,
+    sonar_pins,
+)
 from tiniscript import compile_text, robots
 from tiniscript.robots import firmware
 from tools.bench import page
@@ -58,12 +64,12 @@ def board_of(text: str, is_trusting: bool) -> Board:
 
 
 def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
-    true_distances, heard_distances = approaching(seed, SAMPLE_COUNT)
+    true_distances, heard_distances = approaching_obstacle(seed, SAMPLE_COUNT)
     board = board_of(LOOK_PROGRAM, is_trusting)
-    trigger, echo = wire(board.robot)
+    trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
-    ping_times_ms = pings(board.ran(START + 2900), trigger)
+    ping_times_ms = ping_starts_ms(board.ran(START + 2900), trigger)
     readings = driven_ms(board, 1)
     wrong_count = 0
     for ms in readings:
@@ -79,12 +85,12 @@ def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool
     `distances` says how far it is so many ms after the first ping, which is `phase` of a ping late.
     """
     board = board_of(STOP_PROGRAM, is_trusting)
-    trigger, echo = wire(board.robot)
+    trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
     phase_ms = phase * PING_INTERVAL_MS
     distances_cm = [distances(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
-    first_ping_ms = pings(board.ran(START + 1500), trigger)[0]
+    first_ping_ms = ping_starts_ms(board.ran(START + 1500), trigger)[0]
     near_ms = next(ms for ms in range(1500) if distances(ms + phase_ms) < NEAR_CM)
     known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)
     return known_ms - first_ping_ms - near_ms

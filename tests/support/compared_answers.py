@@ -1,0 +1,36 @@
+"""What two robots answered, compared: without what each counts for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.requests import OK
+
+COUNTS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
+
+
+def answer_without_counts(request: PendingRequest[Any] | None, *but: str) -> object:
+    """Return how a request ended, and its values without some and without counts."""
+    if request is None or request.outcome is None:
+        return None
+    outcome = request.outcome
+    return outcome.status, without_counts(outcome.values, *but) if outcome.status == OK else None
+
+
+def without_counts(values: Any, *but: str) -> object:
+    """Return values without some, and without what is counted since the robot was switched on."""
+    if not hasattr(values, "_asdict"):
+        return values
+    return [
+        (name, value) for name, value in values._asdict().items() if name not in (*COUNTS, *but)
+    ]
+
+
+def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
+    """Return what two have in common, and what only the first one has then."""
+    alike = 0
+    while found[alike : alike + 1] == wanted[alike : alike + 1]:
+        alike += 1
+    return f"{found[:alike]}\n{found[alike:][:4]}\nnot\n{wanted[alike:][:4]}"

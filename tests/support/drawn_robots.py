@@ -1,0 +1,26 @@
+"""Pictures of the virtual robot, drawn by the page's own code in node."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from tests.support.casefile import ROOT
+from tests.support.node import in_node
+from tiniscript.studio.description import description
+
+DRAW_SCRIPT = ROOT / "tests" / "studio" / "draw_in_node.mjs"
+STANDING_STILL: dict[str, Any] = {"rolled": [0, 0], "isBeeping": False}
+Drawing = list[tuple[str, list[float], str]]
+
+
+def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
+    """Return what is drawn of robots, each with its name, its state and what else is seen."""
+    known = {each["name"]: each for each in description()["robots"]}
+    asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
+    found: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(asked))[0])
+    return found
+
+
+def shapes(drawn: Drawing, how: str, color: str) -> list[list[float]]:
+    return [numbers for kind, numbers, found in drawn if (kind, found) == (how, color)]

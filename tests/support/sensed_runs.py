@@ -1,0 +1,59 @@
+"""Runs of a whole robot on this computer while what its sensors see changes.
+
+Its line takes as long for a byte as one of 9600 baud, or a little more or less.
+"""
+
+from __future__ import annotations
+
+import random
+from struct import pack
+from typing import NamedTuple
+
+from tests.machines.host_firmware import TICKS
+from tests.support.debugging import Debugged
+from tests.support.robot_on_host import KIT
+from tests.support.shown_in_loops import Did, apart_ms
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import ReadingEvent
+from tiniscript.link.requests import OK
+
+RUN_MS = 2500
+BYTE_TICKS = round(TICKS * 10_000 / 9600)
+MOST_APART_MS = 1  # a byte
+
+
+class SensedRun(NamedTuple):
+    did: list[Did]
+    events: list[Event]
+    seen: list[list[int]]  # what each sensor had, one after the other
+
+    @property
+    def readings(self) -> list[ReadingEvent]:
+        return [event for event in self.events if isinstance(event, ReadingEvent)]
+
+
+def sensed_run(
+    text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30
+) -> SensedRun:
+    """Run a program while what its sensors see changes; it is told or not."""
+    robot = Debugged(text)
+    assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
+    rng, seen = random.Random(seed), [[0] for _ in KIT.sensors]
+    first = len(robot.robot.did)
+    robot.start()
+    robot.robot.ask(b"P", bytes([byte_ticks]))
+    events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
+    while robot.robot.now_ms < end_ms:
+        for each in seen:
+            each.append(each[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
+        values = [each[-1] for each in seen]
+        robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
+        events += robot.talk(rng.randint(1, most_ms))
+    rows = (line.split(" ", 1) for line in robot.robot.did[first:])
+    return SensedRun([(float(ms), what) for ms, what in rows], events, seen)
+
+
+def is_steady(text: str, seed: int) -> bool:
+    """Whether a program does the same at the same times on a line that is 5 % slower or faster."""
+    usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
+    return all(apart_ms(usual, other) <= MOST_APART_MS for other in others)

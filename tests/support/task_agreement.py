@@ -1,0 +1,47 @@
+"""How the compiler and the machines are compared with the oracle on a random program with tasks."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+
+from tests.machines import Machine, Senses
+from tests.machines.python import run_python
+from tests.oracle.interpreter import PAPER_KIT, Mistake, run
+from tests.oracle.task_programs import task_program
+from tiniscript import Compilation, compile_text, robots
+from tiniscript.base.source import Source
+from tiniscript.bytecode.image import unpack
+from tiniscript.syntax.formatter import format_source
+
+KIT = robots.load("tinibot").kit
+MAX_MS = 600
+
+
+def compare_task_program(
+    seed: int, machines: Sequence[Machine] = (run_python,), needs: int = 0
+) -> str:
+    """Compare the traces of one random program on some machines; return how it ended.
+
+    With the `needs` of a way it has some.
+    """
+    rng = random.Random(seed)
+    both: list[Compilation] = []
+    while not both or unpack(both[0].image).needs & needs != needs:
+        text, senses = task_program(rng, ways=needs != 0)
+        both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
+        try:
+            want = run(text, PAPER_KIT, senses, MAX_MS)
+        except Mistake:  # DEFs that are called too deep in all tasks together
+            assert not any(each.is_right for each in both), f"seed {seed}:\n{text}"
+            both = []
+            continue
+        assert all(each.is_right for each in both), f"seed {seed}:\n{text}"
+    for image in dict.fromkeys(each.image for each in both):  # often they are the same
+        for machine in machines:
+            got = machine(image, KIT, Senses(senses, MAX_MS))
+            assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
+    laid_out = format_source(Source(text))
+    assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
+    assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"
+    return want.split()[-1]

@@ -1,0 +1,36 @@
+"""Requests of the page to `tsc studio` that are torn on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Route
+
+
+def tear_requests(
+    page: Page, what: str, tear: Callable[[Route], None], times: int = 1
+) -> list[str]:
+    """Tear so many requests in which `what` is; return the list of those."""
+    torn: list[str] = []
+
+    def handle(route: Route) -> None:
+        data = route.request.post_data or ""
+        if f'"do":"{what}"' not in data or len(torn) >= times:
+            route.continue_()
+            return
+        torn.append(data)
+        tear(route)
+
+    page.route("**/robots", handle)
+    return torn
+
+
+def lose_answer(route: Route) -> None:
+    route.fetch()
+    route.abort()
+
+
+def refuse(route: Route) -> None:
+    route.fulfill(status=500, body="<html>Internal Server Error</html>")
