@@ -85,6 +85,26 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
     assert program_after_power_off(robot) == bytes_of(text)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: int) -> None:
+    """Sent again, after another one, after a power-off, or with a supply that was low."""
+    chance, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
+    robot, session = switched_on(), computer()
+    for nonce in range(2, 8):
+        text = chance.choice(texts)
+        robot.supply(is_low=chance.random() < 0.3)
+        send(robot, session, text, saves=chance.random() < 0.7)
+        robot.talk(session, chance.randrange(1500))
+        if chance.random() < 0.5:
+            robot, session = switched_on(robot.memory()), computer(nonce)
+        else:
+            robot.supply(is_low=False)
+        text = chance.choice([text, *texts])
+        send(robot, session, text)
+        stored(robot, session)
+        assert program_after_power_off(robot) == bytes_of(text)
+
+
 # -- names and trims ------------------------------------------------------------------------------
 
 
