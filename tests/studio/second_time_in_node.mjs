@@ -764,6 +764,33 @@ const PARTS = {
     };
   },
 
+  // A file with a class's work is opened. Some works get lost, and the class takes no others: how many it has is said.
+  async keeping() {
+    const page = freshPage();
+    await learns(page);
+    const { openWork } = await page.load('class/keeping.js');
+    const { CLASS } = await page.load('page/words.js');
+    let chanceNow = () => 1;
+    let takenCount = 0;
+    playsFetch(async () => {
+      await later(1);
+      if (chanceNow() < 0.2) throw new Broken();
+      if (chanceNow() < 0.2) return { ok: false, status: 413 };
+      takenCount += 1;
+      return answers({});
+    });
+    return async (chance) => {
+      chanceNow = chance;
+      takenCount = 0;
+      const pupils = Array.from({ length: chance.below(6) }, (_, k) => ({ name: `P${k}`, text: 'F(1)', robot: '', lessons: [] }));
+      const opened = openWork({ size: 9, text: async () => JSON.stringify({ tiniscript_class: CLASS.form, pupils }) });
+      await passes(50);
+      const openedCount = await opened;
+      if (openedCount !== (takenCount || null)) throw new Error(`${openedCount} works are said to be open, and the class has ${takenCount}`);
+      return { ends: [takenCount ? 'some' : 'none'], seen: [] };
+    };
+  },
+
   // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
   // what they have now, and no other picture is kept; what is seen large is as it is now, or closed; a run is played,
   // though an earlier one never came.

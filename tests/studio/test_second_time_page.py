@@ -34,6 +34,7 @@ ENDS = {
     "asking": {"stays", "goes"},
     "python": {"error", "not fetched", "silent"},
     "sharing": {"share_line", "share_link"},
+    "keeping": {"none", "some"},
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
     "robots": {"again", "line", "senses", "startAgain", "step", "twice", "watch"},
