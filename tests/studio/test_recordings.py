@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -23,6 +24,7 @@ from tiniscript.studio.recordings import (
     encode,
     header_line,
 )
+from tiniscript.studio.robot_link import RobotLink
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
@@ -348,3 +350,27 @@ def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
             ms_of.setdefault("DISTANCE", []).append(ms)
         assert told.incomplete_names in ([], ["DISTANCE"])
     assert ReadingRows(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_readings_of_each_run_of_a_connection_are_timed_from_its_own_start(seed: int) -> None:
+    rng, events, now_ms = random.Random(seed), list[tuple[int, ReadingEvent]](), 0
+    connection: Any = SimpleNamespace(
+        robot=SimpleNamespace(kit=TINIBOT.kit.fingerprint),
+        boot=0,
+        enable_place_events=lambda: None,
+        event=lambda _: events.pop(0) if events else None,
+    )
+    link = RobotLink(connection, "en")
+    number = 0
+    for _ in range(6):
+        number += 1
+        if rng.random() < 0.4:  # it has restarted, and counts its runs anew
+            connection.boot, number = connection.boot + 1, 1
+        now_ms += rng.randrange(1, 300_000)
+        times_ms = sorted(rng.sample(range(60_000), 4))
+        events += [
+            (now_ms + ms, ReadingEvent(number, 2, rng.randrange(400_000), ms)) for ms in times_ms
+        ]
+        now_ms += times_ms[-1]
+        assert [row[0] for news in link.news() for row in news["rows"]] == times_ms
