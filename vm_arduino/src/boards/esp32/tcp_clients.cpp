@@ -122,9 +122,9 @@ void pass_on(Client* client, const uint8_t* bytes, size_t length) {
 // Looks at the first bytes, and lets the client in or hangs up. A stop among them that the main loop
 // does not see, or not yet, lets nobody in.
 void look(Client* client, const uint8_t* bytes, size_t length) {
-  Found most = Found::kNothing;
+  StopKind most = StopKind::kNothing;
   for (size_t k = 0; k < length; k++) {
-    const Found found = client->finder.put(bytes[k], static_cast<uint16_t>(now_ms()));
+    const StopKind found = client->finder.put(bytes[k], static_cast<uint16_t>(now_ms()));
     if (found > most) most = found;
   }
   const size_t room = kFirstBytes - client->first_length;
@@ -137,8 +137,8 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
     return close_client(client);
   }
   const bool is_passed_on = protocol == Protocol::kForRobot && !client->was_silent;
-  if (most > Found::kInFrame && !is_passed_on) {
-    radio_pipe(client->transport).stop(most == Found::kOfRun);
+  if (most > StopKind::kInFrame && !is_passed_on) {
+    radio_pipe(client->transport).stop(most == StopKind::kOfRun);
   }
   if (protocol == Protocol::kUnknownYet) return;
   if (!radio_pipe(client->transport).begin()) return close_client(client);
