@@ -20,9 +20,12 @@ from tests.support.uno_watchdog import (
     is_on,
 )
 from tiniscript.link.payloads import HelloReply
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
-MOVE_AT = 2  # the offset in AWAY, after what it takes
+LATER = "SI|W(0.1); F(70, 80)"
+MOVE_AT = {AWAY: 2, LATER: 4}  # the offset of the move, after what it takes
+PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
 
 
 def hello_of(wired: Wired) -> HelloReply:
@@ -40,36 +43,45 @@ def hello_of(wired: Wired) -> HelloReply:
     ],
 )
 def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
-    """What ran is the last fault of the robot, also after it was without power."""
+    """What ran is the last fault of the robot, also after it was without power. A second hang is as
+    the first one, and nothing else that the robot keeps is lost."""
     elf = built(tmp_path, hang, board)
     kept = tmp_path / "eeprom"
     chip = "mega" if board == "mega" else "uno"
     with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as uno:
         uno.run_ms(300)
         wired = computer(uno)
-        send(wired, AWAY)
-        wired.run(300)
-        assert states(uno) == FORWARD
-        began = uno.cycle
-        uno.drive("button", False)
-        uno.run_ms(limit_ms)
-        assert not is_on(uno)
-        changes = (change for name in ("left", "right") for change in uno.pins.history(name))
-        assert max(change.cycle for change in changes) - began <= limit_ms * CYCLES_PER_MS
-        uno.drive("button", None)
-        uno.run_ms(1000)
-        assert states(uno) == OFF
-        hello_reply = hello_of(computer(uno, 2))
-        assert hello_reply.reset == WATCHDOG
-        what = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
-        assert what == (STALL, image_of(AWAY).checksum, MOVE_AT)
-        uno.run_ms(500)
-        assert states(uno) == OFF
+        assert wired.done(wired.session.trim(PACED.data()))
+        for number, text in enumerate((AWAY, LATER)):
+            wired = computer(uno, 2 + 2 * number)
+            send(wired, text)
+            wired.run(400)
+            assert states(uno) == FORWARD
+            began = uno.cycle
+            uno.drive("button", False)
+            uno.run_ms(limit_ms)
+            assert not is_on(uno)
+            changes = (change for name in ("left", "right") for change in uno.pins.history(name))
+            assert max(change.cycle for change in changes) - began <= limit_ms * CYCLES_PER_MS
+            uno.drive("button", None)
+            uno.run_ms(1000)
+            assert states(uno) == OFF
+            hello_reply = hello_of(computer(uno, 3 + 2 * number))
+            assert hello_reply.reset == WATCHDOG
+            what = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
+            assert what == (STALL, image_of(text).checksum, MOVE_AT[text])
+            uno.run_ms(500)
+            assert states(uno) == OFF
+            uno.reset()
+            uno.run_ms(300)
+            assert hello_of(computer(uno, 8 + number)).reset != WATCHDOG
     with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as again:
         again.run_ms(300)
-        hello_reply = hello_of(computer(again, 3))
+        wired = computer(again, 7)
+        hello_reply = hello_of(wired)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
-        assert hello_reply.fault_program == image_of(AWAY).checksum
+        assert hello_reply.fault_program == image_of(text).checksum
+        assert trim_from_reply(wired.done(wired.session.trim())) == PACED
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
