@@ -151,8 +151,9 @@ class Esp32Robot(HostFirmware):
         """Let each write of NVS stop the chip for so long."""
         self.ask(b"Z", pack("<I", milliseconds))
 
-    def fill_nvs(self) -> None:
-        self.ask(b"F", b"\1")
+    def fill_nvs(self, room: int = 0) -> None:
+        """Leave room for so many entries: a number takes one, a blob three and more."""
+        self.ask(b"F", bytes([room]))
 
 
 def flags_of(chip: str, major: int) -> tuple[str, ...]:

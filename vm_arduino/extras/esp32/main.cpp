@@ -321,7 +321,7 @@ const Answers answers = {
     {'G', answer_sniffed},
     {'M', answer_moved},
     {'L', [](RequestReader*, Writer*) { chip.is_ledc_stuck = true; }},
-    {'F', [](RequestReader* request, Writer*) { chip.is_nvs_full = request->u8() != 0; }},
+    {'F', [](RequestReader* request, Writer*) { chip.nvs_room = used_entries() + request->u8(); }},
     {'Z', [](RequestReader* request, Writer*) { chip.erase_ms = request->u32(); }},
 };
 
