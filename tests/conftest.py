@@ -128,7 +128,7 @@ def tsc(capsys: pytest.CaptureFixture[str]) -> Tsc:
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The test's own folder, in which it is."""
     monkeypatch.chdir(tmp_path)
     return tmp_path

@@ -53,8 +53,8 @@ def trace(text: str) -> Iterator[str]:
             for change in recovery.chosen_candidate.changes:
                 old_text = "\n".join(lines[change.first_line : change.last_line + 1])
                 yield from _line_changes(old_text, change, kit)
-            told = ", ".join(map(_told_text, finding.diagnostics))
-            yield f"  which slips.py and meant.py tell as {told or 'nothing'}"
+            messages = ", ".join(map(_told_text, finding.diagnostics))
+            yield f"  which slips.py and meant.py tell as {messages or 'nothing'}"
         text_left = apply_edits(text_left, finding.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 

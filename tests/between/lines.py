@@ -128,14 +128,14 @@ class BehindBadLine(PtyRobot):
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         self._line_ms += milliseconds
         self._begin(len(data))
-        there, back = self._ways
+        to_robot, to_computer = self._ways
         if self._is_mended:
-            there._fault = back._fault = Fault("nothing")
-            there.held_ms = back.held_ms = (-1, -1)
-        there.put(data, self._line_ms)
-        arrived = there.arrived(FOREVER_MS if self._is_mended else self._line_ms)
-        back.put(super().pass_ms(milliseconds, arrived), self._line_ms)
-        return back.arrived(FOREVER_MS if self._is_mended else self._line_ms)
+            to_robot._fault = to_computer._fault = Fault("nothing")
+            to_robot.held_ms = to_computer.held_ms = (-1, -1)
+        to_robot.put(data, self._line_ms)
+        arrived = to_robot.arrived(FOREVER_MS if self._is_mended else self._line_ms)
+        to_computer.put(super().pass_ms(milliseconds, arrived), self._line_ms)
+        return to_computer.arrived(FOREVER_MS if self._is_mended else self._line_ms)
 
     def _begin(self, count: int) -> None:
         """Begin what the fault does from a moment on."""

@@ -62,7 +62,7 @@ class Teller(Terminal):
 
     def __init__(self, words: Sequence[str], env: Mapping[str, str]) -> None:
         self.began_s = CLOCK.now_s  # or when it has sent its first byte, or has connected
-        self.told: list[tuple[float, str]] = []  # "" is what a person has done
+        self.timed_output: list[tuple[float, str]] = []  # "" is what a person has done
         self.ended_s: float | None = None
         self.suspended: list[tuple[float, float]] = []
         super().__init__(*words, env=env, size=(300, 24))
@@ -73,12 +73,12 @@ class Teller(Terminal):
             part = rest_of(self._ours)
             if part:
                 self.written += part
-                self.told.append((CLOCK.now_s, part.decode(errors="replace")))
+                self.timed_output.append((CLOCK.now_s, part.decode(errors="replace")))
         self.process.wait()
         self.ended_s = CLOCK.now_s
 
     def interrupt(self) -> None:
-        self.told.append((CLOCK.now_s, ""))
+        self.timed_output.append((CLOCK.now_s, ""))
         super().interrupt()
 
     def end(self) -> int:
@@ -108,7 +108,7 @@ class Teller(Terminal):
 
     @property
     def text(self) -> str:
-        return ESCAPED.sub("", "".join(said for _, said in list(self.told)))
+        return ESCAPED.sub("", "".join(said for _, said in list(self.timed_output)))
 
     @property
     def kept(self) -> list[str]:
@@ -137,7 +137,7 @@ class Teller(Terminal):
         """
         assert self.ended_s is not None
         last_s, is_standing, longest_s = self.began_s, False, 0.0
-        for at_s, said in [*self.told, (self.ended_s, "")]:
+        for at_s, said in [*self.timed_output, (self.ended_s, "")]:
             parts = [part.strip() for part in re.split(r"[\r\n]", ESCAPED.sub("", said))]
             parts = [part for part in parts if part]
             if not parts and said:

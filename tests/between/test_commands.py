@@ -147,7 +147,7 @@ def tried(words: Words, fault: Fault, seed: int) -> Found:
         wrong += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
             wrong += _next_try(line, env, words)
-        asked_s = [at_s for at_s, said in teller.told if not said]
+        asked_s = [at_s for at_s, said in teller.timed_output if not said]
         began_s = asked_s[0] if asked_s else teller.began_s
         assert teller.ended_s is not None
         return Found(words.name, fault.name, teller.longest_silence_s(),
@@ -303,8 +303,10 @@ def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(
         CLOCK.wait(after_s)
         teller.interrupt()
         assert teller.wait(STOPS_S)
-        told = [each for each in teller.kept if CONFIRMED.search(each) or UNCONFIRMED.search(each)]
-        assert len(told) == 1 and not teller.repeated(), teller.text
+        outcomes = [
+            each for each in teller.kept if CONFIRMED.search(each) or UNCONFIRMED.search(each)
+        ]
+        assert len(outcomes) == 1 and not teller.repeated(), teller.text
         line.until(lambda: not line.moves, "it stands")
 
 

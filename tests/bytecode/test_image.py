@@ -189,8 +189,8 @@ def test_the_polynomial_is_primitive() -> None:
     """So 65,535 uses of one device are the first number that could hide it."""
     kit = Kit((), (Device("A", YES_NO, "", 0, 1),))
     one = kit.hash_of_used([("actuator", 0)])
-    again = kit.hash_of_used([("actuator", 0)] * 65_536)
-    assert one == again
+    period_later = kit.hash_of_used([("actuator", 0)] * 65_536)
+    assert one == period_later
     found = {kit.hash_of_used([("actuator", 0)] * uses) for uses in (1, 3, 5, 15, 17, 255, 257)}
     assert len(found) == 7
     assert all(kit.hash_of_used([("actuator", 0)] * (65_535 // prime)) for prime in (3, 5, 17, 257))

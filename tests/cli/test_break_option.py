@@ -51,7 +51,7 @@ def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
     return Terminal("upload", program, "--no-save", *port, *breaks, size=(100, 50))
 
 
-def told(terminal: Terminal) -> list[str]:
+def halt_output(terminal: Terminal) -> list[str]:
     """Wait for the end; return what it has printed of the halts and after them."""
     assert terminal.end() == 0
     lines = [line for line in terminal.whole() if line]
@@ -120,7 +120,7 @@ def test_a_key_steps_one_instruction_of_the_text(
     for halted, *_ in (BEFORE_4, BEFORE_6, BEFORE_7):
         terminal.until(rf"(?s){halted.split(':')[0]}.*Ctrl-C: stop\n*$")
         terminal.type(keys)
-    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *BEFORE_7, KEYS, *END]
+    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *BEFORE_7, KEYS, *END]
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
@@ -130,7 +130,7 @@ def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program:
     for line in (4, 7):
         terminal.until(rf"(?s)before line {line}.*Ctrl-C: stop\n*$")
         terminal.type(key)
-    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_7, KEYS, *END]
+    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_7, KEYS, *END]
 
 
 def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
@@ -140,7 +140,7 @@ def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: P
     terminal.type("x?ssg")
     terminal.until(r"(?s)before line 6.*Ctrl-C: stop\n*$")
     terminal.type("1g")
-    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *END]
+    assert halt_output(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *END]
 
 
 def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_pa
         terminal.until(rf"(?s)(.*Ctrl-C: stop){{{k + 1}}}\n*$")
         seen.append([line for line in terminal.lines() if line.startswith("Halted")][-1])
         terminal.type("s")
-    told(terminal)
+    halt_output(terminal)
     loop = ["line 3: SHOW(N * N + 1)", "line 4: N = N - 1", "line 2: LOOP(N)"]
     assert seen == [f"Halted before {each}" for each in loop * 2]
 

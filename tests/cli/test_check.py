@@ -18,13 +18,13 @@ LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # one is sure, the other is not
 
 
 @pytest.fixture
-def folder(here: Path) -> Path:
-    (here / "a.ts").write_text(RIGHT, encoding="utf-8")
-    (here / "b.ts").write_text(WRONG, encoding="utf-8")
-    (here / "sub").mkdir()
-    (here / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
-    (here / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
-    return here
+def folder(working_folder: Path) -> Path:
+    (working_folder / "a.ts").write_text(RIGHT, encoding="utf-8")
+    (working_folder / "b.ts").write_text(WRONG, encoding="utf-8")
+    (working_folder / "sub").mkdir()
+    (working_folder / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
+    (working_folder / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
+    return working_folder
 
 
 # -- several programs ---------------------------------------------------------------------------

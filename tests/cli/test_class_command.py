@@ -186,9 +186,9 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
         address=("h", 1), group="c", options=SimpleNamespace(verb="class"),
         broker=SimpleNamespace(attend=print),
     )  # fmt: skip
-    here = [RobotPresence("00000001", "A", True), RobotPresence("00000002", "B", False)]
+    robots = [RobotPresence("00000001", "A", True), RobotPresence("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
-        options = Classroom.options_for(cast(Classroom, room), here, verb)
+        options = Classroom.options_for(cast(Classroom, room), robots, verb)
         assert options.verb == verb  # of an upload, who no longer reads stops the robots
         assert hasattr(options, "attend") == attends
         assert options.ports == ["mqtt://h:1/c/00000001"]
@@ -361,17 +361,17 @@ def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> N
 
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would help nobody."""
-    told = SimpleNamespace(
+    connection = SimpleNamespace(
         name="Tini",
         begin_request=lambda make: None,
         error_for_reply=AssertionError,
         port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
     )
-    told.request = partial(Connection.request, cast(Connection, told))
-    told.request_or_raise = partial(Connection.request_or_raise, cast(Connection, told))
+    connection.request = partial(Connection.request, cast(Connection, connection))
+    connection.request_or_raise = partial(Connection.request_or_raise, cast(Connection, connection))
     with pytest.raises(CommandError) as exception_info:
-        robot_broker.use_broker(cast(Connection, told), None, Namespace())
+        robot_broker.use_broker(cast(Connection, connection), None, Namespace())
     assert "older than this tsc" in exception_info.value.sentence("en")
 
 

@@ -25,14 +25,14 @@ WAYS = (
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
-    tsc: Tsc, here: Path, way: str
+    tsc: Tsc, working_folder: Path, way: str
 ) -> None:
     """And nothing of it is written, run or sent."""
-    program = here / "drive.ts"
+    program = working_folder / "drive.ts"
     program.write_text("SI|S = 5")
     verb, *options = way.split()
     tsc(verb, program, *options).gives(1)
-    assert [path.name for path in here.glob("*.*")] == ["drive.ts"]
+    assert [path.name for path in working_folder.glob("*.*")] == ["drive.ts"]
     assert program.read_text() == "SI|S = 5"
 
 

@@ -258,7 +258,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("port", "told"),
+    ("port", "shown"),
     [
         ("/dev/ttyUSB0", "/dev/ttyUSB0"),
         ("COM5", "COM5"),
@@ -271,8 +271,8 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         ("/home/ana/port", "…"),
     ],
 )
-def test_ports_in_a_report(port: str, told: str) -> None:
-    assert report.shown_port(port) == told
+def test_ports_in_a_report(port: str, shown: str) -> None:
+    assert report.shown_port(port) == shown
 
 
 def test_values_of_others_stay_out_of_a_report() -> None:

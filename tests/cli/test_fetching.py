@@ -128,7 +128,7 @@ class Clone:
         """Let the build do this at each of its steps."""
         self.put("tools/builds/studio.py", PAGE.format(work=work))
 
-    def has_node(self) -> None:
+    def install_node(self) -> None:
         for name in ("node", "npm"):
             self.put(f"../bin/{name}", "#!/bin/sh\necho v22.1.0\n").chmod(0o755)
 
@@ -206,7 +206,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, said: str
 ) -> None:
     """Nothing happens without one; where nobody can be asked it says how."""
-    clone.has_node()
+    clone.install_node()
     clone.works("time.sleep(0.5)")
     clone.unasked(clone.studio(*words)).gives(2, said, "--yes", size, out="")
     for answer in ("n", "", "what?"):
@@ -237,7 +237,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
 def test_a_page_of_other_sources_is_told(
     clone: Clone, begin: Begin, words: list[str], said: str
 ) -> None:
-    clone.has_node()
+    clone.install_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
     subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
     for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
@@ -251,7 +251,7 @@ def test_a_page_of_other_sources_is_told(
 
 def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> None:
     """By a process of its own: what makes a wheel knows nothing of this package."""
-    clone.has_node()
+    clone.install_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
     for no, said in (("n\n", "nothing was downloaded"), ("\x03", "")):
         person = begin(command)
@@ -321,7 +321,7 @@ NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
     ("PermissionError: [Errno 13] Permission denied: 'page'", "Permission denied"),
 ])  # fmt: skip
 def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, words: str) -> None:
-    clone.has_node()
+    clone.install_node()
     clone.works(f'print("""{said}"""); sys.exit(1)')
     done = clone.unasked(clone.studio("--yes"))
     assert (done.code, done.out) == (2, "")
@@ -332,7 +332,7 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, w
 
 
 def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) -> None:
-    clone.has_node()
+    clone.install_node()
     path = clone.root / "told"
     clone.works(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
     person = begin(clone.studio("--yes"))

@@ -176,8 +176,8 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
-    here = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
-    monkeypatch.setattr(directory, "running_robots", lambda: here)
+    running = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    monkeypatch.setattr(directory, "running_robots", lambda: running)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]
@@ -297,11 +297,11 @@ def test_up_to_three_robots_are_named() -> None:
 
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
-        here = "liner is connected; tsc compiles for it.\n"
+        kit_note = "liner is connected; tsc compiles for it.\n"
         done = inside("check", *LINE, "--virtual")
-        assert (done.code, done.err) == (0, here)
+        assert (done.code, done.err) == (0, kit_note)
         done = inside("upload", *LINE, "--port", found.port, "--no-run")
-        assert (done.code, done.err) == (0, here)
+        assert (done.code, done.err) == (0, kit_note)
         done = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
         assert done.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
@@ -370,8 +370,8 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     for end in ("STOPPED", "DONE"):
         catch = ValueCatcher(("X", "Y"), known, EventPrinter("en"), prints_done=False)
         assert not catch.hold_event(show(7))
-        told: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
-        assert [catch.hold_event(each) for each in told] == [True, True, False]
+        events: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
+        assert [catch.hold_event(each) for each in events] == [True, True, False]
         catch.hold_event(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
@@ -449,11 +449,11 @@ def test_a_chip_in_the_place_of_a_robot_leads_to_its_option(
 
 
 def test_board_says_where_the_build_looks(
-    tsc: Tsc, here: Path, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, working_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home = here / "vm_arduino" / "src" / "boards" / "kits"
+    home = working_folder / "vm_arduino" / "src" / "boards" / "kits"
     home.mkdir(parents=True)
-    (here / "vm_arduino" / "platformio.ini").touch()
+    (working_folder / "vm_arduino" / "platformio.ini").touch()
     done = tsc("firmware", "--board", "liner", "-o", "own.h")
     home_of_it = "vm_arduino/src/boards/kits/own.h"
     then = "Then:  pio run -d vm_arduino -e"

@@ -39,18 +39,18 @@ class Room:
     def __init__(self, fleet: RobotFleet, stages: list[int]) -> None:
         self.fleet = fleet
         self.stages = {pupil.port: stage for pupil, stage in zip(fleet.pupils, stages, strict=True)}
-        self.there: set[str] = set()
+        self.waiting_ports: set[str] = set()
         self.pressed = threading.Event()
         self.starts: list[int] = []  # of each robot, when Ctrl-C was pressed
 
     def at(self, stage: int, port: str) -> None:
         if self.stages[port] == stage and not self.pressed.is_set():
-            self.there.add(port)
+            self.waiting_ports.add(port)
             assert self.pressed.wait(HANGS_S), "nobody presses Ctrl-C"
 
     def may_press(self) -> bool:
         return all(
-            pupil.moves if self.stages[pupil.port] == DRIVING else pupil.port in self.there
+            pupil.moves if self.stages[pupil.port] == DRIVING else pupil.port in self.waiting_ports
             for pupil in self.fleet.pupils
         )
 

@@ -37,9 +37,9 @@ WRITERS = [
 
 @pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda each: str(each))
 def test_a_foreign_file_stays_and_an_own_one_is_replaced(
-    tsc: Tsc, here: Path, words: tuple[str, ...], option: str
+    tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
-    target = here / "there"
+    target = working_folder / "there"
     assert tsc(*words, target).code == 0  # nothing is there
     made = target.read_bytes()
     assert made and not is_foreign(target)

@@ -144,11 +144,11 @@ def ended(number: int) -> int:
 
 def at_line(kept: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
     """Return what counts the lines of the code that writes, and does something at one."""
-    told = {kept.module.__file__, files.__file__}
+    traced_files = {kept.module.__file__, files.__file__}
     left = [line]
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
-        if frame.f_code.co_filename not in told:
+        if frame.f_code.co_filename not in traced_files:
             return None
         if event == "line":
             left[0] -= 1
@@ -165,11 +165,11 @@ def lines_of(kept: Kept, number: int) -> int:
     count = [0]
 
     def does() -> None:
-        told = {kept.module.__file__, files.__file__}
+        traced_files = {kept.module.__file__, files.__file__}
 
         def trace(frame: FrameType, event: str, _: Any) -> Any:
             count[0] += event == "line"
-            return trace if frame.f_code.co_filename in told else None
+            return trace if frame.f_code.co_filename in traced_files else None
 
         sys.settrace(trace)
         kept.add(number)
@@ -252,11 +252,11 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
     lines = lines_of(kept, SECOND)
     for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
         before = fresh(kept, tmp_path)
-        there, holds = os.pipe(), os.pipe()
+        arrived, holds = os.pipe(), os.pipe()
         say = os.pipe()
 
-        def held(line: int = line, there: Any = there, holds: Any = holds) -> None:
-            at_line(kept, line, lambda: (os.write(there[1], b"1"), os.read(holds[0], 1)))()
+        def held(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
+            at_line(kept, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1)))()
             kept.add(SECOND)
 
         def other(say: Any = say) -> None:
@@ -265,13 +265,13 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
             os.write(say[1], b"e")
 
         first = begun(held)
-        assert os.read(there[0], 1)
+        assert os.read(arrived[0], 1)
         second = begun(other)
         assert os.read(say[0], 1) in (b"w", b"e")
         os.write(holds[1], b"1")
         assert (ended(first), ended(second)) == (0, 0), line
         assert sorted(kept.all()) == [*before, SECOND, THIRD], line
-        for end in (*there, *holds, *say):
+        for end in (*arrived, *holds, *say):
             os.close(end)
 
 

@@ -273,18 +273,18 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     path = key_file.path.with_name("robots.json")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
-    again = KeyFile(key_file.path)
-    assert (again.robot_at(PLACE), again.robot_at("/dev/ttyUSB0"), again.robot_at("")) == (
+    reopened = KeyFile(key_file.path)
+    assert (reopened.robot_at(PLACE), reopened.robot_at("/dev/ttyUSB0"), reopened.robot_at("")) == (
         8,
         7,
         None,
     )
-    assert not again.accepts(9)
+    assert not reopened.accepts(9)
     key_file.accept(9)
-    assert again.accepts(9) and again.robot_at(PLACE) == 8
+    assert reopened.accepts(9) and reopened.robot_at(PLACE) == 8
     assert KeyFile(key_file.path, accepts_all=True).accepts(10)
     KeyFile(key_file.path, serves_virtual_robots=True).remember_robot(PLACE, 11)
-    assert again.robot_at(PLACE) == 8
+    assert reopened.robot_at(PLACE) == 8
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,7 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
     ],
 )
 def test_wrong_use_says_the_next_step(
-    tsc: Tsc, arguments: list[str], sentence: str, here: Path
+    tsc: Tsc, arguments: list[str], sentence: str, working_folder: Path
 ) -> None:
     done = tsc("lesson", *arguments).gives(2, sentence)
     assert tsc("lesson", *arguments, "--lang", "es").err != done.err

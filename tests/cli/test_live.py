@@ -117,15 +117,15 @@ def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRob
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
 
-    def told(lines: str) -> Done:
+    def run_live(lines: str) -> Done:
         return on(pty_robot, "live", "-", data=lines.encode())
 
-    done = told("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
+    done = run_live("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
     assert (done.code, done.err) == (0, "")
     assert done.out == "TELL: now known.\nSHOW 1\nSHOW 1\nSHOW 3\n"
-    done = told("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
+    done = run_live("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
     assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
-    told("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")
+    run_live("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")
 
 
 @pytest.mark.parametrize(("text", "ends"), [

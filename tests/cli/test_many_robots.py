@@ -136,8 +136,8 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
     rows = [row for row in results(done).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
     done = command.ended().gives(3)
-    told = ("The robot was stopped from a computer.", "another command stopped the robot")
-    assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
+    reasons = ("The robot was stopped from a computer.", "another command stopped the robot")
+    assert sum(map(done.out.count, reasons)) == len(class_.pupils)  # before or after its start
     command = driven()
     command.signal(signal.SIGINT)
     done = command.ended().gives(2)

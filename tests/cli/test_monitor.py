@@ -124,6 +124,6 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     connection = SimpleNamespace(language="en", name="TINI", port="p", event=event, search=search)
     with pytest.raises(Over):
         _Log(cast(Connection, connection), is_json=True).print_events()
-    told = [json.loads(line)["event"] for line in capsys.readouterr().out.splitlines()]
+    event_names = [json.loads(line)["event"] for line in capsys.readouterr().out.splitlines()]
     assert losses == 5
-    assert told == ["LINKED", *["LOST", "FOUND"] * 5]
+    assert event_names == ["LINKED", *["LOST", "FOUND"] * 5]

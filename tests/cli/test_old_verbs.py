@@ -193,8 +193,8 @@ def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, was: str, no
 
 def test_help_on_an_old_name_is_that_of_the_new_command(tsc: Tsc) -> None:
     for name, command in FORMER_COMMANDS.items():
-        told = tsc("help", name, "--lang", "en").gives(0)
-        assert told.out == tsc("help", command, "--lang", "en").out or command in STEPS
+        help_on_name = tsc("help", name, "--lang", "en").gives(0)
+        assert help_on_name.out == tsc("help", command, "--lang", "en").out or command in STEPS
 
 
 @each_row("words, first, second", [

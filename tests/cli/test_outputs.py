@@ -106,24 +106,24 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
 @pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
 @pytest.mark.parametrize(("verb", "output", "other"), PAIRS)
 def test_no_output_is_another_file_of_its_command(
-    tsc: Tsc, here: Path, verb: str, output: str, other: str,
+    tsc: Tsc, working_folder: Path, verb: str, output: str, other: str,
     how: str,
 ) -> None:  # fmt: skip
     text = TEXTS.get(other, "what was there")
-    precious = here / "precious.ts"
+    precious = working_folder / "precious.ts"
     precious.write_text(text, encoding="utf-8")
-    path = {"same": precious, "dot": Path("./precious.ts")}.get(how, here / "other name")
+    path = {"same": precious, "dot": Path("./precious.ts")}.get(how, working_folder / "other name")
     if how == "link":
         path.symlink_to(precious)
     elif how == "hard":
         os.link(precious, path)
-    before = sorted(os.listdir(here))  # noqa: PTH208
+    before = sorted(os.listdir(working_folder))  # noqa: PTH208
     for language in ("en", "es"):
         tsc(*arguments(verb, {other: precious, output: path}), "--lang", language).gives(
             2, str(path), precious.name, paths.WRITE_OPTIONS[output][0]
         )
     assert precious.read_text(encoding="utf-8") == text
-    assert sorted(os.listdir(here)) == before  # noqa: PTH208 - nothing was made either
+    assert sorted(os.listdir(working_folder)) == before  # noqa: PTH208 - nothing was made either
 
 
 def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) -> None:
@@ -137,15 +137,15 @@ def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) 
     assert profile.read_text(encoding="utf-8") == PROFILE
 
 
-def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, here: Path) -> None:
+def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, working_folder: Path) -> None:
     """Capitals do not count: on many systems they do not once the files are there."""
-    (here / "folder").mkdir()
-    (here / "link").symlink_to("x")
-    (here / "loop").symlink_to("loop")
+    (working_folder / "folder").mkdir()
+    (working_folder / "link").symlink_to("x")
+    (working_folder / "loop").symlink_to("loop")
     for second in ("x", "./x", "X", "folder/../x", "link"):
         done = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
         assert done.code == 2 and "the same file" in done.err, second
-        assert not (here / "x").exists()
+        assert not (working_folder / "x").exists()
     assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
     assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2
     for _ in range(2):  # then there they are
@@ -185,7 +185,7 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
         tsc("compile", program, "-o", "/dev/full").gives(2, "-o")
 
 
-def test_a_file_called_as_a_shipped_robot_is_no_input(tsc: Tsc, here: Path) -> None:
+def test_a_file_called_as_a_shipped_robot_is_no_input(tsc: Tsc, working_folder: Path) -> None:
     for _ in range(2):
         assert tsc("firmware", "--board", "tinibot", "-o", "tinibot").code == 0
 
@@ -200,15 +200,15 @@ OUTPUTS = [
 
 @pytest.mark.parametrize(("verb", "output"), OUTPUTS)
 def test_what_cannot_be_written_is_said_before_anything_is_done(
-    tsc: Tsc, here: Path, monkeypatch: pytest.MonkeyPatch, verb: str, output: str
+    tsc: Tsc, working_folder: Path, monkeypatch: pytest.MonkeyPatch, verb: str, output: str
 ) -> None:
     """No robot drives for a picture that has no place."""
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: pytest.fail("something is done"))
     files = {"robot": Path("tinibot")} if verb == "firmware_board" else {}
-    for path in (here, here / "none" / "x", Path("a\0b"), Path("x" * 5000)):
+    for path in (working_folder, working_folder / "none" / "x", Path("a\0b"), Path("x" * 5000)):
         words = arguments(verb, {**files, output: path})
         tsc(*words).gives(2, paths.WRITE_OPTIONS[output][0])
-    assert list(here.iterdir()) == []
+    assert list(working_folder.iterdir()) == []
 
 
 def test_a_file_that_may_not_be_written(

@@ -45,9 +45,9 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     assert done.out.endswith("DONE\n") and not is_foreign(file)
     recording = decode(file.read_bytes())
     assert (recording.seed, recording.world and recording.world.name) == (7, "line")
-    again = tsc("run", file)
-    assert (again.code, again.out) == (0, done.out)
-    assert again.err == f"{AGAIN}{len(recording.rows)}.\n"
+    replayed = tsc("run", file)
+    assert (replayed.code, replayed.out) == (0, done.out)
+    assert replayed.err == f"{AGAIN}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
     changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
     file.write_text(file.read_text().replace(*changed))
@@ -262,7 +262,7 @@ def test_a_file_that_cannot_be_played_says_why(
     ],
 )  # fmt: skip
 def test_what_is_not_recorded_or_played_says_why(
-    tsc: Tsc, here: Path, words: tuple[str, ...], said: str
+    tsc: Tsc, working_folder: Path, words: tuple[str, ...], said: str
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
     shipped = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")

@@ -116,12 +116,12 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     pty_robot.damages = 97
-    told = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
+    findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, found = found_by(pty_robot, "--robot", "liner")
     assert found["store"]["cause"] == "unsaved"
     ours = {each["cause"]: each for each in found.values()}
-    assert {each["cause"] for each in told} >= {"low_supply", "wrong_kit", "lossy"}
-    for each in told:
+    assert {each["cause"] for each in findings} >= {"low_supply", "wrong_kit", "lossy"}
+    for each in findings:
         if each["is_wrong"]:
             its = ours[each["cause"]]
             assert (its["verdict"], its["next"]) == ("wrong", each["next"])
@@ -165,11 +165,11 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
             port = end.port
         if kind == "locked":
             stack.callback(open_port(port, 9600).close)
-        told = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
+        findings = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
         done = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
     found = json.loads(done.out)["found"]
-    wrong = [each for each in told if each["is_wrong"]]
+    wrong = [each for each in findings if each["is_wrong"]]
     assert wrong and [each["cause"] for each in found] == [each["cause"] for each in wrong]
     for ours, its in zip(found, wrong, strict=True):
         assert [ours[key] for key in ("said", "seen", "next")] == [

@@ -216,7 +216,7 @@ def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
     code = unpack(compile_text(f"SI|{line}", KIT).image).code
     assert robot.until(session, session.live(code)) == OK
     robot.talk(session, 9000)
-    at = [int(told.split()[0]) for told in robot.did[before:] if "MOTORS" in told]
+    at = [int(row.split()[0]) for row in robot.did[before:] if "MOTORS" in row]
     return [end - begun for begun, end in zip(at[::2], at[1::2], strict=True)]
 
 

@@ -43,9 +43,9 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     assert receipt.endswith(f"checksum {checksum}   saving   SI: running")
     assert last == "Saved in slot 0."
     done = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
-    told = [json.loads(line) for line in done.out.splitlines()]
-    assert (told[0]["checksum"], told[0]["code_bytes"]) == (checksum, 1)
-    assert {row["slot"] for row in told if row.get("slot") is not None} == {0}
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    assert (rows[0]["checksum"], rows[0]["code_bytes"]) == (checksum, 1)
+    assert {row["slot"] for row in rows if row.get("slot") is not None} == {0}
     # what is lost without power is told to all
     done = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
     assert done.out.splitlines()[0].endswith("   only in RAM   SI: running")

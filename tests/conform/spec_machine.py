@@ -26,12 +26,12 @@ class Spec:
 
     def answer(self, rows: Iterable[str]) -> list[str]:
         """Return the lines of a run."""
-        told: dict[str, list[list[str]]] = {}
+        rows_by_word: dict[str, list[list[str]]] = {}
         for word, *rest in (row.split(" ") for row in rows):
-            told.setdefault(word, []).append(rest)
-        sensors, actuators = told.get("sensor", []), told.get("actuator", [])
+            rows_by_word.setdefault(word, []).append(rest)
+        sensors, actuators = rows_by_word.get("sensor", []), rows_by_word.get("actuator", [])
         kit = Kit(tuple(map(_device, sensors)), tuple(map(_device, actuators)))
-        (data,) = (bytes.fromhex("".join(rest)) for rest in told["image"])
+        (data,) = (bytes.fromhex("".join(rest)) for rest in rows_by_word["image"])
         refused = self.image.refusal(data)
         needs = data[14] if not refused else 0
         if needs and not self.refuses_only:
@@ -47,14 +47,17 @@ class Spec:
             refused = "OTHER_KIT"
         if refused:
             return [f"REFUSED {refused}"]
-        lists = {kit.sensors[int(k)].name: [*map(int, row)] for k, *row in told.get("readings", [])}
-        numbers = {name: int(told[name][0][0]) for name in ("seed", "begin", "until")}
-        every = [int(each) for each in told["every"][0]]
+        lists = {
+            kit.sensors[int(k)].name: [*map(int, row)]
+            for k, *row in rows_by_word.get("readings", [])
+        }
+        numbers = {name: int(rows_by_word[name][0][0]) for name in ("seed", "begin", "until")}
+        every = [int(each) for each in rows_by_word["every"][0]]
 
         def late(waited: int, reached: int) -> int:
             return -reached % every[min(waited, len(every)) - 1]
 
-        slow = {int(k): tuple(map(int, times)) for k, *times in told.get("slow", [])}
+        slow = {int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])}
 
         def is_slow(sensor: int, passed: int) -> bool:
             period_ms, from_ms, to_ms = slow.get(sensor, (1, 0, 0))

@@ -134,7 +134,7 @@ def some_characters(dice: random.Random) -> str:
     return "".join(chr(dice.randint(*dice.choice(ranges))) for _ in range(dice.choice((1, 5, 300))))
 
 
-def is_told_well(found: Compilation) -> None:
+def check_messages(found: Compilation) -> None:
     """Check all that is true of the messages for any text."""
     text, source = found.source.text, found.source
     for diagnostic in found.diagnostics:
@@ -159,8 +159,8 @@ def is_told_well(found: Compilation) -> None:
 def test_any_text_is_told_well(seed: int) -> None:
     dice = random.Random(seed)
     for _ in range(50):
-        is_told_well(check_text(some_text(dice), KIT))
-        is_told_well(check_text(some_characters(dice), KIT))
+        check_messages(check_text(some_text(dice), KIT))
+        check_messages(check_text(some_characters(dice), KIT))
 
 
 @pytest.mark.parametrize(
@@ -170,12 +170,12 @@ def test_any_text_is_told_well(seed: int) -> None:
 )  # fmt: skip
 def test_each_end_of_a_line_is_one(text: str) -> None:
     found = check_text(text, KIT)
-    is_told_well(found)
+    check_messages(found)
     assert check_text(text.replace("\n", "\r"), KIT).diagnostics == found.diagnostics
 
 
 def test_letters_of_no_name_where_a_number_goes_are_told_well() -> None:
-    is_told_well(check_text("X=é", KIT))
+    check_messages(check_text("X=é", KIT))
 
 
 def test_marks_without_end_are_shown_in_a_window() -> None:

@@ -93,6 +93,6 @@ def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int
     system.write("/etc/group", "".join(chance.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
     system.write("/sys/class/bluetooth/hci0/x", "")
     system.owners["/dev/x"] = (20, True)
-    told = diagnosis.inspect_computer(system)
-    assert told.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
+    findings = diagnosis.inspect_computer(system)
+    assert findings.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
     diagnosis.port_access(system, "/dev/x")

@@ -85,8 +85,8 @@ def test_authority_ends_with_its_connection_and_is_shown_again(how: str) -> None
 def test_a_recorded_session_opens_nothing() -> None:
     table, keys = Owned(), Keys()
     table.claimed(keys)
-    again = table.session(keys, nonce=4)
-    recorded, _ = table.frames(again, again.upload(image_of("SI|F(1, 80)")))
+    next_session = table.session(keys, nonce=4)
+    recorded, _ = table.frames(next_session, next_session.upload(image_of("SI|F(1, 80)")))
     table.pass_time(None, 4000)
     table.robot.did.clear()
     for _ in range(300):  # the epoch goes around
@@ -202,8 +202,8 @@ def forged(frames: int, seed: int) -> int:
             table.outcome(thief, thief.hello())
         if count % 1009 == 1:
             table.robot.wait(60)  # a repeated stop is told 50 ms later at the earliest
-            told = table.robot.wait(60, bytes(8))
-            assert b"\xa2" in told, (count, told)  # STOPPED
+            stopped_event = table.robot.wait(60, bytes(8))
+            assert b"\xa2" in stopped_event, (count, stopped_event)  # STOPPED
             table.robot.wait(1100)
         how = chance.randrange(3)
         if how == 0:

@@ -209,7 +209,7 @@ def test_the_part_shows_eight_bits_at_its_latch_and_not_before() -> None:
     assert register.outputs is None
 
 
-def told(robot: str) -> list[str]:
+def messages_of(robot: str) -> list[str]:
     with pytest.raises(ProfileRefused) as caught:
         read(robot, "test")
     return describe(caught.value, "en")
@@ -220,7 +220,7 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     four = profile(*SIDES["four"])
     assert read(four, "test").board.buzzer is None
     beeping = four.replace("start_button = 2", 'start_button = 2\nbuzzer = "A5"')
-    assert told(beeping) == [
+    assert messages_of(beeping) == [
         f"board.motors.left: the speed of {motor} is the PWM of pin {pin}, which needs timer 2,"
         " but board.buzzer already uses that timer. Leave one of the two out."
         for motor, pin in (("M1", 11), ("M2", 3))
@@ -228,23 +228,23 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     assert read(beeping.replace("M1 M2", "M3").replace("M3 M4", "M4"), "test").board.buzzer == 19
     servo = four.replace("[board]", ARM + "[board]").replace("[body]", WIRED_ARM + "[body]")
     assert read(servo, "test").board.actuators[0].pins == {"pin": 9}, "where the shield has it"
-    assert told(servo.replace('"uno"', '"mega"')) == [
+    assert messages_of(servo.replace('"uno"', '"mega"')) == [
         "board.motors.left: the speed of M1 is the PWM of pin 11, which needs timer 1,"
         " but board.actuators.ARM.pin already uses that timer. Leave one of the two out."
     ]
-    assert told(four.replace("start_button = 2", "start_button = 12")) == [
+    assert messages_of(four.replace("start_button = 2", "start_button = 12")) == [
         "board.motors.driver: the shield uses pin 12 for LATCH, but board.start_button already"
         " uses it. Use another pin for board.start_button, or another motor of the shield."
     ]
-    assert told(four.replace("M3 M4", "M2 M4")) == [
+    assert messages_of(four.replace("M3 M4", "M2 M4")) == [
         "board.motors.right: the shield uses pin 3 for M2, but board.motors.left already uses it."
         " Use another pin for board.motors.left, or another motor of the shield."
     ]
-    assert told(servo.replace("pin = 9", "pin = 4"))[0].startswith(
+    assert messages_of(servo.replace("pin = 9", "pin = 4"))[0].startswith(
         "board.actuators.ARM.pin is pin 4, which board.motors.driver already uses."
     )
     for chip in ("esp32dev", "esp32c3"):
         text = four.replace('"uno"', f'"{chip}"').replace('"A0"', "3" if chip[-1] == "3" else "34")
-        assert [each.partition(",")[0] for each in told(text)] == [
+        assert [each.partition(",")[0] for each in messages_of(text)] == [
             "board.motors.driver is a shield for boards with the pins of an Uno"
         ]

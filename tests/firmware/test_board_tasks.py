@@ -97,8 +97,8 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
     """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
     wired = computer(robot)
-    back = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
-    send(wired, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{back}", is_detached=True)
+    backing_when = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
+    send(wired, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{backing_when}", is_detached=True)
     wired.run(300)
     robot.run_until("trigger", "low", 60)
     robot.run_ms(35)

@@ -145,9 +145,9 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     assert robot.until(session, session.start()) == OK
     stored(robot, session)
     assert robot.done(session, session.read_tasks()).is_halted
-    again = switched_on(robot.memory())
-    assert held(again, other := computer(7))[15:] == image.code
-    assert again.done(other, other.status()).program == image.checksum
+    restarted = switched_on(robot.memory())
+    assert held(restarted, other := computer(7))[15:] == image.code
+    assert restarted.done(other, other.status()).program == image.checksum
 
 
 def test_a_place_is_told_with_the_programs_checksum() -> None:
@@ -345,9 +345,9 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
         if is_halted:
             assert it.halt() == Halt(show, MAIN)
             it.talk(1000)
-            there = robot.gone()[0]
+            halted_at = robot.gone()[0]
             it.talk(500)
-            assert 0 < there == robot.gone()[0], "it stands"
+            assert 0 < halted_at == robot.gone()[0], "it stands"
             it.go()
         assert it.halt() is None and it.events[-1].name == "DONE"
         it.talk(1000)

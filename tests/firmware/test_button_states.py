@@ -142,7 +142,7 @@ def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
 @pytest.mark.parametrize("press", PRESSES)
 def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
     table = Table()
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     image = image_of(f"SI|{f'F(1, {OTHER}); ' * 90}")
     request = table.session.upload(image)
     while request.done_bytes < 60:
@@ -177,7 +177,7 @@ def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
     meanwhile: str, is_sure: bool
 ) -> None:
     table = Table()
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     if "text" in meanwhile:
         table.quiet()
     table.talk(1, PRESSED)

@@ -77,16 +77,16 @@ def is_over_at(memory: bytes, kind: str, count: int) -> bool:
         assert not [line for line in happened(robot) if line not in ("MOTORS 0 0",)], count
         assert robot.is_latched
     robot.wait(1100)
-    again = computer(2)
-    assert robot.until(again, again.hello()) == OK
-    assert held(robot, again) in (bytes_of(image_of(OLD)), bytes_of(NEW)), count
+    next_session = computer(2)
+    assert robot.until(next_session, next_session.hello()) == OK
+    assert held(robot, next_session) in (bytes_of(image_of(OLD)), bytes_of(NEW)), count
     if kind == CUT:
         robot.did.clear()
         robot.push()
-        robot.talk(again, 300)
+        robot.talk(next_session, 300)
         assert "MOTORS 50 50" in happened(robot) or "MOTORS 80 80" in happened(robot), count
-    assert robot.until(again, again.upload(NEW, runs=False)) == OK
-    assert held(robot, again) == bytes_of(NEW), count
+    assert robot.until(next_session, next_session.upload(NEW, runs=False)) == OK
+    assert held(robot, next_session) == bytes_of(NEW), count
     return False
 
 
@@ -113,11 +113,12 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     assert (before.program, before.saved) == (image_of(OLD).checksum, SAVED_MEMORY)
     assert before.length == len(image_of(OLD).code)
     assert sent_until(robot, session, 300)
-    again = computer(2)
-    hello, status_reply = robot.done(again, again.hello()), robot.done(again, again.status())
+    next_session = computer(2)
+    hello = robot.done(next_session, next_session.hello())
+    status_reply = robot.done(next_session, next_session.status())
     assert (status_reply.saved, status_reply.program, status_reply.length) == (SAVED_NOTHING, 0, 0)
     assert (hello.saved, hello.program, hello.length) == (SAVED_NOTHING, 0, 0)
-    assert again.robot and again.robot.values.program == 0
+    assert next_session.robot and next_session.robot.values.program == 0
 
 
 # -- what comes between ---------------------------------------------------------------------------

@@ -145,18 +145,18 @@ class Between:
 
 def talk(between: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
     """Let a computer talk through them until its request, or its stop, is over; return events."""
-    told: list[str] = []
+    names: list[str] = []
     now_ms, end_ms = 0, LIMIT_MS
     while now_ms < end_ms:
         data = session.poll(now_ms)
         said = between.hears(data, now_ms) if data else b""
         session.receive(said, now_ms + 1)
-        told += [event.name for event in session.events()]
-        if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(told):
+        names += [event.name for event in session.events()]
+        if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
             break
         wakes_ms = session.wakes_at()
         now_ms = max(now_ms + 2, min(now_ms + 100, now_ms + 100 if wakes_ms is None else wakes_ms))
-    return told
+    return names
 
 
 def state_of(end: End) -> int:
@@ -205,9 +205,9 @@ def one_trial(end: End, seed: int) -> str:
         if is_greeted:  # by the robot itself
             honest(end, session, session.hello())
         session.stop(0)
-        told = talk(between, session, None)
-        assert "STOPPED" not in told, f"seed {seed}: a stop that nobody has heard is confirmed"
-        assert "LOST" in told, f"seed {seed}: {told}"
+        names = talk(between, session, None)
+        assert "STOPPED" not in names, f"seed {seed}: a stop that nobody has heard is confirmed"
+        assert "LOST" in names, f"seed {seed}: {names}"
         return "stop, greeted" if is_greeted else kind
     request: PendingRequest[Any]
     if kind == "upload":
@@ -261,10 +261,10 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
         request = session.live(image_of(FOREVER).code)
     else:
         request = session.hello()
-    told = talk(between, session, request)
-    assert "STOPPED" not in told, f"seed {seed}: {how}: a stop that nobody has heard is confirmed"
+    names = talk(between, session, request)
+    assert "STOPPED" not in names, f"seed {seed}: {how}: a stop that nobody has heard is confirmed"
     if request is None:
-        assert "LOST" in told, f"seed {seed}: {told}"
+        assert "LOST" in names, f"seed {seed}: {names}"
     else:
         expected = [OTHER_ROBOT]
         if "greeted" in how:

@@ -113,11 +113,11 @@ def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    again = Esp32Robot(kept=robot.kept())
-    school_in_reach(again)
-    again.wait(400)
+    restarted = Esp32Robot(kept=robot.kept())
+    school_in_reach(restarted)
+    restarted.wait(400)
     teacher = broker.connected()
-    until(again, lambda: present(again, teacher) == [RobotPresence(ID, "tini-5678", True)])
+    until(restarted, lambda: present(restarted, teacher) == [RobotPresence(ID, "tini-5678", True)])
     assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
     assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -352,9 +352,9 @@ def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], h
     cable = remote(robot, keys, 20)
     assert ended(robot, [(None, cable)], cable.ping()) == "OK"
     until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
-    again, end = remote(robot, keys, 13), own.connected()
+    next_client, end = remote(robot, keys, 13), own.connected()
     talk(robot, [], AUTHORITY_MS + 3000)
-    assert uploaded(robot, [(AtBroker(robot, end), again)], again) == "OK"
+    assert uploaded(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
     end.close()
 
 
@@ -364,10 +364,10 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
     assert end
     end.leave()
     until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
-    second, again = broker.connected(), remote(robot, keys, 13)
-    ends: Ends = [(AtBroker(robot, second), again)]
+    second, next_client = broker.connected(), remote(robot, keys, 13)
+    ends: Ends = [(AtBroker(robot, second), next_client)]
     second.attend()
-    assert uploaded(robot, ends, again) == "OK"
+    assert uploaded(robot, ends, next_client) == "OK"
     assert motors(robot) == "MOTORS 80 80"
     time.sleep(0.6)
     talk(robot, ends, 400)

@@ -293,8 +293,8 @@ def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room
     assert ended(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
-    again = Esp32Robot(kept=robot.kept())
-    school_in_reach(again)
-    again.wait(400)
+    restarted = Esp32Robot(kept=robot.kept())
+    school_in_reach(restarted)
+    restarted.wait(400)
     teacher = room.connected()
-    until(again, lambda: present(again, teacher) == [RobotPresence(ID, "tini-5678", True)])
+    until(restarted, lambda: present(restarted, teacher) == [RobotPresence(ID, "tini-5678", True)])

@@ -267,8 +267,8 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
     assert not end.has_ended and happened(robot)[-1] == "MOTORS 80 80"
     end.leave()
     talk(robot, [], 5)
-    again = remote(robot, keys, 3)
-    assert uploaded(robot, [(LowEnergy(robot), again)], again) == "OK", (
+    next_client = remote(robot, keys, 3)
+    assert uploaded(robot, [(LowEnergy(robot), next_client)], next_client) == "OK", (
         "and the robot is still found"
     )
 

@@ -43,8 +43,8 @@ def test_a_deep_sag_while_a_program_runs_is_no_power_on() -> None:
     assert cause(kept) == "BROWN_OUT"
     assert cause(kept._replace(noinit=b"")) == "POWER", "the bytes of a chip without power are lost"
     assert cause(kept, EXTERNAL) == "BUTTON"
-    again = started(kept)
-    assert cause(again.kept()) == "POWER", "it is told once"
+    restarted = started(kept)
+    assert cause(restarted.kept()) == "POWER", "it is told once"
 
 
 def test_a_power_on_of_a_robot_that_stood_is_one() -> None:
@@ -65,8 +65,8 @@ def test_two_chips_with_the_same_noise_are_two_robots() -> None:
             hello_reply = hello(robot)
             found_ids.add(hello_reply.id)
             assert hello_reply.nonce == hello_reply.id
-            again = Esp32Robot(kept=robot.kept(), mac=bytes(6), seed=5)
-            again.wait(300)
-            assert hello(again).id == hello_reply.id, "it is made once"
+            restarted = Esp32Robot(kept=robot.kept(), mac=bytes(6), seed=5)
+            restarted.wait(300)
+            assert hello(restarted).id == hello_reply.id, "it is made once"
     assert len(found_ids) == 16
     assert len({found & 0xFFFF for found in found_ids}) == 8, "what names show is that of one maker"

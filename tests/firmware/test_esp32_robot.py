@@ -318,9 +318,9 @@ def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
     robot.talk(session, 1000)
     assert robot.done(session, session.status()).saved == 1  # in memory alone
     assert robot.kept().entries.items() >= kept.entries.items()
-    again = switched_on(Esp32Robot(kept=robot.kept()))
-    assert again.is_lit
-    assert pushed(again, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    restarted = switched_on(Esp32Robot(kept=robot.kept()))
+    assert restarted.is_lit
+    assert pushed(restarted, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 # -- what goes wrong
@@ -343,13 +343,13 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     robot.hang(1100)
     robot.step(ticks=0)
     assert happened(robot) == ["MOTORS 0 0", "RESTART"]
-    again = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
-    again.wait(200)
+    restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
+    restarted.wait(200)
     session = computer(2)
-    values = again.done(session, session.status())
+    values = restarted.done(session, session.status())
     assert values.fault == STALL
     assert values.fault_program != 0
-    assert again.is_latched
+    assert restarted.is_latched
 
 
 def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
@@ -372,9 +372,9 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     robot.wait(20)
     assert happened(robot)[0] == "MOTORS 0 0"
     assert "RESTART" not in happened(robot)
-    again = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
-    again.wait(200)
-    assert again.is_latched
+    restarted = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
+    restarted.wait(200)
+    assert restarted.is_latched
 
 
 @pytest.mark.parametrize(
@@ -391,6 +391,6 @@ def test_the_cause_of_a_reset(reset: int, said: int) -> None:
 def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
     robot = driving()
     robot.hang(1200)
-    again = Esp32Robot(kept=take(robot.kept()), reset=1)
-    again.wait(300)
-    assert happened(again) == [] and again.is_latched
+    restarted = Esp32Robot(kept=take(robot.kept()), reset=1)
+    restarted.wait(300)
+    assert happened(restarted) == [] and restarted.is_latched

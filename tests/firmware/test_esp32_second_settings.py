@@ -194,20 +194,20 @@ def test_damaged_settings_are_none(key: bytes) -> None:
     assert ended(robot, ends, owner.use_broker(BROKER)) == "OK"
     kept, whole = robot.kept(), kept_settings(robot)
     for entry in damaged(kept.entries[key]):
-        again = Esp32Robot(kept=Kept(b"", {**kept.entries, key: entry}, 0))
-        school_in_reach(again)
-        again.wait(400)
-        owner = remote(again, keys, 30)
+        restarted = Esp32Robot(kept=Kept(b"", {**kept.entries, key: entry}, 0))
+        school_in_reach(restarted)
+        restarted.wait(400)
+        owner = remote(restarted, keys, 30)
         ends = [(None, owner)]
         pending_request = owner.wifi() if key == WIFI_KEY else owner.broker()
-        assert ended(again, ends, pending_request) == "OK" and pending_request.outcome
+        assert ended(restarted, ends, pending_request) == "OK" and pending_request.outcome
         values = pending_request.outcome.values
         found = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
         assert found == ("OFF", "OFF", b""), entry
-        assert (radios(again).joins == 0) == (key == WIFI_KEY)
-        assert ended(again, ends, owner.join(SCHOOL)) == "OK"
-        assert ended(again, ends, owner.use_broker(BROKER)) == "OK"
-        assert kept_settings(again) == whole
+        assert (radios(restarted).joins == 0) == (key == WIFI_KEY)
+        assert ended(restarted, ends, owner.join(SCHOOL)) == "OK"
+        assert ended(restarted, ends, owner.use_broker(BROKER)) == "OK"
+        assert kept_settings(restarted) == whole
 
 
 @pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])

@@ -57,9 +57,9 @@ def test_the_radios_have_the_robots_name() -> None:
     client = session(1, robot)
     ends: Ends = [(None, client)]
     assert ended(robot, ends, client.name("Señal".encode())) == "OK"
-    again = Esp32Robot(kept=robot.kept())
-    again.wait(300)
-    assert radios(again)[:2] == ("Señal", "Señal")
+    restarted = Esp32Robot(kept=robot.kept())
+    restarted.wait(300)
+    assert radios(restarted)[:2] == ("Señal", "Señal")
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -130,14 +130,14 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
             way.leave()
     elif how in SAID:
         say(robot, ends[driver if how.startswith("its") else other], SAID[how])
-    there = [ends[place] for place in listening]
-    talk(robot, there, 1, flags=how == "the button")
-    talk(robot, there, DEAD_MAN_MS + 300)
-    told = [clients[place].events() for place in listening]
-    assert [event.name for event in told[0]] == [name], told
-    assert all(events == told[0] for events in told), told
+    listening_ends = [ends[place] for place in listening]
+    talk(robot, listening_ends, 1, flags=how == "the button")
+    talk(robot, listening_ends, DEAD_MAN_MS + 300)
+    events_by_client = [clients[place].events() for place in listening]
+    assert [event.name for event in events_by_client[0]] == [name], events_by_client
+    assert all(events == events_by_client[0] for events in events_by_client), events_by_client
     for place in listening:
-        assert ended(robot, there, clients[place].identify()) == "OK"
+        assert ended(robot, listening_ends, clients[place].identify()) == "OK"
         assert not clients[place].events()
 
 

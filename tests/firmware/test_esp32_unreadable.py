@@ -70,9 +70,9 @@ def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
     robot.step(bytes(STOP_BYTES))
     robot.wait(20)
     assert robot.is_latched
-    again = started(kept, 0)
-    owner = remote(again, keys, 5)
-    assert uploaded(again, [(None, owner)], owner) == "OK"
+    restarted = started(kept, 0)
+    owner = remote(restarted, keys, 5)
+    assert uploaded(restarted, [(None, owner)], owner) == "OK"
 
 
 @pytest.mark.parametrize("fault", [CLOSED, NUMBERS])  # of a new one there are no blobs to read

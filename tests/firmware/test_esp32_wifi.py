@@ -59,23 +59,23 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
 
 def test_what_there_is_no_memory_for_is_announced_later() -> None:
     robot, _ = joined(Keys())
-    again = Esp32Robot(kept=robot.kept())
-    again.wait(100)
-    again.radio("H", b"\1")
-    school_in_reach(again)
-    again.wait(400)
-    assert port_of(again) and not radios(again).service
-    again.radio("H", b"\0")
-    again.wait(400)
-    assert radios(again).service == "_tiniscript._tcp 8473"
+    rebooted = Esp32Robot(kept=robot.kept())
+    rebooted.wait(100)
+    rebooted.radio("H", b"\1")
+    school_in_reach(rebooted)
+    rebooted.wait(400)
+    assert port_of(rebooted) and not radios(rebooted).service
+    rebooted.radio("H", b"\0")
+    rebooted.wait(400)
+    assert radios(rebooted).service == "_tiniscript._tcp 8473"
 
 
 def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     robot, owner = joined(Keys())
-    again = Esp32Robot(kept=robot.kept())
-    school_in_reach(again)
-    again.wait(400)
-    assert port_of(again)
+    rebooted = Esp32Robot(kept=robot.kept())
+    school_in_reach(rebooted)
+    rebooted.wait(400)
+    assert port_of(rebooted)
     ends: Ends = [(None, owner)]
     assert ended(robot, ends, owner.forget_wifi()) == "OK"
     talk(robot, ends, 50)
@@ -90,19 +90,19 @@ def overheard(
     robot: Esp32Robot, end: LowEnergy | None, who: Session, request: PendingRequest[Any]
 ) -> tuple[bytes, bytes]:
     """Let somebody talk until a request is over; return all bytes to the robot, and those back."""
-    there = back = b""
+    sent = replies = b""
     while request.outcome is None:
         data = who.poll(robot.now_ms)
-        there += data
+        sent += data
         if end is None:
             said = robot.step(data)
         else:
             end.send(data)
             robot.step()
             said = end.taken()
-        back += said
+        replies += said
         who.receive(said, robot.now_ms)
-    return there, back
+    return sent, replies
 
 
 def test_the_password_is_not_readable_on_the_line() -> None:
@@ -112,10 +112,10 @@ def test_the_password_is_not_readable_on_the_line() -> None:
     talk(robot, [], 2500)
     over = remote(robot, keys)
     request = over.join(SCHOOL)
-    there, back = overheard(robot, LowEnergy(robot), over, request)
+    sent, replies = overheard(robot, LowEnergy(robot), over, request)
     assert request.outcome and request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
-    for text, heard in ((SCHOOL.name, there), (SCHOOL.password, there + back)):
+    for text, heard in ((SCHOOL.name, sent), (SCHOOL.password, sent + replies)):
         assert all(text[k : k + 4] not in heard for k in range(len(text) - 3))
 
 
@@ -123,9 +123,9 @@ def test_a_robot_without_an_owner_takes_none() -> None:
     robot = booted()
     client = session(1, robot)
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
-        there, _ = overheard(robot, None, client, request)
+        sent, _ = overheard(robot, None, client, request)
         assert request.outcome and request.outcome.status != 0
-        assert SCHOOL.password[:8] not in there
+        assert SCHOOL.password[:8] not in sent
     assert radios(robot).joins == 0
     assert ended(robot, [(None, client)], client.ping()) == "OK"
 
@@ -165,9 +165,9 @@ def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
     assert wifi_reply_of(robot, ends, owner).network == SCHOOL.name
     kept = robot.kept()
     for entry in (b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97):
-        again = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
-        again.wait(400)
-        assert radios(again).joins == 0, entry
+        rebooted = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
+        rebooted.wait(400)
+        assert radios(rebooted).joins == 0, entry
 
 
 def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
@@ -206,20 +206,20 @@ def test_a_key_that_is_taken_away_ends_all_other_sessions_of_it() -> None:
 def test_no_two_transports_have_the_same_challenge() -> None:
     """What was recorded on one would be a right answer on another."""
     robot, _ = owned(Keys())
-    again = Esp32Robot(kept=robot.kept())  # no challenge before
-    again.wait(300)
+    rebooted = Esp32Robot(kept=robot.kept())  # no challenge before
+    rebooted.wait(300)
     hello = encode_payload(BY_NAME["HELLO"].request, {
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
     asks = b"\0" + encode_frame(Frame(1, 1, 0, hello))
     first, second = Bytes(asks), Bytes(asks)
-    ends: Ends = [(None, first), (LowEnergy(again), second)]
-    talk(again, ends, 60)
+    ends: Ends = [(None, first), (LowEnergy(rebooted), second)]
+    talk(rebooted, ends, 60)
     frames = [decode_frame(each.heard.strip(b"\0")) for each in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.said = second.said = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""
-    talk(again, ends, 60)
+    talk(rebooted, ends, 60)
     assert len(first.heard) == 20 and first.heard != second.heard
 
 
@@ -280,8 +280,8 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     assert ended(robot, ends[1:], cable.ping()) == "OK"
     school_in_reach(robot)
     talk(robot, [], 20)
-    again, end = remote(robot, keys, 13), Network(robot)
-    assert uploaded(robot, [(end, again)], again) == "OK"
+    next_client, end = remote(robot, keys, 13), Network(robot)
+    assert uploaded(robot, [(end, next_client)], next_client) == "OK"
     assert happened(robot)[-1] == "MOTORS 80 80"
     end.leave()
     robot.wait(5)
@@ -359,10 +359,10 @@ def restarted(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
     robot.wait(lived_ms)
     kept = robot.kept()
     robot.close()
-    again = Esp32Robot(kept=kept, reset=reset)
-    school_in_reach(again)
-    again.wait(400)
-    return again
+    rebooted = Esp32Robot(kept=kept, reset=reset)
+    school_in_reach(rebooted)
+    rebooted.wait(400)
+    return rebooted
 
 
 def rests(robot: Esp32Robot) -> bool:

@@ -141,7 +141,7 @@ class Scene:
         self.is_down = False  # the button
         self.has_faulted = False
         self.is_saved = True  # the program that it holds
-        self.told: list[object] = []  # all that can be seen
+        self.observed: list[object] = []  # all that can be seen
 
     def next_session(self, who: str = "owner") -> Session:
         """Let the next computer come: that of who has this key, a wrong one, or none."""
@@ -158,14 +158,14 @@ class Scene:
         """Note what a step has brought; times count from its beginning."""
         self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
         rows = (line.split(" ", 1) for line in self.robot.did)
-        self.told.append((what, [(int(ms) - begun_ms, done) for ms, done in rows]))
+        self.observed.append((what, [(int(ms) - begun_ms, done) for ms, done in rows]))
         lines = re.findall(rb"// [^\r\n]*\r\n", said)
         lines = [line for line in lines if line != NO_ZERO]  # it comes late
-        self.told += [line for line in lines if self.is_saved or line != LOST]
+        self.observed += [line for line in lines if self.is_saved or line != LOST]
         heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
-        self.told += [without_counts(event) for event in heard]
+        self.observed += [without_counts(event) for event in heard]
         if self.is_saved:
-            self.told.append(self.robot.is_lit)
+            self.observed.append(self.robot.is_lit)
         self.robot.did.clear()
 
     def ask(self, name: str, make: Asks, rng: random.Random, most_ms: int = 20_000) -> None:
@@ -175,7 +175,7 @@ class Scene:
         while request.outcome is None and self.robot.now_ms < begun_ms + most_ms:
             self.robot.talk(self.session, 1)
         but = () if self.is_saved else ("slot", "saved")
-        self.told.append((name, answer_without_counts(request, *but)))
+        self.observed.append((name, answer_without_counts(request, *but)))
         self.note(name, begun_ms)
 
     def talk(self, milliseconds: int) -> None:
@@ -222,7 +222,7 @@ def half_a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> N
     if rng.random() < 0.7:
         scene.next_session()
     robot.wait(rng.choice((1, 30, 1100)))
-    scene.told.append(f"half of {name}")
+    scene.observed.append(f"half of {name}")
 
 
 def a_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
@@ -363,7 +363,7 @@ class Behind(NamedTuple):
     is_going_on: bool = False  # nothing has stopped it
 
 
-def behind(rng: random.Random, before: str) -> Behind:
+def drawn_stop(rng: random.Random, before: str) -> Behind:
     """Return how a robot is stopped. A person who types comes when no client is heard any more."""
     how = drawn_behind(rng, before)
     # Of a robot with an owner nobody else gets what it holds.
@@ -399,12 +399,12 @@ def stopped(scene: Scene, how: Behind) -> None:
     if not how.is_going_on:
         robot.wait(2, how.stop)
         robot.wait(how.wait_ms)
-    elif not scene.told:
+    elif not scene.observed:
         robot.wait(300, b"//\n")
     if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
         robot.wait(1200, b"\n")  # that lines end here is known
     robot.did.clear()
-    scene.told.clear()
+    scene.observed.clear()
     scene.nonce = 1000
     scene.next_session()
 
@@ -428,7 +428,7 @@ def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
                 scene.robot.until(scene.session, scene.session.hello())
             scene.ask(name, asks[name], rng)
             scene.talk(RUNS_MS)
-    return [*scene.told, *in_the_end(scene, how)]
+    return [*scene.observed, *in_the_end(scene, how)]
 
 
 def in_the_end(scene: Scene, how: Behind) -> list[object]:
@@ -481,8 +481,8 @@ def check(seed: int, kind: str, before: str) -> int:
     saves = BEFORE[before].saves or scene.has_faulted
     memory = settled(scene, saves, rng)
     assert saves or memory == new_memory()
-    history = scene.told[:]
-    how = behind(rng, before)
+    history = scene.observed[:]
+    how = drawn_stop(rng, before)
     twin = Scene(KINDS[kind], memory, write_ms, clock(rng), keys)
     drawn_alike = rng.random()
     found = []

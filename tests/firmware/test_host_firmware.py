@@ -58,13 +58,13 @@ def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
 def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
     assert not switched_on().is_lit
     robot, _ = holding("SI|F(0.5, 80)")
-    again = switched_on(robot.memory())
-    assert again.is_lit
-    again.wait(2000)
-    assert again.did == []
-    again.push()
-    again.wait(600)
-    assert happened(again) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    restarted = switched_on(robot.memory())
+    assert restarted.is_lit
+    restarted.wait(2000)
+    assert restarted.did == []
+    restarted.push()
+    restarted.wait(600)
+    assert happened(restarted) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 def test_without_frames_the_motors_go_off_in_time() -> None:
@@ -121,12 +121,12 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
         session.upload(image_of("SI|B(0.1, 60); " + "SHOW(1); " * rng.randrange(30)))
         robot.talk(session, rng.randrange(1, 1500))
         memory = robot.memory()
-        again = switched_on(memory)
-        assert again.is_lit
-        again.push()
-        again.wait(400)
-        assert happened(again)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
-        assert happened(again)[-1] == "FINISHED"
+        restarted = switched_on(memory)
+        assert restarted.is_lit
+        restarted.push()
+        restarted.wait(400)
+        assert happened(restarted)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
+        assert happened(restarted)[-1] == "FINISHED"
 
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:

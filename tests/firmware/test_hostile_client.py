@@ -126,7 +126,7 @@ class Client:
         if status in NO_ACT and before:
             assert not [line for line in self.robot.did if " MOTORS " in line]
 
-    def again(self) -> None:
+    def repeat_frame(self) -> None:
         """The same frame twice: the same answer, and what runs is the same run."""
         name = self.rng.choice(("START", "CLEAR", "IDENTIFY", "ABORT"))
         mode = b"\x40" if name == "START" else b""
@@ -193,11 +193,11 @@ class Client:
 
     def turn(self) -> None:
         self.rng.choice((
-            self.request, self.request, self.request, self.again, self.upload, self.hello,
+            self.request, self.request, self.request, self.repeat_frame, self.upload, self.hello,
             self.zeros, self.line, self.noise, self.silence, self.button,
         ))()  # fmt: skip
 
-    def is_alive(self) -> None:
+    def check_obeys(self) -> None:
         """A stop stops it; after a second of silence the next line is done."""
         self.put(bytes(4), 1200)
         assert self.robot.is_latched
@@ -213,7 +213,7 @@ def play(seed: int) -> None:
     client.hello()
     for _ in range(TURNS):
         client.turn()
-    client.is_alive()
+    client.check_obeys()
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))

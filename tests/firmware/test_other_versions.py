@@ -62,9 +62,9 @@ def test_the_next_program_replaces_it() -> None:
     assert robot.until(session, session.upload(image)) == OK
     robot.talk(session, 1000)
     assert saved(robot, session) == "STORED"
-    again, session = met(robot.memory())
-    assert saved(again, session) == "STORED"
-    assert again.done(session, session.fetch()).image[15:] == image.code
+    restarted, session = met(robot.memory())
+    assert saved(restarted, session) == "STORED"
+    assert restarted.done(session, session.fetch()).image[15:] == image.code
 
 
 @pytest.mark.parametrize("place", [FIRST, SECOND])
@@ -100,9 +100,9 @@ def test_name_and_trim_outlive_an_update() -> None:
     assert robot.until(session, session.name(b"Ada")) == OK
     memory = bytearray(robot.memory())
     assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
-    again, session = met(bytes(memory))
+    restarted, session = met(bytes(memory))
     assert session.robot is not None and session.robot.name == "Ada"
-    assert saved(again, session) == "OTHER_VERSION"
+    assert saved(restarted, session) == "OTHER_VERSION"
 
 
 @pytest.mark.parametrize("trim", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\0\x29", b"\xff" * 3])

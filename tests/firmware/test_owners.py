@@ -95,15 +95,15 @@ class Late:
 
     def pass_time(self, milliseconds: int, flags: int = 0) -> None:
         """Let time pass, at whose beginning something happens to the button."""
-        robot, (there, back) = self.table.robot, self.ways
+        robot, (to_robot, to_computer) = self.table.robot, self.ways
         end_ms = robot.now_ms + milliseconds
         while robot.now_ms < end_ms:
             data = self.session.poll(robot.now_ms)
-            there.put(b"" if self.is_cut else data, robot.now_ms)
-            data = there.arrived(robot.now_ms)
+            to_robot.put(b"" if self.is_cut else data, robot.now_ms)
+            data = to_robot.arrived(robot.now_ms)
             sent = robot.step(data, flags) if flags else robot.wait(LINE_STEP_MS, data)
-            back.put(b"" if self.is_cut else sent, robot.now_ms)
-            self.session.receive(back.arrived(robot.now_ms), robot.now_ms)
+            to_computer.put(b"" if self.is_cut else sent, robot.now_ms)
+            self.session.receive(to_computer.arrived(robot.now_ms), robot.now_ms)
             flags = 0
 
     def until(self, request: PendingRequest[Any]) -> None:
@@ -165,8 +165,8 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
     table.pass_time(late, 300)
     table.hold(late, 2200)
     assert table.outcome(late, request) == "OK"
-    again = table.session(first, nonce=3)
-    assert table.outcome(again, again.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
+    next_session = table.session(first, nonce=3)
+    assert table.outcome(next_session, next_session.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
     assert table.tries(table.session(first, nonce=4)) != "OK"
     assert table.tries(table.session(second, nonce=5)) == "OK"
     stranger = table.session(Keys(99), nonce=9)
@@ -238,8 +238,8 @@ def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> Non
     table.pass_time(session, 500)  # the robot has tried again
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
-    again = Owned(table.robot.memory())
-    assert owner_of(again, again.session()) == OWNED_BY_OTHER
+    restarted = Owned(table.robot.memory())
+    assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
 
 
 def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
@@ -485,14 +485,14 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
     runs = holds == "what it runs"
     tune = [] if runs else [131 * (4 + (number >> 3 * k) % 8) for k in range(3)]
     for seq, before_ms in enumerate((1, 249, 251, 700, 2999, 3500)):
-        for again in range(2):
+        for is_second in (False, True):
             robot.did.clear()
-            its_seq = (session._seq + 1 + 2 * seq + again) % 256
+            its_seq = (session._seq + 1 + 2 * seq + is_second) % 256
             frame = Frame(BY_NAME["IDENTIFY"].number, its_seq, session._epoch)
             robot.step(b"\0" + encode_frame(frame))
             begun_ms = robot.now_ms
             seen = [robot.is_lit]
-            for _ in range((before_ms if not again else STEPS * STEP_MS + 500) - 1):
+            for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
                 seen.append(robot.is_lit)
         wanted = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500

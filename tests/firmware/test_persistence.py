@@ -142,8 +142,8 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
-        again, other = switched_on(robot.memory()), computer(2)
-        values = again.done(other, other.trim())
+        restarted, other = switched_on(robot.memory()), computer(2)
+        values = restarted.done(other, other.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
@@ -170,8 +170,8 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
-    again, other = switched_on(robot.memory()), computer(2)
-    return trim_from_reply(again.done(other, other.trim()))
+    restarted, other = switched_on(robot.memory()), computer(2)
+    return trim_from_reply(restarted.done(other, other.trim()))
 
 
 def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:

@@ -132,13 +132,13 @@ def test_a_sealed_session_hears_places_sealed() -> None:
     session.tells_places = True
     image = image_of(DRIVE)
     assert table.robot.until(session, session.upload(image, saves=False)) == OK
-    there = b""
+    received = b""
     found: list[Event] = []
     for _ in range(900):
         data = session.poll(table.robot.now_ms)
-        there += data
+        received += data
         session.receive(table.robot.step(data), table.robot.now_ms)
         found += session.events()
-    frames = [decode_frame(part) for part in there.split(b"\0") if part]
+    frames = [decode_frame(part) for part in received.split(b"\0") if part]
     assert frames and all(frame and frame.is_sealed for frame in frames)
     assert {place_event.program for place_event in place_events_of(found)} == {image.checksum}

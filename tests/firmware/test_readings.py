@@ -32,11 +32,13 @@ def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -
     """Of a program whose times do not depend on whether its line is 5 % slower or faster: in
     others a SHOW that waits, a byte longer or shorter, changes all that follows."""
     text = program(random.Random(seed))
-    alone, told = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
-    apart = apart_ms(alone.did, told.did)
+    alone, reporting = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
+    apart = apart_ms(alone.did, reporting.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= MOST_APART_MS or not is_steady(text, seed), text
-    shown = [[event for event in each.events if event.name == "SHOW"] for each in (alone, told)]
+    shown = [
+        [event for event in each.events if event.name == "SHOW"] for each in (alone, reporting)
+    ]
     assert abs(len(shown[0]) - len(shown[1])) <= max(2, len(shown[0]) // 20)
     assert not alone.readings
 
@@ -46,14 +48,14 @@ def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
     """A line that takes no time tells all; one that does tells the same, or that it does not."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
     every_ms = 5 if seed % 2 else 30
-    whole, told = (
+    whole, limited = (
         sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
     )
     assert not [event for event in whole.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
         all_of_it = [event for event in whole.readings if event.sensor == sensor]
         at = 0
-        for event in told.readings:
+        for event in limited.readings:
             if event.sensor & ~UNTOLD != sensor:
                 continue
             if not event.sensor & UNTOLD:
@@ -67,8 +69,8 @@ def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
 
 def test_a_line_that_is_too_slow_says_so() -> None:
     text = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
-    told = sensed_run(text, 1, True, BYTE_TICKS, most_ms=5)
-    assert [event for event in told.readings if event.sensor & UNTOLD]
+    run = sensed_run(text, 1, True, BYTE_TICKS, most_ms=5)
+    assert [event for event in run.readings if event.sensor & UNTOLD]
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -54,7 +54,7 @@ def ran(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did],
         for pin in LIGHT:
             uno.analog(pin, rng.randrange(1024))
         wired.run(CHANGES_MS)
-    told = sum(event.name == "READING" for event in session.events())
+    reading_count = sum(event.name == "READING" for event in session.events())
     end = uno.cycle
     session.stop(wired.now_ms)
     wired.run(200)
@@ -64,7 +64,7 @@ def ran(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did],
                for cycle, after in zip(changes, [*changes[1:], end], strict=False)
                if after - cycle > TOGETHER_MS * CYCLES_PER_MS]  # fmt: skip
     first = lasting[0][0] if lasting else 0
-    return [((cycle - first) / CYCLES_PER_MS, powers) for cycle, powers in lasting], told
+    return [((cycle - first) / CYCLES_PER_MS, powers) for cycle, powers in lasting], reading_count
 
 
 def steady_programs(first: int) -> Iterator[tuple[int, str]]:

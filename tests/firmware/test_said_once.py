@@ -70,7 +70,7 @@ class Run:
     ended_epoch: int = 0
     is_ended: bool = False  # by itself, or by a stop
     values: list[int] = field(default_factory=list)
-    told: list[int] = field(default_factory=list)  # its end
+    reported_ends: list[int] = field(default_factory=list)  # its end
     is_over: bool = False  # as its client knows
 
 
@@ -196,12 +196,14 @@ class Client:
             self.take_stop(frame, begun_ms)
         elif frame.number in (FAULT, DONE):
             run = self.run_of(frame.payload[0])
-            run.told.append(frame.number)
+            run.reported_ends.append(frame.number)
             run.is_over = True
             assert frame.number == DONE or frame.epoch != run.ended_epoch, (
                 "a fault without an epoch"
             )
-            assert run.told == [run.ended], "an end that is none, another one, or told twice"
+            assert run.reported_ends == [run.ended], (
+                "an end that is none, another one, or told twice"
+            )
         else:
             asked, asked_ms = self.waiting.pop(frame.seq, (0, 0))
             assert frame.is_reply and asked == frame.number, "a reply that nobody waits for"
@@ -212,7 +214,7 @@ class Client:
         """A reply may be ahead of the fault, which the next run's end may replace."""
         if frame.epoch == self.epoch and not self.is_new:
             return
-        is_ahead = any(run.ended == FAULT and not run.told for run in self.runs[-2:])
+        is_ahead = any(run.ended == FAULT and not run.reported_ends for run in self.runs[-2:])
         is_late = is_ahead and frame.number != SHOW  # a reply, or the end of the next run
         assert frame.number in (HELLO, STOPPED, FAULT) or is_late, "nothing tells why"
         assert self.is_new or (frame.epoch - self.epoch) % 256 < 128, "an old epoch"
@@ -321,7 +323,7 @@ class Client:
             # The button may start the next one while the line is busy.
             begins_ms = [later.begun_ms for later in self.runs[number : number + 1]]
             is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < BUSY_MS
-            assert run.ended in (0, *run.told) or is_overtaken, f"no end of {number}"
+            assert run.ended in (0, *run.reported_ends) or is_overtaken, f"no end of {number}"
             if run.ended == DONE:
                 assert len(run.values) == run.program.shows, number
 
@@ -371,7 +373,7 @@ def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
         client.passes(5)
         client.passes(1, b"", RELEASED)
         client.settle()
-        waited += len(client.runs) == 2 and sum(len(run.told) for run in client.runs) == 1
+        waited += len(client.runs) == 2 and sum(len(run.reported_ends) for run in client.runs) == 1
     assert waited, "the line was never busy at both ends"
 
 

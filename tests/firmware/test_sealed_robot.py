@@ -67,8 +67,8 @@ def opened(*defines: str) -> tuple[Owned, Session, Keys]:
 def test_a_firmware_without_seals_does_as_before() -> None:
     table, session, _ = opened("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
-    there, _ = recorded(table, session, SHORT)
-    assert not any(frame.is_sealed for frame in map(decode_frame, there) if frame)
+    sent, _ = recorded(table, session, SHORT)
+    assert not any(frame.is_sealed for frame in map(decode_frame, sent) if frame)
     sealed = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
     said = table.answer(sealed)
     assert said and said.payload[0] == STATUSES["NOT_SEALED"]
@@ -125,7 +125,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
     """Nothing reaches the robot, and what comes back is forged in all ways but with the key."""
     chance = random.Random(1)
     table, session, _ = opened()
-    there, back = recorded(table, session, SHORT)
+    sent, replies = recorded(table, session, SHORT)
     table.pass_time(session, 400)
     request = session.live(image_of(SHORT).code)
     for _ in range(25_000):
@@ -141,7 +141,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
             Frame(frame.number, frame.seq, frame.epoch, bytes(22), True, True),
             frame._replace(is_reply=True),
         ]
-        for each in [*map(encode_frame, forged), *(each + b"\0" for each in back + there), data]:
+        for each in [*map(encode_frame, forged), *(each + b"\0" for each in replies + sent), data]:
             session.receive(each, table.robot.now_ms)
             assert request.outcome is None
         if chance.random() < 0.2:
@@ -307,14 +307,14 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
 
 def test_another_session_with_the_same_numbers_is_another_seal() -> None:
     table, session, keys = opened()
-    there, _ = recorded(table, session, SHORT)
+    sent, _ = recorded(table, session, SHORT)
     table.pass_time(None, 3000)
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
         later = Owned(memory, seed=seed)
         assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
-        for each in there * 3:
+        for each in sent * 3:
             later.robot.wait(5, b"\0" + each + b"\0")
         assert not [line for line in later.robot.did if "MOTORS" in line]
 
@@ -345,8 +345,8 @@ def attacked(frames: int, seed: int) -> Counter[str]:
     """
     chance = random.Random(seed)
     table, session, _keys = opened()
-    there, _ = recorded(table, session, SHORT)
-    old = there[-1:]
+    recorded_frames, _ = recorded(table, session, SHORT)
+    old = recorded_frames[-1:]
     robot = table.robot
     thief = Thief(chance, old)
     found: Counter[str] = Counter(accepted=0)
@@ -358,11 +358,11 @@ def attacked(frames: int, seed: int) -> Counter[str]:
                 robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
                 assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
                 found["stops"] += 1
-            thief.old += thief.there[-3:]
+            thief.old += thief.sent[-3:]
             session = table.session(_keys, nonce=chance.getrandbits(32))
-            there, back = recorded(table, session, SHORT)
-            thief.there = [each for each in there if _is_sealed(each)]
-            thief.back = [each for each in back if _is_sealed(each)]
+            recorded_frames, replies = recorded(table, session, SHORT)
+            thief.sent = [each for each in recorded_frames if _is_sealed(each)]
+            thief.replies = [each for each in replies if _is_sealed(each)]
             table.pass_time(session, 300)
             robot.did.clear()
         if count % 200 == 100:  # the seal lives on

@@ -161,9 +161,9 @@ def table_in_state(state: str) -> Table:
 
 
 def after_power_off(table: Table) -> HostFirmware:
-    again = HostFirmware(KIT, table.robot.memory())
-    again.wait(100)
-    return again
+    restarted = HostFirmware(KIT, table.robot.memory())
+    restarted.wait(100)
+    return restarted
 
 
 @pytest.mark.parametrize(("state", "way"), PAIRS)
@@ -180,10 +180,10 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     later = [line for line in happened(robot)[before:] if line.startswith("MOTORS")]
     assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
     if state == "is saving its program":
-        again = after_power_off(table)
-        again.push()
-        again.wait(50)
-        assert happened(again)[-1] == f"MOTORS {table.program} {table.program}"
+        restarted = after_power_off(table)
+        restarted.push()
+        restarted.wait(50)
+        assert happened(restarted)[-1] == f"MOTORS {table.program} {table.program}"
     robot.push()
     table.talk(50)
     if table.program:

@@ -298,9 +298,9 @@ def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
     assert done_after(robot, "SI|R(0.1,40)\n")[0] == "MOTORS 40 -40"
     assert pushed(robot) == LINE, "a line that runs at once leaves the button's program"
     assert status(robot, session).saved == SAVED_MEMORY
-    again = switched_on(robot.memory())
-    assert pushed(again) == SAVED_BACK
-    assert fetched(again, computer(2)) == before
+    restarted = switched_on(robot.memory())
+    assert pushed(restarted) == SAVED_BACK
+    assert fetched(restarted, computer(2)) == before
 
 
 def test_a_program_of_frames_replaces_sb() -> None:
@@ -386,9 +386,9 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     assert values.fault == 2 and values.program == held
     assert values.fault_program not in (0, held)
     robot.wait(3000)
-    again = status(switched_on(robot.memory()), computer(2))
-    assert (again.fault, again.fault_at) == (2, values.fault_at)
-    assert again.fault_program == values.fault_program
+    kept_status = status(switched_on(robot.memory()), computer(2))
+    assert (kept_status.fault, kept_status.fault_at) == (2, values.fault_at)
+    assert kept_status.fault_program == values.fault_program
     assert typed(robot, "F(0.2,50)\n") == ["// It had a fault. Begin with SI|"]
     # where the plain code and the compiler's are the same, so are the checksums
     typed(robot, "SI|W(TIME/(TIME-TIME))\n")
@@ -491,8 +491,8 @@ def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> Non
     assert outcome(request).values.program == image.checksum
     typed(robot, "W(0)\n")
     stored(robot, session)
-    again = switched_on(robot.memory())
-    assert pushed(again, 300) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    restarted = switched_on(robot.memory())
+    assert pushed(restarted, 300) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
@@ -529,8 +529,8 @@ def test_text_while_a_program_is_being_saved(start: str) -> None:
     assert answers[-1] in ("// DONE", "// OK. The button starts it."), answers
     stored(switched_on(robot.memory()), computer(3), 12_000)
     robot.wait(12_000)
-    again = switched_on(robot.memory())
-    image = fetched(again, computer(2))
+    restarted = switched_on(robot.memory())
+    image = fetched(restarted, computer(2))
     assert image.endswith(image_of(LONG).code)
 
 

@@ -39,7 +39,7 @@ for name, test in {**vars(test_text), **vars(test_text_fuzz)}.items():
 
 
 @pytest.fixture(autouse=True)
-def _is_small(monkeypatch: pytest.MonkeyPatch) -> None:
+def _without_draft(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(HostFirmware, "has_draft", False)
 
 
@@ -129,9 +129,9 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
 def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
     robot, _, before = read_back()
     typed(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
-    again = switched_on(robot.memory())
-    assert pushed(again) == SAVED_BACK
-    assert fetched(again, computer(2)) == before
+    restarted = switched_on(robot.memory())
+    assert pushed(restarted) == SAVED_BACK
+    assert fetched(restarted, computer(2)) == before
 
 
 @pytest.mark.parametrize("has_draft", [True, False])

@@ -135,7 +135,7 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
         with uno.try_out():
             stop_after(uno, baud, ALL[name], spelling)
             if spelling == spellings[-1]:
-                is_latched(uno)
+                check_latched(uno)
 
 
 @pytest.mark.parametrize("name", FRAMED)
@@ -177,7 +177,7 @@ def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, 
             uno.send(b"S")
             uno.run_ms(400)
             assert (states(uno) == OFF) == (sent >= 3), sent
-        is_latched(uno)
+        check_latched(uno)
 
 
 @pytest.mark.parametrize("data", [b"S", b"STOP", b"alto", b"S.", b"Stop now"])
@@ -214,7 +214,7 @@ def test_ctrl_c_alone_stops_after_silence(
     with uno.try_out():
         late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
         assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
-        is_latched(uno)
+        check_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
         with uno.try_out():
             uno.send(other)
@@ -299,7 +299,7 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
 # -------------------------------------------------------------------------------------------------
 
 
-def is_latched(uno: Uno) -> None:
+def check_latched(uno: Uno) -> None:
     uno.run_ms(SILENCE_MS + 100)
     before = len(uno.sent_bytes)
     uno.send(b"F(1,80)\n")

@@ -189,9 +189,9 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
     assert program_after_power_off(robot) == bytes_of(waits or B)
     assert name_after_power_off(robot) == name
     if waits or SAVED_ONE not in steps:  # else what was given up has taken the place of A
-        again, session = switched_on(robot.memory()), computer(80)
-        assert undo(again, session) == OK
-        assert held(again, session) == bytes_of(B if waits else A)
+        restarted, session = switched_on(robot.memory()), computer(80)
+        assert undo(restarted, session) == OK
+        assert held(restarted, session) == bytes_of(B if waits else A)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -241,9 +241,9 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     memory = robot.memory()
     found = []
     for nonce in (5, 6):
-        again, other = switched_on(memory), computer(nonce)
-        found.append(held(again, other))
-        memory = again.memory()
+        restarted, other = switched_on(memory), computer(nonce)
+        found.append(held(restarted, other))
+        memory = restarted.memory()
     assert found[0] == found[1]
     assert found[0] in (bytes_of(A), bytes_of(B))
     is_answered = request.outcome is not None
@@ -305,7 +305,7 @@ def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
     """Return a robot in a state, and who asks it: who talks with it, or another one."""
     table = Table(has_draft)
     table.robot.wait(200)
-    table.is_ready(EARLIER)
+    table.upload_program(EARLIER)
     STATES[state](table)
     if table.talks is not None:
         return table, table.talks
@@ -342,13 +342,13 @@ def back_in(state: str) -> int:
 @pytest.mark.parametrize("state", STATES)
 def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     table, session = robot_in_state(state, has_draft)
-    robot, back = table.robot, back_in(state)
+    robot, previous = table.robot, back_in(state)
     assert robot.has_draft == has_draft
     was_running = not robot.is_latched
     robot.did.clear()
     status = undo(robot, session)
-    assert status == (OK if back else NO_PREVIOUS)
-    now = program_of(back or EARLIER)
+    assert status == (OK if previous else NO_PREVIOUS)
+    now = program_of(previous or EARLIER)
     assert held(robot, session) == now
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
@@ -356,22 +356,22 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
     stored(robot, session)
     assert after_power_off(table) == now
-    assert undo(robot, session) == (OK if back else NO_PREVIOUS)
+    assert undo(robot, session) == (OK if previous else NO_PREVIOUS)
     stored(robot, session)
     other = held(robot, session)
     assert after_power_off(table) == other
-    assert (other != now) == bool(back), "a second one brings another"
+    assert (other != now) == bool(previous), "a second one brings another"
 
 
 @pytest.mark.parametrize("state", STATES)
 def test_two_at_once_are_two(state: str) -> None:
     """The second request is on its way before the first is answered."""
     table, session = robot_in_state(state)
-    robot, back = table.robot, back_in(state)
+    robot, previous = table.robot, back_in(state)
     requests = [session.undo(), session.undo()]
     found = [robot.until(session, request) for request in requests]
-    assert found == [OK if back else NO_PREVIOUS] * 2
-    programs = [outcome(pending_request).values.program for pending_request in requests if back]
+    assert found == [OK if previous else NO_PREVIOUS] * 2
+    programs = [outcome(pending_request).values.program for pending_request in requests if previous]
     assert len(set(programs)) == len(programs)
     stored(robot, session)
     assert after_power_off(table) == held(robot, session)

@@ -84,11 +84,11 @@ def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> No
     assert wired.until(wired.session.trim(Trim(pace=pace).data())) == OK
     assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
     uno.kill()
-    with switched_on(sketch, memory) as again:
-        wired = computer(again, 2)
+    with switched_on(sketch, memory) as restarted:
+        wired = computer(restarted, 2)
         assert trim_from_reply(wired.done(wired.session.trim())) == Trim(pace=pace)
-        assert drive_ms(again, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
-        assert drive_ms(again, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
+        assert drive_ms(restarted, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
+        assert drive_ms(restarted, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
 
 def drive_ms(uno: Uno, text: str) -> float:

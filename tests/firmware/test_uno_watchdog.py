@@ -75,9 +75,9 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
             uno.reset()
             uno.run_ms(300)
             assert hello_of(computer(uno, 8 + number)).reset != WATCHDOG
-    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as again:
-        again.run_ms(300)
-        wired = computer(again, 7)
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as restarted:
+        restarted.run_ms(300)
+        wired = computer(restarted, 7)
         hello_reply = hello_of(wired)
         assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
         assert hello_reply.fault_program == image_of(text).checksum

@@ -142,7 +142,7 @@ class Trials:
         for frame in self.frames(image):
             is_quiet = rng.random() < QUIET
             before, codes = self.text(is_quiet)
-            behind, more = self.text()
+            later_text, more = self.text()
             may_run.update(codes + more)
             data = before + frame
             most = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
@@ -150,7 +150,7 @@ class Trials:
                 self.put(b"", 1100)  # text comes again
             cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
-            self.put(data[cut:] + rng.choice((b"", behind)), rng.choice((1, 4, 20)))
+            self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
             if rng.random() < AGAIN:
                 self.put(b"", rng.choice((0, 20, 300)))
                 self.put(b"\0" + frame, 20)

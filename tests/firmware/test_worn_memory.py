@@ -53,7 +53,7 @@ def check(seed: int) -> str:
     name, program = Known(b""), Known(b"")
     trim, pace = Known(TRIMS[0][:3]), Known(TRIMS[0][3:])
     owner = Known(FREE)
-    told = "all is kept"
+    outcome = "all is kept"
     for _ in range(rng.randint(4, 14)):
         what = rng.choice((*["worn"] * 5, "name", "name", "trim", "program", "claim", "fault"))
         if what == "worn":
@@ -92,22 +92,22 @@ def check(seed: int) -> str:
                 pace.asked(asked[3:], is_kept)
         slots = {"program": PROGRAM, "claim": KEYS}.get(what, (*IDENTITY, *FAULT))
         if not is_kept:
-            told = "it says what is not kept"
+            outcome = "it says what is not kept"
             assert worn_of(worn, slots), f"{seed} {what} {worn}"
     robot.talk(session, 1000)
-    again = Owned(robot.memory())
-    later = again.session(keys, nonce=9)
-    whose = owner_of(again, later)
+    restarted = Owned(robot.memory())
+    later = restarted.session(keys, nonce=9)
+    whose = owner_of(restarted, later)
     # A robot that cannot keep who it is has no key of anybody.
     assert whose in owner.may_be or worn_of(worn, IDENTITY) == 2, f"{seed} {worn}"
     assert later.robot and later.robot.name.encode() in name.may_be, f"{seed} {worn} {later.robot}"
-    trim_reply = again.robot.done(later, later.trim())
+    trim_reply = restarted.robot.done(later, later.trim())
     assert trim_reply.pace in pace.may_be, f"{seed} {worn}"
     assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn}"
-    has_program = again.robot.done(later, later.status()).length != 0
-    image = held(again.robot, later) if has_program else b""
+    has_program = restarted.robot.done(later, later.status()).length != 0
+    image = held(restarted.robot, later) if has_program else b""
     assert image in program.may_be, f"{seed} {worn}"
-    return told
+    return outcome
 
 
 @pytest.mark.sampled("part", keep=2)

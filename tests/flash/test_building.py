@@ -67,9 +67,9 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     kept = ready.files(ready.firmware_cache())
     assert [(each.title, each.board) for each in kept] == [("mine", "uno")]
-    again = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
-    assert (again.code, again.err) == (0, "")
-    assert again.out == f"mine on uno: ready, {kept[0].flash_bytes:,} bytes\n"
+    second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
+    assert (second_build.code, second_build.err) == (0, "")
+    assert second_build.out == f"mine on uno: ready, {kept[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")

@@ -93,11 +93,11 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
 def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     running = subprocess.Popen(["sleep", "600"], start_new_session=True)
 
-    def again(seconds_s: float) -> int:
+    def interrupt_wait(seconds_s: float) -> int:
         monkeypatch.undo()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running, "wait", again)
+    monkeypatch.setattr(running, "wait", interrupt_wait)
     with pytest.raises(KeyboardInterrupt):
         children._end(running)
     assert running.poll() is not None

@@ -166,9 +166,9 @@ def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> N
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
-    told = tmp_path / "told"
+    marker = tmp_path / "told"
     body = (
-        f'import os\nopen({str(told)!r}, "w").write(str(os.getpid()))\n{PROGRESS}\ntime.sleep(60)'
+        f'import os\nopen({str(marker)!r}, "w").write(str(os.getpid()))\n{PROGRESS}\ntime.sleep(60)'
     )
     variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
     tsc = [*LIMITED, sys.executable, "-m", "tiniscript"]
@@ -177,7 +177,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     terminal.interrupt()
     assert terminal.end() == 2
     assert "board's firmware" in " ".join(" ".join(terminal.whole()).split())
-    assert not Path(f"/proc/{told.read_text()}").exists()
+    assert not Path(f"/proc/{marker.read_text()}").exists()
 
 
 @pytest.mark.parametrize("count", range(4))

@@ -129,9 +129,9 @@ def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
         assert said("a") == "Read {file}."
     before = (place / "xx" / "some.toml").read_text().splitlines()
-    again = opened(place)
-    assert [*again.follow_moved_texts()] == []
-    again.write()
+    reopened = opened(place)
+    assert [*reopened.follow_moved_texts()] == []
+    reopened.write()
     after = (place / "xx" / "some.toml").read_text().splitlines()
     assert sorted(after) == sorted(before), "it keeps what somebody must mend"
 
@@ -352,9 +352,9 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     seen = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
     assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
-    again = opened(place)
-    assert [*again.follow_moved_texts()] == []
-    again.write()
+    reopened = opened(place)
+    assert [*reopened.follow_moved_texts()] == []
+    reopened.write()
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen
 
 

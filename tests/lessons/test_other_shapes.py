@@ -377,9 +377,9 @@ def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) 
     for criterion in lesson.criteria:  # one tolerance for all that is at a place
         if "within_cm" in criterion.number_by_key and criterion.places and not criterion.area:
             named = {name for name in NAMED.findall(task) if name.endswith(".within_cm")}
-            told = {criterion.number_by_key["within_cm"] for criterion in lesson.criteria for name in named
-                    if name == f"{criterion.kind}.within_cm"}  # fmt: skip
-            assert told == {criterion.number_by_key["within_cm"]}, criterion.kind
+            tolerances = {criterion.number_by_key["within_cm"] for criterion in lesson.criteria for name in named
+                          if name == f"{criterion.kind}.within_cm"}  # fmt: skip
+            assert tolerances == {criterion.number_by_key["within_cm"]}, criterion.kind
     page = catalogue.page(folder, catalogue.PUPIL, language)
     assert "{" not in page
     assert f" {lesson.seconds:g} " in page

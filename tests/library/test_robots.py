@@ -490,9 +490,9 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
     assert pty_robot.moves and other.process.poll() is None
-    with tiniscript.connect(pty_robot.port) as again:  # through what holds the port
-        assert again.info.port == pty_robot.port
-        again.stop()
+    with tiniscript.connect(pty_robot.port) as second_robot:  # through what holds the port
+        assert second_robot.info.port == pty_robot.port
+        second_robot.stop()
     assert other.ended().code == 3
     until(
         lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"

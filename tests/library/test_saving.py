@@ -145,8 +145,10 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
         story += [(rng.uniform(2, 5), SAVED_SAVING), (rng.uniform(2, 5), SAVED_LOW_SUPPLY)]
         wanted.append("LOW_SUPPLY")
     story += [(rng.uniform(2, 5), SAVED_SAVING), (5.0, SAVED_STORED)]
-    line, told = Line(), list[str]()
-    printer = SimpleNamespace(print_values=lambda at_ms, name, *rest, **more: told.append(name))
+    line, printed_names = Line(), list[str]()
+    printer = SimpleNamespace(
+        print_values=lambda at_ms, name, *rest, **more: printed_names.append(name)
+    )
     saving = run_monitor.Saving(cast("Any", line), cast("Any", printer), receipt(SAVED_SAVING))
     for lasts_s, saved in story:
         end_s = clock.now_s + lasts_s
@@ -155,5 +157,5 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
                 line.asked[-1].outcome = Reply(OK, 0, status(saved))
             saving.poll()
             clock.now_s += LOOK_S
-    assert told == [*wanted, "SAVED"]
+    assert printed_names == [*wanted, "SAVED"]
     assert len(line.asked) <= 1 + clock.now_s / run_monitor.STATUS_INTERVAL_S

@@ -158,7 +158,7 @@ def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.Monkey
             ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
         ]  # fmt: skip
         line.events += [(int(monotonic() * 1000), each) for each in late]
-    told = list(robot.events(0.2))
-    assert [(each.values.get("name"), each.values["line"]) for each in told] == [
+    events = list(robot.events(0.2))
+    assert [(each.values.get("name"), each.values["line"]) for each in events] == [
         ("NEAR / 0", 1), (None, 1), ("FAR / 0", 2), (None, 2),
     ]  # fmt: skip

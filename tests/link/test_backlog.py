@@ -68,8 +68,8 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
     finally:
         tracemalloc.stop()
     found = []
-    while (told := line.event(0.5)) is not None:
-        found.append(told[1])
+    while (row := line.event(0.5)) is not None:
+        found.append(row[1])
     line.close()
     assert kept_bytes < MOST_BYTES
     assert len(found) <= MOST_EVENTS + 1

@@ -44,10 +44,12 @@ def judge(sent: Line, accepted: list[Frame]) -> None:
         assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
         got.append(numbers[frame])
     assert got == sorted(set(got)), "a frame came twice, or before one that was sent earlier"
-    here = set(got)
+    arrived = set(got)
     for number, is_damaged in enumerate(sent.is_damaged):
         if not is_damaged and (number == 0 or not sent.is_damaged[number - 1]):
-            assert number in here, f"frame {number} is lost without damage to it or the one before"
+            assert number in arrived, (
+                f"frame {number} is lost without damage to it or the one before"
+            )
 
 
 def frame_of(data: bytes) -> Frame:

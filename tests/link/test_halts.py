@@ -102,11 +102,11 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
     if answers == "BUSY":
         assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK
     gone = session.upload(DRIVES, saves=False)
-    there = session.poll(robot.now_ms)
-    assert there
+    first_frames = session.poll(robot.now_ms)
+    assert first_frames
     session.withdraw(gone)
     assert gone.outcome is None
-    session.receive(robot.wait(40, there), robot.now_ms)
+    session.receive(robot.wait(40, first_frames), robot.now_ms)
     robot.talk(session, 300)
     assert gone.outcome is not None
     assert (gone.outcome.status == OK) == (answers == OK) == moves(robot)

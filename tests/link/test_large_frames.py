@@ -88,8 +88,8 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
         assert all(frame.payload[0] == statuses[frame.number] for frame in found)
         assert [frame.seq for frame in found] == [2 + k for k in range(window)]
         (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
-        told = decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])
-        assert (told["dropped"], told["damaged"]) == (2, 0)
+        values = decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])
+        assert (values["dropped"], values["damaged"]) == (2, 0)
 
 
 def test_live_code_of_a_large_frame_runs() -> None:

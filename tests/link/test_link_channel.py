@@ -60,7 +60,7 @@ def one_undo(cpp: CppLink, seed: int) -> str:
         world.run(request)
     if images[0] == images[1]:
         return "the same"
-    world.there.faults = world.back.faults = draw.choice((0.001, 0.01, 0.03))
+    world.to_robot.faults = world.to_computer.faults = draw.choice((0.001, 0.01, 0.03))
     world.drops = draw.choice((0, 0.0002, 0.002))
     confirmed = 0
     for _ in range(4):

@@ -57,7 +57,7 @@ def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
             found[OUTCOMES.get(status) or name_of(status)] += 1
             found["sent again"] += world.sent > 1
             if status != 0:
-                world.again()
+                world.reconnect()
     return found
 
 

@@ -34,13 +34,13 @@ def serve(tcp: socket.socket, port: str, is_rfc2217: bool) -> None:
     manager = PortManager(device, SimpleNamespace(write=peer.sendall)) if is_rfc2217 else None
     has_left = threading.Event()
 
-    def back() -> None:
+    def send_replies() -> None:
         while not has_left.is_set():
             data = device.read(200)
             if data:
                 peer.sendall(b"".join(manager.escape(data)) if manager else data)
 
-    sender = threading.Thread(target=back, daemon=True)
+    sender = threading.Thread(target=send_replies, daemon=True)
     sender.start()
     while data := peer.recv(1000):
         device.write(b"".join(manager.filter(data)) if manager else data)

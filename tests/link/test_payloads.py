@@ -57,10 +57,10 @@ OTHERS: tuple[Event, ...] = (
 
 def test_every_event_comes_through_a_shared_port() -> None:
     """Its fields are written as JSON and read again."""
-    told = (*SOME_EVENTS, *OTHERS)
-    assert {type(each) for each in told} == set(get_args(Event)) == {*EVENTS.values()}
+    events = (*SOME_EVENTS, *OTHERS)
+    assert {type(each) for each in events} == set(get_args(Event)) == {*EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
-    for each in told:
+    for each in events:
         values = protocol.to_json_values(event_fields(each))
         message = {"event": each.name, "ms": 5, "values": values}
         [read] = reader.read_messages(protocol.encode_message(message))

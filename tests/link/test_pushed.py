@@ -43,7 +43,7 @@ def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Wa
 def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     rng = random.Random(seed)
     port, waits = port_and_waits(monkeypatch)
-    there, is_cancelled, why = b"", False, ""
+    unread, is_cancelled, why = b"", False, ""
     for _ in range(200):
         what = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
         if rng.random() < 0.002:
@@ -51,7 +51,7 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
         if what == "bring":
             data = rng.randbytes(rng.choice((1, 20, 300)))
             port.bring(data)
-            there += data
+            unread += data
         elif what == "cancel":
             port.cancel_read()
             is_cancelled = True
@@ -62,19 +62,19 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
             size = rng.choice((1, 20, 4096))
             late = rng.randbytes(5) if what == "while it waits" else b""
             waits.then = [late] if late else []
-            has_to_wait = not (there or is_cancelled or why)
+            has_to_wait = not (unread or is_cancelled or why)
             if has_to_wait:
-                there += late
+                unread += late
             before = waits.count
-            if why and not there:
+            if why and not unread:
                 with pytest.raises(OSError, match=why):
                     port.read(size)
             else:
-                assert port.read(size) == there[:size]
-            there = there[size:]
+                assert port.read(size) == unread[:size]
+            unread = unread[size:]
             assert waits.count - before == has_to_wait, "it waits once, or not at all"
             is_cancelled = False
-        assert port.in_waiting == len(there)
+        assert port.in_waiting == len(unread)
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ class SealedWorld(World):
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
         cpp.happens("o", OWNERS | SEALS)
-        self.again()
+        self.reconnect()
         claim = self.session.claim(KEY_OWNER)
         self.run(None, 1000)
         while not cpp.happens("h"):  # until the claim has come
@@ -62,7 +62,7 @@ class SealedWorld(World):
         self.run(claim)
         assert claim.outcome and claim.outcome.status == 0
 
-    def again(self) -> None:
+    def reconnect(self) -> None:
         """The stranger comes when a program is on the robot."""
         self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
         self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
@@ -80,7 +80,9 @@ class SealedWorld(World):
         if self.says == 0 or self.draw.random() >= self.says or not self.frames:
             return
         data = self.forged()
-        (self.back if self.draw.random() < 0.4 else self.there).send(b"\0" + data, self.now_ms)
+        (self.to_computer if self.draw.random() < 0.4 else self.to_robot).send(
+            b"\0" + data, self.now_ms
+        )
 
     def forged(self) -> bytes:
         draw = self.draw

@@ -148,8 +148,8 @@ def check(seed: int) -> str:
         if not wire.robot.is_latched:  # what runs detached goes on
             wire.session.stop(wire.robot.now_ms)
             wire.robot.talk(wire.session, 300)
-    told = used.session.events()
-    assert ends_are_told_once(told), f"seed {seed} {told}"
+    events = used.session.events()
+    assert ends_are_told_once(events), f"seed {seed} {events}"
     session = computer(77)
     session.tells_starts = True
     assert other.robot.until(session, session.hello()) == OK
@@ -232,12 +232,12 @@ def test_who_is_found_again_tells_where_its_program_is() -> None:
 def is_lost(wire: Wire) -> bool:
     """Let nobody hear the other until the session has told that."""
     wire.session.events()
-    told: list[Event] = []
+    events: list[Event] = []
     for _ in range(800):
         wire.session.poll(wire.robot.now_ms)
         wire.robot.wait(10)
-        told += wire.session.events()
-    return [event.name for event in told] == ["LOST"]
+        events += wire.session.events()
+    return [event.name for event in events] == ["LOST"]
 
 
 @pytest.mark.sampled("part")

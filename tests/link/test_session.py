@@ -199,14 +199,14 @@ def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> N
 def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     """The button stops, then starts; the stop that was sent meanwhile is lost once."""
     session, robot = running()
-    told = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
+    stopped_event = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
     robot.step(flags=2)
     other = Session(2, 9600, KIT)
     assert robot.until(other, other.clear()) == 0
     assert robot.until(other, other.live(compile_text("F(200, 80)", ROBOT.kit).code)) == 0
     session.stop(robot.now_ms)
     assert session.poll(robot.now_ms)  # nobody hears it
-    session.receive(told, robot.now_ms)
+    session.receive(stopped_event, robot.now_ms)
     assert session.events() == []
     robot.talk(session, 500)
     assert [each.name for each in session.events()][-1:] == ["STOPPED"]
@@ -536,9 +536,9 @@ AT_REST: dict[str, int | bytes] = {
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may tell of it in the same moment as its event."""
     session, at = over()
-    told = [answer(session.poll(at), AT_REST),
-            event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
-    for each in reversed(told) if is_event_first else told:
+    frames = [answer(session.poll(at), AT_REST),
+              event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
+    for each in reversed(frames) if is_event_first else frames:
         session.receive(each, at)
     assert [each.name for each in session.events()] == ["DONE"]
 

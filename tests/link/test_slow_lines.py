@@ -51,7 +51,7 @@ class Talk:
         self.robot: CppLink = cpp_link(is_large)
         self.robot.begin(room=8192 if is_large else 389, kit=KIT, epoch=9)
         self.session = Session(3, baud, KIT)
-        self.there, self.back = (Wire(line.rate * 10, line.late_ms) for _ in range(2))
+        self.to_robot, self.to_computer = (Wire(line.rate * 10, line.late_ms) for _ in range(2))
         self.now_ms = 0
         self.sent_bytes = 0
         self.did: list[str] = []
@@ -67,13 +67,13 @@ class Talk:
     def step(self) -> None:
         data = self.session.poll(self.now_ms)
         self.sent_bytes += len(data)
-        self.there.send(self.kept(data), self.now_ms)
-        came = self.there.receive(self.now_ms)
+        self.to_robot.send(self.kept(data), self.now_ms)
+        came = self.to_robot.receive(self.now_ms)
         if came or self.now_ms % LOOK_MS == 0:
             found = self.robot.step(self.now_ms, came)
             self.did += found.did
-            self.back.send(self.kept(found.sent), self.now_ms)
-        self.session.receive(self.back.receive(self.now_ms), self.now_ms)
+            self.to_computer.send(self.kept(found.sent), self.now_ms)
+        self.session.receive(self.to_computer.receive(self.now_ms), self.now_ms)
         self.now_ms += STEP_MS
 
     def wait(self, request: PendingRequest[Any], most_ms: int = 600_000) -> int:
@@ -135,7 +135,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
     talk = Talk(line, 115_200, is_large)
     wire = LossyWire(line.rate * 10, line.late_ms)
     wire.draw = random.Random(seed)
-    talk.there = wire
+    talk.to_robot = wire
     talk.wait(talk.session.hello())
     wire.in_a_row = in_a_row
     most = 0
@@ -258,7 +258,7 @@ def test_an_answer_that_comes_after_its_piece_was_sent_again_counts() -> None:
     request = talk.session.upload(program(8000), runs=False)
     while request.done_bytes < 3000:
         talk.step()
-    talk.there, talk.back = Wire(10_000, 400), Wire(10_000, 400)
+    talk.to_robot, talk.to_computer = Wire(10_000, 400), Wire(10_000, 400)
     before, talk.sent_bytes = request.done_bytes, 0
     assert talk.wait(request) == OK
     assert talk.sent_bytes < (8000 - before) * 1.5

@@ -75,9 +75,9 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> N
     session.fetch()
     assert session.poll(robot.now_ms)
     request = wanted(session)
-    told = robot.wait(1000)
+    fault_event = robot.wait(1000)
     if is_told:
-        session.receive(told, robot.now_ms)
+        session.receive(fault_event, robot.now_ms)
         assert [event.name for event in session.events()] == ["FAULT"]
     assert robot.until(session, request) == OK
 

@@ -370,8 +370,8 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
     Most files of a robot are the same for all chips, headers and sizes that macros choose.
     """
     text = _compiled(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
-    told = [flag for flag in flags if not flag.startswith(("-D", "-isystem"))]
-    key = hashlib.sha256(repr((_version(compiler), told)).encode())
+    kept_flags = [flag for flag in flags if not flag.startswith(("-D", "-isystem"))]
+    key = hashlib.sha256(repr((_version(compiler), kept_flags)).encode())
     key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
     return builds / f"same-{key.hexdigest()[:16]}.o"
 

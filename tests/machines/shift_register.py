@@ -61,5 +61,5 @@ class ShiftRegister:
     @staticmethod
     def _want(ns: float, name: str, least_ns: float, what: str, since_ns: float) -> None:
         if ns - since_ns < least_ns:
-            told = f"{what}: {ns - since_ns:.1f} ns, not {least_ns:.0f}"
-            raise WrongTiming(f"{told} ({name} at {ns:.0f} ns)")
+            violation = f"{what}: {ns - since_ns:.1f} ns, not {least_ns:.0f}"
+            raise WrongTiming(f"{violation} ({name} at {ns:.0f} ns)")

@@ -124,8 +124,8 @@ class SketchBoard(boards.Simulated):
                 powers.append(0)
                 continue
             forward = self._level(now, pins[f"{side}_forward"])
-            back = pins.get(f"{side}_backward")  # some boards make it of the other
-            backward = self._level(now, back) if back is not None else 255 - forward
+            backward_pin = pins.get(f"{side}_backward")  # some boards make it of the other
+            backward = self._level(now, backward_pin) if backward_pin is not None else 255 - forward
             if isinstance(motors_of(self.robot.board.motors), Bridge):
                 level = self._level(now, pins[f"{side}_pwm"])
                 forward, backward = level * (forward > 0), level * (backward > 0)

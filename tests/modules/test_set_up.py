@@ -31,11 +31,11 @@ def ended(
 ) -> list[Outcome]:
     """Set up the module that is met at the other end."""
     module = module or met(wire)
-    told: list[Outcome] = []
+    reported: list[Outcome] = []
     outcomes = set_up.apply_steps(
-        wire, module, set_up.plan_steps(wanted, module.dialect), told.append
+        wire, module, set_up.plan_steps(wanted, module.dialect), reported.append
     )
-    assert told == outcomes
+    assert reported == outcomes
     return outcomes
 
 

@@ -32,8 +32,8 @@ _TOKEN = re.compile(
 
 def without_checksum(line: str) -> str:
     """A line without the checksum at its first ~, if there is one; it must fit."""
-    before, _, behind = line.partition("~")
-    digits = behind.rstrip(" \t\u00a0\u202f")
+    before, _, after = line.partition("~")
+    digits = after.rstrip(" \t\u00a0\u202f")
     if not re.fullmatch(r"[0-9A-Fa-f]{8}", digits):
         return line
     if int(digits, 16) != zlib.crc32(before.encode()):

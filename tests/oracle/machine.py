@@ -209,10 +209,10 @@ class Run:
                 act = ACTS[name.removesuffix("8")]
                 said = zip(operands, act.ranges, strict=not taken)
                 values = [time8(each) if of == TIME else 1000 * each for each, of in said]
-                told = act.values(taken or values)
-                self.note(act.note.format(*told))
+                act_values = act.values(taken or values)
+                self.note(act.note.format(*act_values))
                 if act.waits:
-                    self.wait(told[0], "PAUSE")
+                    self.wait(act_values[0], "PAUSE")
             case _:
                 self.control(name, taken, operands, to)
 

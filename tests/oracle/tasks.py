@@ -300,11 +300,11 @@ class TaskRobot(Robot):
             elif word == "W":
                 yield from self.waiting(statement, values[0])
             elif word in ACTS:
-                told = ACTS[word].values(value or 0 for value in values)
-                self.note(ACTS[word].note.format(*told))
+                act_values = ACTS[word].values(value or 0 for value in values)
+                self.note(ACTS[word].note.format(*act_values))
                 if ACTS[word].waits:
                     self.begin()
-                    yield from self.until_clock(told[0])
+                    yield from self.until_clock(act_values[0])
             elif word == "M":
                 left, right = (within(whole(value or 0), -100, 100) for value in values)
                 me.m, me.insists = (left, right), me.is_when

@@ -90,8 +90,8 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
 @pytest.mark.parametrize("before", ["", "(\n"])
 def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
     typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))
-    start, stop, bracket, again = typed
-    assert (bracket, again) == ("(", stop)
+    start, stop, bracket, second_stop = typed
+    assert (bracket, second_stop) == ("(", stop)
     port = os.open(board.port, os.O_RDWR | os.O_NOCTTY)
     try:
         os.write(port, f"{start}\n".encode())

@@ -174,9 +174,9 @@ class Stage:
         self.fails, self.steps = fails, list[str]()
         self.folder = tmp_path / "made"
         monkeypatch.setattr(release, "_clones", self.clones)
-        monkeypatch.setattr(facts, "complaints", lambda root: self.told("a fact"))
+        monkeypatch.setattr(facts, "complaints", lambda root: self.complaints_of("a fact"))
         monkeypatch.setattr(
-            release, "find_missing_tool", lambda parts: "".join(self.told("a tool"))
+            release, "find_missing_tool", lambda parts: "".join(self.complaints_of("a tool"))
         )
         monkeypatch.setattr(Clone, "python", lambda clone, *words, **how: self.step("twine"))
         for name in PARTS:
@@ -188,7 +188,7 @@ class Stage:
             raise CannotMake(f"{name} fails")
         return ""
 
-    def told(self, name: str) -> list[str]:
+    def complaints_of(self, name: str) -> list[str]:
         self.steps.append(name)
         return [name] * (name == self.fails)
 
@@ -203,7 +203,7 @@ class Stage:
     def make(self, name: str, clone: Clone) -> list[Path]:
         self.step(f"{name} {clone.seed}")
         file = clone.parts / f"{name}.whl"
-        differs = self.told(f"{name} is the same")
+        differs = self.complaints_of(f"{name} is the same")
         file.write_text(str(clone.seed) if differs else name)
         return [file]
 

@@ -49,7 +49,7 @@ MEANT = PROGRAM.replace(HORN.text, HORN.stands_for)
 
 
 @pytest.fixture(autouse=True)
-def _has_horn(monkeypatch: pytest.MonkeyPatch) -> None:
+def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     monkeypatch.setitem(FIXED, HORN.text, ((), HORN.stands_for))
     monkeypatch.setitem(WORDS, WIGGLE.text, WIGGLE)

@@ -225,10 +225,10 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     os.close(theirs)
     reader.join(HANGS_S)
     os.close(ours)
-    told = completed.stderr or b"".join(said).decode()
-    assert completed.returncode == 0, told
-    assert "made without" in told and FIRMWARE_MISSING in told and CASES_MISSING in told
-    assert (PAGE_MISSING in told) == (page == "none")
+    output = completed.stderr or b"".join(said).decode()
+    assert completed.returncode == 0, output
+    assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
+    assert (PAGE_MISSING in output) == (page == "none")
     with zipfile.ZipFile(tmp_path / completed.stdout.split()[-1]) as packed:
         assert (BUILT in packed.namelist()) == (page != "none")
         packed.extractall(tmp_path / "made")

@@ -56,11 +56,11 @@ def test_what_a_dotted_name_names_is_there() -> None:
     ]  # fmt: skip
     assert len(rows) > 20
 
-    def is_there(row: tuple[str, str]) -> None:
+    def check_resolves(row: tuple[str, str]) -> None:
         owner = import_module("tiniscript")
         for number, name in enumerate(row[1].split(".")[1:], 2):
             if not hasattr(owner, name):
                 import_module(".".join(row[1].split(".")[:number]))
             owner = getattr(owner, name)
 
-    go_through(is_there, rows, lambda row: row[0])
+    go_through(check_resolves, rows, lambda row: row[0])

@@ -397,15 +397,15 @@ def test_the_first_command_ends_with_the_studio(
     assert (["-m", "tiniscript", "studio", "--yes"] in calls.words) == opens
 
 
-@each_row("there", [(), ("stdin",), ("stdout",), ("stdout", "stderr")])
+@each_row("terminals", [(), ("stdin",), ("stdout",), ("stdout", "stderr")])
 def test_the_first_command_asks_nobody_who_is_not_there(
-    there: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    terminals: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tools import environment
 
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
-    set_terminals(monkeypatch, *there)
+    set_terminals(monkeypatch, *terminals)
     calls = Calls(monkeypatch, 40)
     assert load_first_command().main() == 0
     assert [words[2] for words in calls.words] == ["upload"]

@@ -185,11 +185,11 @@ def test_twins_have_the_same_names(twins: Twins) -> None:
     assert len(cpp & python) > 5
     assert cpp - python == set(twins.in_cpp)
     assert python - cpp == set(twins.in_python)
-    for said, there in ((twins.in_cpp, python), (twins.in_python, cpp)):
+    for said, names in ((twins.in_cpp, python), (twins.in_python, cpp)):
         named = {
             word.strip(" _") for each in said.values() if each[0] != "(" for word in each.split(",")
         }
-        assert named <= there
+        assert named <= names
 
 
 FIELD = re.compile(r"^  [\w<>]+[ *]+(\w+)(?:\[.*\])?;", re.M)

@@ -66,8 +66,8 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
     waiting = [(root, extras)]
     while waiting:
         name, wanted = waiting.pop()
-        here = distribution(name)
-        for text in here.requires or ():
+        package = distribution(name)
+        for text in package.requires or ():
             need = Requirement(text)
             environments = [{"extra": each} for each in wanted] or [{"extra": ""}]
             if need.marker and not any(
@@ -159,8 +159,8 @@ def test_every_link_of_the_pages_leads_somewhere(stick: Path) -> None:
             target = (page.parent / path) if path else page
             assert target.is_file(), f"{page.name}: {path}"
             if anchor and target.suffix == ".html":
-                there = target.read_text(encoding="utf-8")
-                assert f'id="{unquote(anchor[1:])}"' in there, f"{page.name}: {path}{anchor}"
+                target_text = target.read_text(encoding="utf-8")
+                assert f'id="{unquote(anchor[1:])}"' in target_text, f"{page.name}: {path}{anchor}"
             count += 1
     assert count > 300
     for lesson in range(1, 15):

@@ -113,7 +113,7 @@ def test_a_program_of_notepad_is_the_same_program(
     """With CR LF and a byte order mark; a mistake has the same sentence."""
     monkeypatch.chdir(tmp_path)
     wrong = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
-    told = set()
+    outputs = set()
     for name, begin, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
         for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong)):
             text = begin + program.replace("\n", end)
@@ -121,9 +121,9 @@ def test_a_program_of_notepad_is_the_same_program(
         assert tsc("compile", f"right_{name}.ts").code == 0
         done = tsc("check", f"wrong_{name}.ts")
         assert done.code == 1
-        told.add(done.out + done.err)
+        outputs.add(done.out + done.err)
     assert Path("right_a.bin").read_bytes() == Path("right_b.bin").read_bytes()
-    assert len({each.replace("wrong_b", "wrong_a") for each in told}) == 1
+    assert len({each.replace("wrong_b", "wrong_a") for each in outputs}) == 1
 
 
 # -- outputs that are no terminal

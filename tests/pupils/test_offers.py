@@ -39,7 +39,13 @@ def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
     return [[Edit(span, fix)] for span in spans] if fix else []
 
 
-def wrong_in(diagnostic: Diagnostic, text: str, edits: list[Edit], told: set[str]) -> list[str]:
+def wrong_in(
+    diagnostic: Diagnostic,
+    text: str,
+    edits: list[Edit],
+    other_codes: set[str],
+    other_words: set[str],
+) -> list[str]:
     """Return the codes of mistakes in what a message shows of the changed program."""
     changed = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
@@ -52,14 +58,14 @@ def wrong_in(diagnostic: Diagnostic, text: str, edits: list[Edit], told: set[str
         diagnostic.code.number for diagnostic in check(changed)
         if diagnostic.is_mistake
         and any(start <= diagnostic.span.start < end for start, end in spans)
-        and diagnostic.code.number not in told
-        and not is_told(changed.upper(), diagnostic.span.start, told)
+        and diagnostic.code.number not in other_codes
+        and not is_in_words(changed.upper(), diagnostic.span.start, other_words)
     ]  # fmt: skip
 
 
-def is_told(changed: str, place: int, told: set[str]) -> bool:
-    """Whether a place is in words of which another message tells."""
-    return any(0 <= changed.find(word, max(0, place - len(word) + 1)) <= place for word in told)
+def is_in_words(changed: str, place: int, words: set[str]) -> bool:
+    """Whether a place is in one of the words to which other messages point."""
+    return any(0 <= changed.find(word, max(0, place - len(word) + 1)) <= place for word in words)
 
 
 def offered_wrongly(text: str) -> list[str]:
@@ -72,13 +78,15 @@ def offered_wrongly(text: str) -> list[str]:
     bad = []
     for diagnostic in diagnostics:
         others = [other for other in diagnostics if other is not diagnostic]
-        told = {text[slice(*other.span)].upper() for other in others} - {""}
-        told |= {other.code.number for other in others}
-        told |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
+        other_words = {text[slice(*other.span)].upper() for other in others} - {""}
+        other_codes = {other.code.number for other in others}
+        other_codes |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
         tried = ways(diagnostic, text)
         if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
             tried.append(together)
-        if tried and all(wrong_in(diagnostic, text, edits, told) for edits in tried):
+        if tried and all(
+            wrong_in(diagnostic, text, edits, other_codes, other_words) for edits in tried
+        ):
             bad.append(diagnostic.code.number)
     return bad
 

@@ -36,10 +36,10 @@ VALUES = (("2, 60", ["F", "B"]), ("1, 440", ["BEEP"]), ("-30, 40", ["M"]), ("2",
 @pytest.mark.parametrize("words", ORDERS)
 def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
     for text in (f"{head} {words}", f"{head}, {words}", f"{head} {words}\nS", f"{head} {words};"):
-        told = check(text)[0]
+        diagnostic = check(text)[0]
         begun = "SB" if head == "SB" else "SI"
-        assert told.code.number == "TS036", text
-        assert told.values["fix"] == f"{begun}|{ORDERS[words]}", text
+        assert diagnostic.code.number == "TS036", text
+        assert diagnostic.values["fix"] == f"{begun}|{ORDERS[words]}", text
 
 
 @pytest.mark.parametrize(
@@ -59,9 +59,9 @@ def test_signs_that_are_named_are_written(said: tuple[str, ...]) -> None:
         meant.items(), ("{}", "W(1)\n{}\nS", "IF(DISTANCE < 9)\n{}\nENDIF")
     ):
         text = place.format(words)
-        told = check(text)[0]
-        assert (told.code.number, told.values.get("fix")) == ("TS010", line), text
-        assert told.values["spoken"], text
+        diagnostic = check(text)[0]
+        assert (diagnostic.code.number, diagnostic.values.get("fix")) == ("TS010", line), text
+        assert diagnostic.values["spoken"], text
     text = f"Si {bar} {call}"
     assert check(text)[0].values["fix"] == "SI|F(2, 80)"
     assert repair_program(text, check).text == text  # a letter's name may be a word
@@ -89,11 +89,11 @@ def test_values_without_a_word_get_those_that_take_them(
     values: str, words: list[str], place: str
 ) -> None:
     text = place.format(f"({values})")
-    (told,) = [each for each in check(text) if each.is_mistake]
-    offered = [told.values["one"], told.values.get("another")]
+    (diagnostic,) = [each for each in check(text) if each.is_mistake]
+    offered = [diagnostic.values["one"], diagnostic.values.get("another")]
     assert [it for it in offered if it] == [f"{word}({values})" for word in words], text
     for language in ("en", "es", "pt"):
-        said = message(told, Source(text), language)
+        said = message(diagnostic, Source(text), language)
         assert f"({values})" in said.message and ("SB|" in said.message) is (place == "SB|{}")
 
 
@@ -110,16 +110,16 @@ BUTTONS = (
 def test_words_say_how_a_program_starts(head: str, words: str) -> None:
     begun = "SB" if head in BUTTONS else "SI"
     for text in (f"{head} {words}", f"{head} {words};", f"{head} {words}\nS"):
-        (told,) = check(text)
-        assert told.code.number == "TS036", text
-        assert told.values["fix"] == f"{begun}|{ORDERS[words]}", text
+        (diagnostic,) = check(text)
+        assert diagnostic.code.number == "TS036", text
+        assert diagnostic.values["fix"] == f"{begun}|{ORDERS[words]}", text
         assert repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize("head", BUTTONS[:2])
 def test_a_value_that_nobody_gave_is_called_an_example(head: str) -> None:
-    (told,) = check(f"{head} go forward")
-    said = message(told, Source(""), "en")
+    (diagnostic,) = check(f"{head} go forward")
+    said = message(diagnostic, Source(""), "en")
     assert "SB|F(2, 80)" in said.fix
     assert said.fix.endswith("examples: 2 s, 80 %")
 
@@ -163,6 +163,6 @@ def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str
 @pytest.mark.parametrize("line", ["SB|F(2, 80)", "SI|F(2, 80);S", "F(2, 80)"])
 def test_a_line_in_quotation_marks_is_shown_with_its_start(line: str, marks: str) -> None:
     wrong = f"{marks[0]}{line}{marks[1]}"
-    (told,) = check(wrong)
-    assert told.values["fix"] == line, wrong
+    (diagnostic,) = check(wrong)
+    assert diagnostic.values["fix"] == line, wrong
     assert repair_program(wrong, check).text.replace(" ", "") == line.replace(" ", "")

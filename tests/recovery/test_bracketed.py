@@ -21,10 +21,10 @@ def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> Non
     for inside, language in product(INSIDE, ("en", "es", "pt")):
         text = place.format(f"{word}({inside})")
         said = [message(each, Source(text), language) for each in check(text) if each.is_mistake]
-        told = [each for each in said if each.code in ("TS039", "TS118")]
+        named = [each for each in said if each.code in ("TS039", "TS118")]
         number = "23" if "23" in inside else "7"
-        assert told or said, text
-        assert all(number in each.message + each.fix for each in told), (text, told)
+        assert named or said, text
+        assert all(number in each.message + each.fix for each in named), (text, named)
 
 
 @pytest.mark.parametrize("place", PLACES)

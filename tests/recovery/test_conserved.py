@@ -203,10 +203,10 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
     wrong: str, tried: str
 ) -> None:
     (diagnostic,) = check(wrong)
-    told = message(diagnostic, Source(wrong), "en")
-    assert told.fix == tried
-    assert (lost := diagnostic.values.get("lost", "")) in told.message
-    assert bool(lost) is ("leaves out" in told.message)
+    shown = message(diagnostic, Source(wrong), "en")
+    assert shown.fix == tried
+    assert (lost := diagnostic.values.get("lost", "")) in shown.message
+    assert bool(lost) is ("leaves out" in shown.message)
     assert repair_program(wrong, check).text == wrong or diagnostic.values.get("carried")
 
 
@@ -224,8 +224,8 @@ def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) 
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
     rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
-    told = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
-    signs = [(it[0].strip(), s) for it in told for s in it[2].split() if not s.isascii()]
+    command_rows = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
+    signs = [(it[0].strip(), s) for it in command_rows for s in it[2].split() if not s.isascii()]
     signs = [(word, sign) for word, sign in signs if len(sign) == 1 and not sign.isalpha()]
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:

@@ -75,7 +75,9 @@ def test_a_counter_that_goes_by_steps_shows_the_same_numbers(
     head: str, end: str, first: int, last: int, step: int
 ) -> None:
     wrong = f"{head.format(a=first, b=last, c=last + 1, s=step)}\nSHOW(I)\n{end}"
-    (told, *_) = check(wrong)
+    (diagnostic, *_) = check(wrong)
     numbers = range(first, last + 1, step)
-    assert told.values["fix"] == f"I = {first - step};LOOP({len(numbers)});I = I + {step}", wrong
-    assert "leaves out" not in " ".join(map(str, message(told, Source(wrong), "en")))
+    assert diagnostic.values["fix"] == f"I = {first - step};LOOP({len(numbers)});I = I + {step}", (
+        wrong
+    )
+    assert "leaves out" not in " ".join(map(str, message(diagnostic, Source(wrong), "en")))

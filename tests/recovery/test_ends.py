@@ -28,9 +28,9 @@ BEFORE = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
 
 def said(text: str) -> tuple[str, str]:
     (found,) = [each for each in check(text) if each.is_mistake]
-    told = message(found, Source(text), "en")
-    assert told.code == "TS024"
-    return told.message, told.fix
+    shown = message(found, Source(text), "en")
+    assert shown.code == "TS024"
+    return shown.message, shown.fix
 
 
 def places(body: tuple[str, ...]) -> str:
@@ -70,9 +70,9 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
 
 
 @pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize("behind", ["", ";F(8, 50)"])
-def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], behind: str) -> None:
-    text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + behind
+@pytest.mark.parametrize("tail", ["", ";F(8, 50)"])
+def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], tail: str) -> None:
+    text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + tail
     last = body[-1]
     assert said(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
     assert repair_program(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")

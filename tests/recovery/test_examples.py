@@ -22,16 +22,16 @@ SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exem
 def test_a_power_that_is_missing_is_the_one_of_the_others(word: str, place: str) -> None:
     for power in ("50", "35"):
         wrong = place.format(f"{word}(1)", p=power)
-        told = next(each for each in check(wrong) if each.is_mistake)
-        assert told.values["fix"] == f"{word}(1, {power})", wrong
-        assert not told.values.get("sample"), wrong
+        diagnostic = next(each for each in check(wrong) if each.is_mistake)
+        assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong
+        assert not diagnostic.values.get("sample"), wrong
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
     wrong = place.format("R(1)", p="50") + ";L(1, 30)"
-    told = next(each for each in check(wrong) if each.is_mistake)
-    assert (told.values["fix"], told.values["sample"]) == ("R(1, 80)", "80 %"), wrong
+    diagnostic = next(each for each in check(wrong) if each.is_mistake)
+    assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), wrong
 
 
 @pytest.mark.parametrize("place", ALONE)
@@ -39,8 +39,8 @@ def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
 def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
     for call, fix, sample in (("R(1)", "R(1, 80)", "80 %"), ("BEEP(1)", "BEEP(1, 440)", "440 Hz")):
         text = place.format(call)
-        told = next(each for each in check(text) if each.is_mistake)
-        said = message(told, Source(text), language)
+        diagnostic = next(each for each in check(text) if each.is_mistake)
+        said = message(diagnostic, Source(text), language)
         assert said.fix == fix, text  # and can be copied as it stands
         assert f"{sample} {SAID[language]}" in said.message, text
 

@@ -153,10 +153,10 @@ def test_many_blanks_take_no_time(blank: str) -> None:
 )
 def test_of_many_mistakes_the_first_are_told(wrong: str) -> None:
     """So many of them that a check for each would be seen."""
-    told = check(f"{wrong}\n" * 8000)
-    assert len(told) <= codes.MOST_DIAGNOSTICS + 1
-    assert told == codes.in_order(told)
-    assert told[0].span.start <= len(wrong)
+    diagnostics = check(f"{wrong}\n" * 8000)
+    assert len(diagnostics) <= codes.MOST_DIAGNOSTICS + 1
+    assert diagnostics == codes.in_order(diagnostics)
+    assert diagnostics[0].span.start <= len(wrong)
 
 
 @pytest.mark.parametrize("ends", [*product(("\n", "\r", "\r\n", "\n\r", "\r\r\n"), repeat=3)])

@@ -311,10 +311,10 @@ def test_a_message_names_the_word_that_was_written(word: str) -> None:
     assert (diagnostic.code.number, diagnostic.values["found"]) == ("TS102", word)
 
 
-@pytest.mark.parametrize(("asked", "behind"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")])
-def test_the_question_after_until_is_shown(asked: str, behind: str) -> None:
-    text = f"SI|F(5, 60) UNTIL {asked}. {behind}(1, 50)"
-    assert repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {behind}(1, 50)"
+@pytest.mark.parametrize(("asked", "next_move"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")])
+def test_the_question_after_until_is_shown(asked: str, next_move: str) -> None:
+    text = f"SI|F(5, 60) UNTIL {asked}. {next_move}(1, 50)"
+    assert repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {next_move}(1, 50)"
 
 
 @pytest.mark.parametrize("number", ["15", "32.5"])

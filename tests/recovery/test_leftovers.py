@@ -33,8 +33,8 @@ def test_words_after_an_order_without_values_are_taken_out(
 @pytest.mark.parametrize("end", ["END_LOOP", "END_WHILE"])
 def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
     head = {"END_LOOP": "LOOP(2)", "END_WHILE": "WHILE(DISTANCE > 9)"}[end]
-    for behind in ("", ";S", "\nW(1)"):
-        wrong = f"SI|{head};F(1, 60);{end} {words}{behind}"
+    for tail in ("", ";S", "\nW(1)"):
+        wrong = f"SI|{head};F(1, 60);{end} {words}{tail}"
         (found,) = [each for each in check(wrong) if each.is_mistake]
         assert apply_edits(wrong, edits_of(found) or []) == wrong.replace(f" {words}", "")
 
@@ -50,14 +50,14 @@ def test_what_may_be_an_order_or_a_value_is_no_leftover(text: str) -> None:
 
 @pytest.mark.parametrize("before", ["R(1, 60)", "S", "LOOP(2);W(1);END_LOOP", "SHOW(DISTANCE)"])
 @pytest.mark.parametrize("sign", ["SI|", " SI|", "SI|  ", " si | "])
-@pytest.mark.parametrize("behind", ["B(2, 80)", "IF(DISTANCE < 9);S;ENDIF", "S"])
+@pytest.mark.parametrize("after", ["B(2, 80)", "IF(DISTANCE < 9);S;ENDIF", "S"])
 def test_a_second_start_behind_an_instruction_is_a_separator(
-    before: str, sign: str, behind: str
+    before: str, sign: str, after: str
 ) -> None:
     if sign[0] != " " and not before.endswith(")"):
         return  # one word: SSI
-    text = f"SI|F(2, 80);{before}{sign}{behind};W(1)"
-    assert repair_program(text, check).text == f"SI|F(2, 80);{before}; {behind};W(1)"
+    text = f"SI|F(2, 80);{before}{sign}{after};W(1)"
+    assert repair_program(text, check).text == f"SI|F(2, 80);{before}; {after};W(1)"
 
 
 @pytest.mark.parametrize("between", [";", "\n"])

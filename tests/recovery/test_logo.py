@@ -31,22 +31,22 @@ LINES = (
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize(("line", "right"), LINES)
 def test_a_line_of_logo_is_rebuilt_as_a_whole(line: str, right: str, place: str) -> None:
-    for loop, forward, back, to_right, left in LANGUAGES:
-        words = {"o": loop, "f": forward, "b": back, "r": to_right, "l": left}
+    for loop, forward, backward, to_right, left in LANGUAGES:
+        words = {"o": loop, "f": forward, "b": backward, "r": to_right, "l": left}
         wrong = place.format(line.format(**words))
-        told = check(wrong)
-        edits = [edit for each in told for edit in edits_of(each) or []]
+        diagnostics = check(wrong)
+        edits = [edit for each in diagnostics for edit in edits_of(each) or []]
         assert apply_edits(wrong, edits) == place.format(right.format(p=80)), wrong
-        assert [each.values.get("sample") for each in told] == ["80 %"], wrong
+        assert [each.values.get("sample") for each in diagnostics] == ["80 %"], wrong
         assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_the_power_is_the_one_of_the_program(place: str) -> None:
     wrong = place.format("F(2, 35);REPEAT 4 [FD 30 RT 90]")
-    (told,) = check(wrong)
-    assert told.values["fix"] == "LOOP(4);F(30 CM, 35);R(90 DEG, 35);END_LOOP"
-    assert "sample" not in told.values
+    (diagnostic,) = check(wrong)
+    assert diagnostic.values["fix"] == "LOOP(4);F(30 CM, 35);R(90 DEG, 35);END_LOOP"
+    assert "sample" not in diagnostic.values
 
 
 @pytest.mark.parametrize(

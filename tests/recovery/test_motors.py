@@ -41,8 +41,8 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
     for pair in PAIRS:
         for name in pair:
             text = place.format(f"{name}(60)")
-            (told,) = [message(each, Source(text), language) for each in check(text)]
-            assert "M(50, 80)" in told.fix, text
+            (shown,) = [message(each, Source(text), language) for each in check(text)]
+            assert "M(50, 80)" in shown.fix, text
 
 
 @pytest.mark.parametrize("between", BETWEEN)

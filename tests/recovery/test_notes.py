@@ -28,8 +28,8 @@ PLACES = (
 def test_a_note_begins_with_another_sign_and_is_told_once(sign: str, place: str) -> None:
     for note in NOTES:
         wrong = place.replace("{}", sign + note)
-        told = check(wrong)
-        assert [each.code for each in told] == [codes.OTHER_NOTE] * len(told), wrong
+        diagnostics = check(wrong)
+        assert [each.code for each in diagnostics] == [codes.OTHER_NOTE] * len(diagnostics), wrong
         right = place.replace("{}", f"// {note}")
         assert repair_program(wrong, check).text == right
 

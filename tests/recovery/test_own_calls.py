@@ -157,9 +157,9 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     inside = f"F({NAMES[0]} CM, 60)" if count else "F(30 CM, 60)"
     program = f"DEF {{0}}{head}\n{inside}\nEND_DEF\nW(1)\n{{0}}{call}\n{{0}}{call}"
     wrong = program.format(word)
-    (told,) = check(wrong)
-    assert told.code.number == "TS105"
-    made = apply_edits(wrong, edits_of(told) or [])
+    (diagnostic,) = check(wrong)
+    assert diagnostic.code.number == "TS105"
+    made = apply_edits(wrong, edits_of(diagnostic) or [])
     assert made == program.format(f"{word}_1")
     assert not [each for each in check(made) if each.is_mistake]
 
@@ -175,10 +175,10 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
     for one, word, gap in product(known, UNKNOWN, (" ", "  ", "")):
         calls = (one, f"{word}(1, 60)", known[0])
         wrong = place.format(gap.join(calls))
-        told = check(wrong)
-        assert told[0].code.number == "TS013", wrong
-        assert apply_edits(wrong, edits_of(told[0]) or []) == place.format(";".join(calls)), wrong
-        assert [each.values.get("found") for each in told[1:]] == [word], wrong
+        first, *others = check(wrong)
+        assert first.code.number == "TS013", wrong
+        assert apply_edits(wrong, edits_of(first) or []) == place.format(";".join(calls)), wrong
+        assert [each.values.get("found") for each in others] == [word], wrong
 
 
 @pytest.mark.parametrize("point", [". ", " . ", ".  "])

@@ -37,13 +37,13 @@ def words(meaning: str) -> list[str]:
         for language in languages()
         for row in read_language_file(language, "lexicon.txt").split("\n")
     )
-    told = (row.partition("|") for row in rows if not row.startswith("#"))
-    return [word for what, _, said in told if what.strip() == meaning for word in said.split()]
+    parts = (row.partition("|") for row in rows if not row.startswith("#"))
+    return [word for what, _, said in parts if what.strip() == meaning for word in said.split()]
 
 
 def shown(diagnostic: Diagnostic, text: str) -> str:
-    told = message(diagnostic, Source(text, ""), "en")
-    return " ".join(map(str, told))
+    parts = message(diagnostic, Source(text, ""), "en")
+    return " ".join(map(str, parts))
 
 
 @each_row("header", HEADERS)
@@ -145,7 +145,7 @@ def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "fix"),
     [
         ("F(2;80) R(1;50)", "F(2, 80);R(1, 50)"),  # `80)` is no number of a list
         ("IF RANDOM(1,2) = 1\nS\nENDIF", "IF(RANDOM(1, 2) = 1)"),
@@ -157,9 +157,9 @@ def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
         ("M(50, 80, 2 seg)", "M(50, 80);W(2);S"),
     ],
 )
-def test_what_is_told_keeps_all_that_was_written(wrong: str, told: str) -> None:
+def test_what_is_told_keeps_all_that_was_written(wrong: str, fix: str) -> None:
     said = check(wrong)[0].values
-    assert said.get("fix", said.get("example")) == told
+    assert said.get("fix", said.get("example")) == fix
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_an_end_alone_is_that_of_its_block() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "expected"),
     [
         ("F(5, 60) HASTA NEGRO", {"question": "LIGHT_L < 500", "another": "LIGHT_R < 500"}),
         ("F(5, 60) hasta la pared", {"question": "DISTANCE < 10"}),
@@ -203,9 +203,9 @@ def test_an_end_alone_is_that_of_its_block() -> None:
         ("IF(COLOR = 37);S;ENDIF", {"question": None}),
     ],
 )
-def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str, str]) -> None:
+def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, expected: dict[str, str]) -> None:
     values = check(wrong)[0].values
-    assert {name: values.get(name) for name in told} == told
+    assert {name: values.get(name) for name in expected} == expected
 
 
 @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "expected"),
     [
         ("SPIN 360", {"to_left": "L(360 DEG, 60)", "to_right": "R(360 DEG, 60)"}),
         ("gira 2 vueltas", {"to_right": "R(720 DEG, 80)"}),
@@ -296,11 +296,11 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ),
     ],
 )
-def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str, str]) -> None:
+def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, expected: dict[str, str]) -> None:
     diagnostics = check(wrong)
-    assert any({name: it.values.get(name) for name in told} == told for it in diagnostics), (
-        diagnostics
-    )
+    assert any(
+        {name: it.values.get(name) for name in expected} == expected for it in diagnostics
+    ), diagnostics
 
 
 def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:

@@ -30,14 +30,14 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
         source = Source(entry.program)
         for diagnostic in check(entry.program):
             named = alike(diagnostic.values.get("found", ""))
-            told = message(diagnostic, source, "en")
-            line = source.line_text(told.line)
+            shown = message(diagnostic, source, "en")
+            line = source.line_text(shown.line)
             if not named or diagnostic.code in OTHERS or not names_found(diagnostic):
                 continue
             if named in alike(line):
                 seen += 1
-                end = told.end_column - 1 if told.end_line == told.line else len(line)
-                assert alike(line[told.column - 1 : end]) == named, (entry.program, diagnostic)
+                end = shown.end_column - 1 if shown.end_line == shown.line else len(line)
+                assert alike(line[shown.column - 1 : end]) == named, (entry.program, diagnostic)
     assert seen > 200
 
 

@@ -65,7 +65,7 @@ def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
     program, line = chance.choice(right()), chance.choice(wrong())
     rows = program.split("\n")
     k = chance.choice([k for k in range(1, len(rows) + 1) if _is_closed("\n".join(rows[:k]))])
-    is_told_alone(rows[:k], line, rows[k:])
+    check_reported_alone(rows[:k], line, rows[k:])
 
 
 @each_row("odd", ODD)
@@ -81,8 +81,8 @@ def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> N
         "X := 5",
         "F(1, 80) LOP",
     ):
-        is_told_alone([odd], line, [])
-        is_told_alone([odd], line, [odd.removeprefix("SI|")] if "DEF" not in odd else [])
+        check_reported_alone([odd], line, [])
+        check_reported_alone([odd], line, [odd.removeprefix("SI|")] if "DEF" not in odd else [])
 
 
 @each_row("block", ["LOOP(3)⏎{}⏎END_LOOP", "DEF A1⏎{}⏎END_DEF⏎A1", "IF(DISTANCE < 9)⏎{}⏎ENDIF"])
@@ -90,10 +90,10 @@ def test_a_word_after_an_instruction_begins_no_block(block: str) -> None:
     """Where what follows is not deeper than the wrong line, the block around both is not over."""
     for line in ("F(1, 80) LOP", "F(1, 80) loop", "S repite"):
         head, tail = block.replace("⏎", "\n").split("{}")
-        is_told_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
+        check_reported_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
 
 
-def is_told_alone(before: list[str], line: str, after: list[str]) -> None:
+def check_reported_alone(before: list[str], line: str, after: list[str]) -> None:
     rows = "\n".join([*before, line, *after]).split("\n")
     wrong_row = "\n".join(before).count("\n") + 1
     source = Source("\n".join(rows))

@@ -40,12 +40,12 @@ def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
             if token.kind is not NUMBER or is_set:
                 continue
             wrong = f"{text[: token.start]}+{text[token.start :]}"
-            told = check(wrong)
-            assert [(each.code, each.span.start) for each in told] == [
+            diagnostics = check(wrong)
+            assert [(each.code, each.span.start) for each in diagnostics] == [
                 (codes.EXTRA_WORD, token.start)
             ], wrong
             assert (
-                apply_edits(wrong, edits_of(told[0]) or [])
+                apply_edits(wrong, edits_of(diagnostics[0]) or [])
                 == repair_program(wrong, check).text
                 == text
             )
@@ -55,8 +55,8 @@ def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
 
 @pytest.mark.parametrize("text", ["X = 1;X = +5", "X = 1;W(X);X =+ 5", "X = 1\nX = +5"])
 def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -> None:
-    told = check(f"{text};SHOW(X)")
-    assert "X = X + 5" in message(told[0], Source(text), "en").fix
+    diagnostics = check(f"{text};SHOW(X)")
+    assert "X = X + 5" in message(diagnostics[0], Source(text), "en").fix
     assert repair_program(f"{text};SHOW(X)", check).text == f"{text};SHOW(X)"
 
 

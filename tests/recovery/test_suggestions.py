@@ -22,15 +22,15 @@ KIT = robots.load(robots.DEFAULT).kit
 
 @each_row("row", [pytest.param(row, id=row.example[0]) for row in rows()])
 def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
-    wrong, told = row.example
-    name, _, value = told.partition("=")
+    wrong, expected = row.example
+    name, _, value = expected.partition("=")
     beside = [each.diagnostic for each in find_suggestions(wrong, KIT)]
     assert len(beside) < 2
     found = [
         each
         for each in beside or check(wrong)
         if row.code in (each.code, None)
-        and told in (f"{name}={each.values.get(name)}", each.code.number)
+        and expected in (f"{name}={each.values.get(name)}", each.code.number)
     ]
     assert found and value == found[0].values.get(name, "")
     assert {*row.values} - {"?", "*"} <= {*found[0].values}
@@ -39,11 +39,11 @@ def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
     """Each row of what was found is the one that tells its example, and none is in vain."""
     telling: list[SuggestionRow] = []
-    told = usage.Usage.diagnostic_of
+    original = usage.Usage.diagnostic_of
 
     def noted(place: usage.Usage, row: SuggestionRow, gaps: Gaps) -> Diagnostic:
         telling.append(row)
-        return told(place, row, gaps)
+        return original(place, row, gaps)
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(usage.Usage, "diagnostic_of", noted)
@@ -99,13 +99,13 @@ def test_what_is_wrong_beside_the_words_is_told_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "expected"),
     [
         ("F(2, 80)\nS\nF(2, 80)\nS\netc", {"all": "LOOP(4);F(2, 80);S;END_LOOP"}),
     ],
 )  # fmt: skip
-def test_what_stands_above_is_meant_again(wrong: str, told: dict[str, str]) -> None:
-    assert told.items() <= check(wrong)[-1].values.items()
+def test_what_stands_above_is_meant_again(wrong: str, expected: dict[str, str]) -> None:
+    assert expected.items() <= check(wrong)[-1].values.items()
 
 
 @pytest.mark.parametrize("wrong", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."])

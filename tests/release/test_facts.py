@@ -46,12 +46,12 @@ def commit(root: Path) -> None:
 def clone(tmp_path: Path) -> Path:
     """A repository with all that repeats a fact, ready to be released."""
     root = tmp_path / "clone"
-    here = facts.version(ROOT)
+    present_version = facts.version(ROOT)
     for name in FILES:
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, root / name)
         path = root / name
-        text = path.read_text("utf-8").replace(here, VERSION)
+        text = path.read_text("utf-8").replace(present_version, VERSION)
         text = re.sub(r"(?m)^date-released: .*\n", "", text)
         path.write_text(text, encoding="utf-8")
     (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")

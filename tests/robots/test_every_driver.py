@@ -145,16 +145,16 @@ def compile_all(robot: Robot, folder: Path) -> None:
     """Nothing is made of it: in a second a compiler says what no text of a test shows."""
     header, own = firmware.header([robot], "a test."), folder / "own.h"
     own.write_text(header, encoding="utf-8")
-    told = f'-Dtiniscript_own="{own}"'
+    own_define = f'-Dtiniscript_own="{own}"'
     if robot.board.chip.startswith("esp32"):
         need(missing())
-        flags = (*flags_of(robot.board.chip, 2), told, "-Wpedantic")
+        flags = (*flags_of(robot.board.chip, 2), own_define, "-Wpedantic")
         assert "".join(complaints(path, *flags) for path in KNOWING) == ""
         return
     need(boards.missing())
     words = (*boards.flags_of(robot.board.chip, boards.FLAGS), *boards.CPP, "-Wall", "-Wextra",
              "-Wpedantic", "-Werror", "-fsyntax-only")  # fmt: skip
-    boards.run("avr-g++", *words, *boards.flags_for(header), told, *KNOWING)
+    boards.run("avr-g++", *words, *boards.flags_for(header), own_define, *KNOWING)
     its = folder / "sketch.cpp"
     its.write_text(written(robot)[1], encoding="utf-8")
     boards.run("avr-g++", *words, its)

@@ -21,7 +21,7 @@ WAITS = {
 }
 
 
-def told(text: str) -> dict[str, str]:
+def move_values(text: str) -> dict[str, str]:
     """Return what the diagnostic of FOREVER says of the move."""
     values = next(
         diagnostic.values
@@ -36,7 +36,7 @@ def told(text: str) -> dict[str, str]:
 def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> None:
     for wait, whole in WAITS.items():
         parts = beside.join(("F(FOREVER, 60)", wait, "STOP"))
-        assert told(around.format(parts)) == {"whole": whole}, parts
+        assert move_values(around.format(parts)) == {"whole": whole}, parts
 
 
 @pytest.mark.parametrize("around", AROUND)
@@ -45,17 +45,17 @@ def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> 
 ])  # fmt: skip
 def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) -> None:
     text = f"{move}(FOREVER, 60);BEEP(1, 440);LOOP(2);BEEP(1, 880);END_LOOP;S"
-    assert told(around.format(text)) == {"running": motors}
+    assert move_values(around.format(text)) == {"running": motors}
 
 
 @pytest.mark.parametrize("around", AROUND)
-@pytest.mark.parametrize("behind", [
+@pytest.mark.parametrize("tail", [
     "", " // on; S", ";W(3)", ";W(3) // S", ";B(1, 50);S", ";IF(DISTANCE < 9);S;ENDIF",
     ";W(1) UNTIL(DISTANCE < 9);W(1);S",
 ])  # fmt: skip
-def test_nothing_else_does(around: str, behind: str) -> None:
+def test_nothing_else_does(around: str, tail: str) -> None:
     rest = around.replace("{};", "{}\n")  # a note ends with its line
-    assert told(rest.format(f"F(FOREVER, 60){behind}")) == {}
+    assert move_values(rest.format(f"F(FOREVER, 60){tail}")) == {}
 
 
 @pytest.mark.sampled("around")

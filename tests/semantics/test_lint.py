@@ -285,9 +285,9 @@ def test_an_else_between_two_numbers_has_room(
 def test_a_number_is_thrown_anew_at_each_random(throw: str) -> None:
     arms = f"IF({throw} = 1);F(1, 60);ELSEIF({throw} = 2);L(1, 60);ENDIF"
     assert "TS843" in warned(arms)
-    again = f"SHOW({throw});LOOP({throw});W(1);END_LOOP"
+    two_throws = f"SHOW({throw});LOOP({throw});W(1);END_LOOP"
     for place in ("{}", "LOOP(2);{};END_LOOP", "TASK;{};END_TASK;F(3, 60)", "DEF A;{};END_DEF;A"):
-        assert "TS843" in warned(place.format(again)), place
+        assert "TS843" in warned(place.format(two_throws)), place
     assert "TS843" not in warned(f"N = {throw};SHOW(N);{arms.replace(throw, 'N')}")
     assert "TS843" not in warned(f"SHOW({throw});W(1);LOOP({throw});W(1);END_LOOP")
 

@@ -96,8 +96,8 @@ def test_no_right_program_of_the_examples_asks_once_or_is_a_lone_task() -> None:
     assert places
     for place in places:
         text = place.read_text()
-        told = [it.code for it in check(text) if it.code in (codes.ASKED_ONCE, codes.LONE_TASK)]
-        assert not told, place
+        warnings = [it.code for it in check(text) if it.code in (codes.ASKED_ONCE, codes.LONE_TASK)]
+        assert not warnings, place
 
 
 # -- a TASK alone -----------------------------------------------------------------------------

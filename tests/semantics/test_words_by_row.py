@@ -33,7 +33,7 @@ TONES = ("440", "440-660", "20", "1.000", "X", "1000")
 
 
 @pytest.fixture(autouse=True)
-def _has_them(monkeypatch: pytest.MonkeyPatch) -> None:
+def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
     for word in (TOOT, CHEEP):
         monkeypatch.setitem(WORDS, word.text, word)
 

@@ -82,17 +82,17 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
     code = ["sh", "-c", f'ulimit -n {count + 100}; exec "$@"', "sh", sys.executable, "-c", VISITORS]
     with subprocess.Popen(
         [*code, str(port), kind, str(count)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as there:
+    ) as visitor:
         try:
-            assert there.stdin and there.stdout
-            assert there.stdout.readline() == b"here\n"
-            there.stdin.write(b"!")
-            there.stdin.flush()
-            assert there.stdout.readline() == b"said\n"
+            assert visitor.stdin and visitor.stdout
+            assert visitor.stdout.readline() == b"here\n"
+            visitor.stdin.write(b"!")
+            visitor.stdin.flush()
+            assert visitor.stdout.readline() == b"said\n"
             yield
         finally:
-            there.kill()
-            there.communicate()
+            visitor.kill()
+            visitor.communicate()
 
 
 def settled(pid: int, files: int) -> Had:

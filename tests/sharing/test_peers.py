@@ -47,23 +47,23 @@ peer.close()
 
 @linux
 def test_the_end_of_a_connection_has_its_user() -> None:
-    here, there = connected_pair()
-    with here, there:
-        found = peers._socket_owner(here.getpeername(), here.getsockname())
-        assert found == (os.geteuid(), os.fstat(there.fileno()).st_ino)
-        assert peers.is_of_this_user(here)
-        there.shutdown(socket.SHUT_WR)  # it listens on
-        assert peers.is_of_this_user(here)
+    own_end, other_end = connected_pair()
+    with own_end, other_end:
+        found = peers._socket_owner(own_end.getpeername(), own_end.getsockname())
+        assert found == (os.geteuid(), os.fstat(other_end.fileno()).st_ino)
+        assert peers.is_of_this_user(own_end)
+        other_end.shutdown(socket.SHUT_WR)  # it listens on
+        assert peers.is_of_this_user(own_end)
 
 
 @linux
 def test_whoever_has_hung_up_can_have_been_anybody() -> None:
-    here, there = connected_pair()
-    with here:
-        there.sendall(LINE)
-        there.close()
-        assert not peers._socket_owner(here.getpeername(), here.getsockname()).is_open
-        assert not peers.is_of_this_user(here)
+    own_end, other_end = connected_pair()
+    with own_end:
+        other_end.sendall(LINE)
+        other_end.close()
+        assert not peers._socket_owner(own_end.getpeername(), own_end.getsockname()).is_open
+        assert not peers.is_of_this_user(own_end)
 
 
 @linux
@@ -88,27 +88,27 @@ def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.SocketOwner(user, inode))
-    here, there = connected_pair()
-    with here, there:
-        assert peers.is_of_this_user(here) == is_let_in
+    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(user, inode))
+    own_end, other_end = connected_pair()
+    with own_end, other_end:
+        assert peers.is_of_this_user(own_end) == is_let_in
 
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(number: int) -> object:
-        def other_end(there: object, here: object) -> peers.SocketOwner:
+        def other_end(other: object, own: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
         return other_end
 
-    here, there = connected_pair()
-    with here, there:
+    own_end, peer_end = connected_pair()
+    with own_end, peer_end:
         monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
-        assert peers.is_of_this_user(here)
+        assert peers.is_of_this_user(own_end)
         monkeypatch.setattr(sys, "platform", "linux")
         for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # gone, or nothing can be asked
             monkeypatch.setattr(peers, "_socket_owner", failing(number))
-            assert not peers.is_of_this_user(here)
+            assert not peers.is_of_this_user(own_end)
 
 
 @linux

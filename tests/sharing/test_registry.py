@@ -107,13 +107,13 @@ def lock() -> IO[bytes] | None:
     return registry.lock_port(PORT)
 
 
-def has_one_owner(owners: list[IO[bytes] | None]) -> None:
+def check_one_owner(owners: list[IO[bytes] | None]) -> None:
     """No two have the lock; once they let go, the next one gets it, and nothing is left."""
-    there = [each for each in owners if each is not None and not each.closed]
-    assert len(there) <= 1, "two have the same lock"
+    holders = [each for each in owners if each is not None and not each.closed]
+    assert len(holders) <= 1, "two have the same lock"
     next_one = lock()
-    assert (next_one is None) == bool(there), "another one gets it, too"
-    for each in (*there, next_one):
+    assert (next_one is None) == bool(holders), "another one gets it, too"
+    for each in (*holders, next_one):
         if each is not None:
             each.close()
     last = lock()
@@ -159,7 +159,7 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                 return does, owned.close
 
             for _ in each_line(prepare):
-                has_one_owner(owners)
+                check_one_owner(owners)
 
 
 def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
@@ -169,7 +169,7 @@ def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> 
     second = lock()
     assert first is not None and second is not None
     first.close()
-    has_one_owner([second])
+    check_one_owner([second])
 
 
 @pytest.mark.parametrize("other", ["school2", "school-2", "s", "school.local"])
@@ -178,11 +178,11 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     does: str, other: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whether somebody listens at its number can be asked there alone."""
-    there = dead()
+    foreign = dead()
     monkeypatch.setattr(registry, "gethostname", lambda: other)
-    registry.write(there)
+    registry.write(foreign)
     monkeypatch.setattr(registry, "gethostname", lambda: "school")
-    own = registration(there.number, "live")
+    own = registration(foreign.number, "live")
     acts: dict[str, Callable[[], object]] = {
         "tidies": registry.tidy,
         "finds": registry.find_all,
@@ -191,4 +191,4 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     }
     acts[does]()
     monkeypatch.setattr(registry, "gethostname", lambda: other)
-    assert registry.find_registration(PORT) == there
+    assert registry.find_registration(PORT) == foreign

@@ -18,10 +18,10 @@ def until_done(connection: LinkConnection) -> list[Event]:
     found: list[Event] = []
     limit_s = monotonic() + HANGS_S
     while monotonic() < limit_s:
-        told = connection.event(0.2)
-        if told is not None:
-            found.append(told[1])
-            if told[1].name == "DONE":
+        row = connection.event(0.2)
+        if row is not None:
+            found.append(row[1])
+            if row[1].name == "DONE":
                 return found
     raise AssertionError(found)
 

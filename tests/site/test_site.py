@@ -85,11 +85,11 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
 
 def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
     found = documents(ROOT, built_texts())
-    there = {source for document in found for source in document.sources.values()}
+    sources = {source for document in found for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
     kept = {path.relative_to(ROOT).as_posix() for path in paths}
-    assert kept | {name for name in built_texts() if name.endswith(".md")} == there
+    assert kept | {name for name in built_texts() if name.endswith(".md")} == sources
     assert {document.part for document in found} == set(PARTS)
     for document in found:
         for language in document.sources:
@@ -160,8 +160,8 @@ def test_links_lead_to_pages_and_copies() -> None:
 
 def test_a_clone_keeps_what_a_person_reads_there_and_no_more() -> None:
     paths = (*ROOT.glob("docs/*/wiring/*"), *ROOT.glob("docs/*/command.md"))
-    there = {path.relative_to(ROOT).as_posix() for path in paths}
-    assert there == set(makers_of_kept()) < set(built_texts())
+    names = {path.relative_to(ROOT).as_posix() for path in paths}
+    assert names == set(makers_of_kept()) < set(built_texts())
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:

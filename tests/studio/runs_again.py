@@ -34,10 +34,10 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
         if found.image:
             break
     world = rng.choice(worlds.names())
-    told = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
+    given_readings = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
     if profile.kit.sensors[0].is_yes_no:
-        told = {}
-    settings = Settings(seed=number + 1, given_readings=told)
+        given_readings = {}
+    settings = Settings(seed=number + 1, given_readings=given_readings)
     run = Simulation(profile.name, worlds.load(world), found.image, settings=settings)
     for _ in range(rng.randint(1, 25)):
         _act(rng, run)
@@ -48,7 +48,7 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
     first = header_line(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
-                 given_readings=told)  # fmt: skip
+                 given_readings=given_readings)  # fmt: skip
     happened = [row for row in rows if not row.is_input]
     return encode(first, rows, end_ms).encode(), happened
 
@@ -65,12 +65,12 @@ def differs(number: int) -> str | None:
     """Return how a random run differs when it is played again, or None."""
     data, happened = recorded(number)
     played = play(prepare(decode(data)))
-    again = [row for row in played.rows() if not row.is_input]
+    replayed = [row for row in played.rows() if not row.is_input]
     parting = played.divergence
     played.close()
     if parting is None or parting.what != "again" or parting.agreed != len(happened):
         return f"{parting}\n{data.decode()}"
-    return None if again[: len(happened)] == happened else f"{again}\n{data.decode()}"
+    return None if replayed[: len(happened)] == happened else f"{replayed}\n{data.decode()}"
 
 
 if __name__ == "__main__":

@@ -82,8 +82,8 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
 def test_what_pupils_write_becomes_blocks_and_text() -> None:
     for text in sorted({entry.program for entry in corpus.entries()}):
         form = read_blocks(text, TINIBOT)
-        again = format_blocks(read_blocks(format_blocks(form).text, TINIBOT)).text
-        assert format_blocks(read_blocks(again, TINIBOT)).text == again, text
+        round_tripped = format_blocks(read_blocks(format_blocks(form).text, TINIBOT)).text
+        assert format_blocks(read_blocks(round_tripped, TINIBOT)).text == round_tripped, text
         assert not text.strip() or form.body or form.start or ";" in text, text
 
 

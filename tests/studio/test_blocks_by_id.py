@@ -102,10 +102,10 @@ def program_of(text: str = TEXT) -> SharedProgram:
 def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
     """Change blocks at random; return the ids of those that were touched."""
     bodies = [body, *(own for data in body for own in data["bodies"])]
-    here = [each for each in bodies if each]
-    if not here:
+    filled_bodies = [each for each in bodies if each]
+    if not filled_bodies:
         return set()
-    where = rng.choice(here)
+    where = rng.choice(filled_bodies)
     data = rng.choice(where)
     kind = rng.randrange(4)
     if kind == 0 and data["values"] and data["kind"] != "if":
@@ -149,9 +149,9 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
         if id not in below and id not in (ROOT, START):
             now = program.tree[id]
             assert (now.text, now.mark("text")) == (node.text, node.mark("text")), id
-    there = {each["id"] for each in ana.inside(ana.form["body"])}
+    present_ids = {each["id"] for each in ana.inside(ana.form["body"])}
     for block, id in nodes.items():
-        assert block not in there or id not in before or id in program.tree, (block, id)
+        assert block not in present_ids or id not in before or id in program.tree, (block, id)
 
 
 @pytest.mark.parametrize("seed", range(40))

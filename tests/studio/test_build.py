@@ -203,10 +203,10 @@ def test_the_same_sources_give_the_same_page(
     else:
         monkeypatch.setattr(studio, "bundle", lambda tools, target: brings("*.js", target))
     monkeypatch.setattr(studio, "check_types", lambda tools: None)  # done when that one was built
-    again = tmp_path / "page"
-    studio.build(again)
-    assert {path.name for path in again.iterdir()} == {path.name for path in page.iterdir()}
-    for path in again.iterdir():
+    second_page = tmp_path / "page"
+    studio.build(second_page)
+    assert {path.name for path in second_page.iterdir()} == {path.name for path in page.iterdir()}
+    for path in second_page.iterdir():
         assert path.read_bytes() == (page / path.name).read_bytes(), path.name
 
 

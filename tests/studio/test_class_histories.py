@@ -103,12 +103,12 @@ class History:
         self.texts += 1
         text = f"W({self.texts})"
         lessons = sorted({*page.lessons, self.chance.choice(LESSONS)})
-        told: Json = self.chance.choice(({"text": text}, {"lessons": lessons}, {}))
-        answer = self.answer(page, "here", **told)
+        fields: Json = self.chance.choice(({"text": text}, {"lessons": lessons}, {}))
+        answer = self.answer(page, "here", **fields)
         if answer is None:
             return
-        page.text = told.get("text", page.text)
-        page.lessons = told.get("lessons", page.lessons)
+        page.text = fields.get("text", page.text)
+        page.lessons = fields.get("lessons", page.lessons)
         given = answer.get("given")
         if given and self.chance.random() < 0.7:
             took = {"key": given["key"], "text": given["text"]}
@@ -217,12 +217,12 @@ class History:
 
     def all_is_there(self) -> None:
         """Each page's newest program, and that of who has gone, as often as it was made."""
-        told = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
+        texts = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
         found = {each["text"] for each in self.room.teaches("class_work")["pupils"]}
-        here = {row["name"] for row in self.rows()}
-        assert told | self.brought <= found, (told | self.brought) - found
+        present_names = {row["name"] for row in self.rows()}
+        assert texts | self.brought <= found, (texts | self.brought) - found
         for page in self.pages.values():
-            if page.name in here and page.text:
+            if page.name in present_names and page.text:
                 number = self.room.number(page.name)
                 work = self.room.teaches("class_text", pupil=number)
                 assert (work["text"], sorted(work["lessons"])) == (page.text, page.lessons)
@@ -255,20 +255,22 @@ class History:
         kept = json.loads(json.dumps(self.room.made.state_to_keep()))
         after = Room(0)
         assert after.made.resume(kept) == len(state["pupils"])
-        again = after.teaches("class")
+        resumed = after.teaches("class")
         for name in ("code", "turn_s", "places"):
-            assert again[name] == state[name], name
+            assert resumed[name] == state[name], name
         both = [
-            [(row["name"], *row["lessons"]) for row in each["pupils"]] for each in (again, state)
+            [(row["name"], *row["lessons"]) for row in each["pupils"]] for each in (resumed, state)
         ]
         assert both[0] == both[1]
-        assert [row["port"] for row in again["robots"]] == [row["port"] for row in state["robots"]]
+        assert [row["port"] for row in resumed["robots"]] == [
+            row["port"] for row in state["robots"]
+        ]
         works = [
             sorted(map(str, each.teaches("class_work")["pupils"])) for each in (after, self.room)
         ]
         assert works[0] == works[1]
         whom = [sorted((row["name"], numbers(each).get(row["given"], "")) for row in each["kept"])
-                for each in (again, state)]  # fmt: skip
+                for each in (resumed, state)]  # fmt: skip
         assert whom[0] == whom[1], "what was given is given to nobody"
 
 
@@ -307,13 +309,13 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         assert room.teaches("class_work")["pupils"] == []
         for page in old:
             with pytest.raises(BadRequest):
-                room.here(page.token)
+                room.checks_in(page.token)
             with pytest.raises(BadRequest):
                 room.made.answer(page.token, "192.0.2.9", {"do": "connect"})
-        again = room.made.answer("", "192.0.2.9", {
+        answer = room.made.answer("", "192.0.2.9", {
             "do": "join", "code": anew["code"], "name": "Ana",
             "before": old[0].token if old else "",
         })  # fmt: skip
-        assert again["name"] == "Ana" and again["token"] not in {page.token for page in old}
-        assert room.here(again["token"])["hand"] is False
+        assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old}
+        assert room.checks_in(answer["token"])["hand"] is False
         room.now_s += PLACE_S

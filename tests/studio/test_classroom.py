@@ -25,59 +25,59 @@ from tiniscript.studio.robot_link import BadRequest
 def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     robot = room.connects(ana)
     room.now_s += 500
-    assert room.here(ana) | {"name": ""} == {
+    assert room.checks_in(ana) | {"name": ""} == {
         "name": "", "place": 0, "waiting": 0, "robots": 1, "robot": "", "left_s": 0,
         "hand": False,
     }  # fmt: skip
-    room.here(luz, True)
+    room.checks_in(luz, True)
     assert robot.left == "turn_over"
-    assert room.here(luz)["place"] == 0
+    assert room.checks_in(luz)["place"] == 0
     assert room.made.answer(ana, HERE, {"do": "connect"}) == {"failure": "turn_none"}
 
 
 def test_a_turn_lasts_until_its_time() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     robot = room.connects(ana)
     for _ in range(59):
         room.now_s += 1
-        assert room.here(luz, True)["place"] == 1
-        room.here(ana)
-    assert not robot.has_ended and room.here(ana)["left_s"] == 1
+        assert room.checks_in(luz, True)["place"] == 1
+        room.checks_in(ana)
+    assert not robot.has_ended and room.checks_in(ana)["left_s"] == 1
     room.now_s += 1
-    assert room.here(luz)["place"] == 0
+    assert room.checks_in(luz)["place"] == 0
 
 
 def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
-    room.here(luz, True)
+    room.checks_in(ana, True)
+    room.checks_in(luz, True)
     for _ in range(10):
         room.now_s += 1.01
-        room.here(ana)  # is there, and does not connect
-    assert room.here(luz)["place"] == 0
-    assert room.here(ana)["place"] == -1
+        room.checks_in(ana)  # is there, and does not connect
+    assert room.checks_in(luz)["place"] == 0
+    assert room.checks_in(ana)["place"] == -1
 
 
 def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connect() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
-    room.here(luz, True)
+    room.checks_in(ana, True)
+    room.checks_in(luz, True)
     robot = room.connects(ana)
     robot.is_half_made = robot.has_ended = robot.was_left = True
-    assert room.here(luz)["place"] == 1 and room.here(ana)["place"] == 0
+    assert room.checks_in(luz)["place"] == 1 and room.checks_in(ana)["place"] == 0
     robot = room.connects(ana)
     robot.is_half_made = robot.has_ended = robot.was_left = True
     for _ in range(10):  # no longer than one that does not connect
         room.now_s += 1.01
-        room.here(ana)
-    assert room.here(luz)["place"] == 0
+        room.checks_in(ana)
+    assert room.checks_in(luz)["place"] == 0
 
 
 def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
@@ -88,11 +88,11 @@ def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
     def waited(leaves: Callable[[Room, str], None]) -> float:
         room = Room()
         ana, luz = room.joins("Ana"), room.joins("Luz")
-        room.here(ana, True)
-        room.here(luz, True)
+        room.checks_in(ana, True)
+        room.checks_in(luz, True)
         leaves(room, ana)
         began_s = room.now_s
-        while room.here(luz)["place"] != 0:
+        while room.checks_in(luz)["place"] != 0:
             room.now_s += 0.3  # as often as the next one's page asks
             for robot in asleep:
                 robot.silent_s += 0.3
@@ -112,24 +112,24 @@ def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
         assert waited(way) < 2.5, way.__name__
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     room.now_s += 2.5
-    assert room.here(luz, True)["place"] == 0
-    assert room.here(ana)["place"] == 1
+    assert room.checks_in(luz, True)["place"] == 0
+    assert room.checks_in(ana)["place"] == 1
 
 
 def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
     room = Room()
     ana, luz, teo = (room.joins(name) for name in ("Ana", "Luz", "Teo"))
-    room.here(ana, True)
+    room.checks_in(ana, True)
     robot = room.connects(ana)
-    room.here(luz, True)
-    room.here(teo, True)
+    room.checks_in(luz, True)
+    room.checks_in(teo, True)
     room.now_s += 10  # Luz is silent
-    assert room.here(teo)["place"] == 2
+    assert room.checks_in(teo)["place"] == 2
     robot.has_ended = True
-    assert room.here(teo)["place"] == 0
-    assert room.here(luz)["place"] == 1  # she is back
+    assert room.checks_in(teo)["place"] == 0
+    assert room.checks_in(luz)["place"] == 1  # she is back
     room.now_s += 21
     room.made.tend()
     assert room.teaches("class")["pupils"][1]["place"] == 0
@@ -138,24 +138,24 @@ def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
 def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
     room = Room(2)
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     robot = room.connects(ana)
     robot.name, robot.has_ended = "", True
-    room.here(luz, True)
+    room.checks_in(luz, True)
     room.connects(luz)
     assert room.hosting.asked[-1]["port"] == "port1"
-    assert room.here(ana, True)["place"] == 1
+    assert room.checks_in(ana, True)["place"] == 1
     room.now_s += 11
-    assert room.here(ana)["place"] == 0
+    assert room.checks_in(ana)["place"] == 0
 
 
 def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
     room = Room()
     ana = room.joins("Ana")
     room.hosting.held.add("port0")
-    assert room.here(ana, True)["place"] == 1
+    assert room.checks_in(ana, True)["place"] == 1
     room.hosting.held.clear()
-    assert room.here(ana)["place"] == 0
+    assert room.checks_in(ana)["place"] == 0
 
 
 # -- hostile pupils
@@ -164,7 +164,7 @@ def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
 def test_another_turn_is_reached_by_no_name() -> None:
     room = Room()
     ana, eve = room.joins("Ana"), room.joins("Eve")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     room.connects(ana)
     own = room.hosting.asked[-1]["page"]
     assert room.made.answer(eve, HERE, {"do": "connect", "page": own, "port": "port0"}) == {
@@ -199,7 +199,7 @@ def test_what_only_the_teacher_may_ask(do: object) -> None:
 def test_a_robot_stays_the_teachers(asked: object) -> None:
     room = Room()
     eve = room.joins("Eve")
-    room.here(eve, True)
+    room.checks_in(eve, True)
     room.connects(eve)
     with pytest.raises(BadRequest):
         room.made.answer(eve, HERE, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]})
@@ -260,7 +260,7 @@ def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
     room.joins("Ana")
     assert names() == ["Ana (2)", "Ana (3)", "Ana"]
     room.now_s += 6
-    room.here(second)
+    room.checks_in(second)
     room.joins("Ana", "198.51.100.1")  # another one, and here
     assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
 
@@ -282,7 +282,7 @@ def test_nobody_joins_without_a_name(name: object) -> None:
 def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room = Room()
     first = room.joins("p0")
-    room.here(first, True)
+    room.checks_in(first, True)
     room.connects(first)
     room.now_s += 1
     for k in range(1, class_keeping.MOST_PUPILS):
@@ -301,19 +301,19 @@ def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
         for _ in range(200):
-            room.here(eve)
+            room.checks_in(eve)
     assert room.made.answer(eve, HERE, {"do": "stop"}) == {"news": []}
     room.now_s += 1
     for _ in range(40):
-        room.here(eve)
+        room.checks_in(eve)
 
 
 def test_a_huge_program_is_cut() -> None:
     room = Room()
     eve = room.joins("Eve")
-    room.here(eve, text="x" * 150_000)
+    room.checks_in(eve, text="x" * 150_000)
     with pytest.raises(BadRequest):
-        room.here(eve, text=["x"])
+        room.checks_in(eve, text=["x"])
     number = room.number("Eve")
     assert len(room.teaches("class_text", pupil=number)["text"]) == class_keeping.TEXT_CHARACTERS
 
@@ -321,7 +321,7 @@ def test_a_huge_program_is_cut() -> None:
 def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     room = Room()
     eve = room.joins("Eve")
-    room.here(eve, lessons=["01_first_line"] * 1000, robot="liner", is_right=False, hand=True)
+    room.checks_in(eve, lessons=["01_first_line"] * 1000, robot="liner", is_right=False, hand=True)
     pupil = room.teaches("class")["pupils"][0]
     assert len(pupil["lessons"]) == class_keeping.MOST_LESSONS
     assert (pupil["is_right"], pupil["hand"] > 0) == (False, True)
@@ -330,9 +330,9 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
         {"robot": "x"}, {"robot": ["liner"]}, {"text": 5},
     ):  # fmt: skip
         with pytest.raises(BadRequest):
-            room.here(eve, **wrong)
+            room.checks_in(eve, **wrong)
     own = {"name": "Pip\u202e" * 20, "colour": 3}
-    room.here(eve, own_robot=own)
+    room.checks_in(eve, own_robot=own)
     found = room.teaches("class")["pupils"][0]["own_robot"]
     assert found["colour"] == 3 and found["name"].isprintable() and len(found["name"]) <= 17
     wrong_robots: tuple[object, ...] = (
@@ -341,13 +341,13 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     )  # fmt: skip
     for wrong_robot in wrong_robots:
         with pytest.raises(BadRequest):
-            room.here(eve, own_robot=wrong_robot)
+            room.checks_in(eve, own_robot=wrong_robot)
     assert room.teaches("class")["pupils"][0]["own_robot"] == found
-    assert room.here(eve, is_right="x", hand="x")["hand"]
-    assert not room.here(eve, hand=False)["hand"]
-    room.here(eve, hand=True)
+    assert room.checks_in(eve, is_right="x", hand="x")["hand"]
+    assert not room.checks_in(eve, hand=False)["hand"]
+    room.checks_in(eve, hand=True)
     room.teaches("class_hand", pupil=room.number("Eve"))
-    assert not room.here(eve)["hand"]
+    assert not room.checks_in(eve)["hand"]
 
 
 # -- the work
@@ -377,16 +377,16 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **WORK)
     eve = room.joins("Ana")  # whoever that is
-    assert "given" not in room.here(eve)
+    assert "given" not in room.checks_in(eve)
     key, number = key_of(room), room.number("Ana")
     row = {"key": key, "name": "Ana", "lessons": ("01_first_line",), "given": 0, "alike": [number]}
     assert room.teaches("class")["kept"] == [row]
     state = room.teaches("class_give_back", key=key, pupil=number)
     assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
-        given = room.here(eve)["given"]
+        given = room.checks_in(eve)["given"]
         assert given == {"key": key, **GIVEN}
-    assert "given" not in room.here(eve, took=took(given))
+    assert "given" not in room.checks_in(eve, took=took(given))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
 
@@ -418,17 +418,17 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
     right = {"key": key, "text": WORK["text"]}
-    room.here(ana, took=right)  # nobody has given it
+    room.checks_in(ana, took=right)  # nobody has given it
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
     wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
     wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
     for said in wrong:
-        assert room.here(ana, took=said)["given"]["key"] == key
-    assert "given" not in room.here(eve, took=right)  # it is not hers to say so
+        assert room.checks_in(ana, took=said)["given"]["key"] == key
+    assert "given" not in room.checks_in(eve, took=right)  # it is not hers to say so
     assert texts_of(room) == ["F(1, 50)"]
     # The page has it: so it is her work from then on, even before she tells of it.
-    assert "given" not in room.here(ana, took=right)
+    assert "given" not in room.checks_in(ana, took=right)
     assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
 
@@ -440,13 +440,13 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     first = room.joins("Ana")
     key = key_of(room)
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert room.here(first)["given"]["key"] == key
+    assert room.checks_in(first)["given"]["key"] == key
     room.teaches("class_remove", pupil=room.number("Ana"))
     second = room.joins("Ana", "198.51.100.1")
-    assert "given" not in room.here(second)
+    assert "given" not in room.checks_in(second)
     assert room.teaches("class")["kept"][0]["given"] == 0
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert "given" not in room.here(second, took=took(room.here(second)["given"]))
+    assert "given" not in room.checks_in(second, took=took(room.checks_in(second)["given"]))
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -458,16 +458,16 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
     states = [room.made.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
     states.append(room.made.state_to_keep())
-    given = room.here(ana)["given"]
-    room.here(ana, took=took(given))
+    given = room.checks_in(ana)["given"]
+    room.checks_in(ana, took=took(given))
     states.append(room.made.state_to_keep())
     for k, state in enumerate(states):
         after = Room(0)
         after.made.resume(json.loads(json.dumps(state)))
         assert "F(1, 50)" in texts_of(after)
-        assert ("given" in after.here(ana)) is (k == 1)
+        assert ("given" in after.checks_in(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it takes it no second time
-            assert after.here(ana)["given"] == {**given, "lessons": ("01_first_line",)}
+            assert after.checks_in(ana)["given"] == {**given, "lessons": ("01_first_line",)}
 
 
 def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
@@ -479,20 +479,20 @@ def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     assert room.teaches("class")["kept"][0]["alike"] == [pupil["number"] for pupil in pupils]
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[0]["number"])
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])  # has looked
-    assert "given" not in room.here(eve)
-    given = room.here(ana)["given"]
-    room.here(eve, took=took(given), text="")
+    assert "given" not in room.checks_in(eve)
+    given = room.checks_in(ana)["given"]
+    room.checks_in(eve, took=took(given), text="")
     assert texts_of(room) == ["F(1, 50)"]
 
 
 def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
     room = Room()
     ana = room.joins("Jos\u00e9")
-    room.here(ana, text="F(1, 50)")
+    room.checks_in(ana, text="F(1, 50)")
     room.teaches("class_remove", pupil=room.number("Jos\u00e9"))
     for name in ("Jos\u00e9", "Jose\u0301", "jos\u00e9", "J\u043es\u00e9"):
         eve = room.joins(name, "192.0.2.66")
-        room.here(eve, text="S")
+        room.checks_in(eve, text="S")
         number = room.teaches("class")["pupils"][0]["number"]
         room.teaches("class_remove", pupil=number)
     assert texts_of(room) == ["F(1, 50)", *["S"] * 4]
@@ -508,17 +508,17 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
     room.teaches("class_places", places=places)
     for k in range(29):
         pupil = room.joins(f"p{k}", f"198.51.100.{k}")
-        room.here(pupil, text=f"SHOW({k})")
+        room.checks_in(pupil, text=f"SHOW({k})")
         room.teaches("class_remove", pupil=room.number(f"p{k}"))
-    here = room.joins("p29", "198.51.100.29")
+    last_pupil = room.joins("p29", "198.51.100.29")
     failures = []
     for k in range(200):
-        room.here(here, text="SHOW(29)")
+        room.checks_in(last_pupil, text="SHOW(29)")
         room.now_s += classroom.PLACE_S + 1
         asked = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
         answer = room.made.answer("", "192.0.2.66", asked)
         if "token" in answer:
-            room.here(answer["token"], text=f"S {k}")
+            room.checks_in(answer["token"], text=f"S {k}")
         failures += [answer["failure"]] if "failure" in answer else []
     assert set(texts_of(room)) >= {f"SHOW({k})" for k in range(30)}
     works = len(room.teaches("class_work")["pupils"])
@@ -534,26 +534,26 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
     """A tab was closed, or the teacher has removed the pupil."""
     room = Room()
     ana = room.joins("Ana")
-    room.here(ana, text="F(1, 50)")
+    room.checks_in(ana, text="F(1, 50)")
 
-    def back(name: str = "ana", token: object = ana) -> Json:
+    def come_back(name: str = "ana", token: object = ana) -> Json:
         asked = {"do": "join", "code": room.made.code, "name": name, "before": token}
         return room.made.answer("", HERE, asked)
 
-    second = back()  # another tab, which is there, too
+    second = come_back()  # another tab, which is there, too
     assert second["name"] == "ana (2)"
     room.teaches("class_remove", pupil=room.number("ana (2)"))
     room.now_s += classroom.PLACE_S + 1
-    assert back() == {"token": ana, "name": "Ana"}
+    assert come_back() == {"token": ana, "name": "Ana"}
     room.teaches("class_remove", pupil=room.number("Ana"))
     for token in ("", None, 5, "0" * 32, [ana]):
-        other = back(token=token)
+        other = come_back(token=token)
         assert other["name"] == "ana (2)"
         room.teaches("class_remove", pupil=room.number("ana (2)"))
-    luz = back("Luz")  # the next child at this device
+    luz = come_back("Luz")  # the next child at this device
     assert luz["name"] == "Luz" and luz["token"] != ana
     assert texts_of(room) == ["F(1, 50)"]
-    assert back() == {"token": ana, "name": "Ana"}
+    assert come_back() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
     wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
     assert room.made.answer("", HERE, wrong) == {"failure": "class_wrong"}
@@ -562,18 +562,18 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
 def test_who_was_removed_finds_the_work_again() -> None:
     room = Room()
     ana = room.joins("Ana")
-    room.here(ana, text="F(1, 50)", robot="tinibot")
+    room.checks_in(ana, text="F(1, 50)", robot="tinibot")
     room.teaches("class_remove", pupil=room.number("Ana"))
     key = key_of(room)
     assert room.teaches("class_text", key=key)["text"] == "F(1, 50)"
     assert names_of(room) == ["Ana"]
-    again = room.joins("Ana")
+    second_token = room.joins("Ana")
     room.teaches("class_give_back", key=key, pupil=room.number("Ana (2)"))
-    assert room.here(again)["given"]["text"] == "F(1, 50)"
+    assert room.checks_in(second_token)["given"]["text"] == "F(1, 50)"
     room.teaches("class_anew")
     assert room.teaches("class_work") == {"pupils": []}
     with pytest.raises(BadRequest):
-        room.here(again)
+        room.checks_in(second_token)
 
 
 # -- the file
@@ -600,8 +600,8 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
-    room.here(luz, text="S")
+    room.checks_in(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
+    room.checks_in(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
     keeper.keep(room.made.state_to_keep())
     assert kept_at.stat().st_mode & 0o077 == 0  # it has tokens
@@ -613,12 +613,12 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     state = after.teaches("class")
     assert (state["code"], state["goes_on"]) == (room.made.code, True)
     assert [each["port"] for each in state["robots"]] == ["port0"]
-    assert after.here(ana)["name"] == "Ana"
+    assert after.checks_in(ana)["name"] == "Ana"
     assert sorted(texts_of(after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
-        after.here(luz)
-    again = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
-    assert after.made.answer("", HERE, again) == {"token": luz, "name": "Luz"}
+        after.checks_in(luz)
+    request = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
+    assert after.made.answer("", HERE, request) == {"token": luz, "name": "Luz"}
     assert not after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
     keeper.keep(room.made.state_to_keep())
@@ -628,7 +628,7 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
 def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keeper) -> None:
     room = Room()
     token = room.joins("Ana")
-    room.here(token, text="F(1, 50)", robot="tinibot")
+    room.checks_in(token, text="F(1, 50)", robot="tinibot")
     keeper.keep(room.made.state_to_keep())
     whole = json.loads(kept_at.read_text())
     row = whole["pupils"][0]
@@ -638,8 +638,8 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     after = Room(0)
     assert goes_on(after, keeper) == 1
-    assert after.here(token)["name"] == "Ana" and after.made.code != room.made.code
-    assert after.here(token)["given"]["text"] == "F(1, 50)"
+    assert after.checks_in(token)["name"] == "Ana" and after.made.code != room.made.code
+    assert after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many = [{**row, "token": f"{k:032x}"} for k in range(99)]
     kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
     after = Room(0)
@@ -663,7 +663,7 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     kept_at: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     room = Room()
-    room.here(room.joins("Ana"), text="F(1, 50)")
+    room.checks_in(room.joins("Ana"), text="F(1, 50)")
 
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
@@ -681,14 +681,14 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
     """A board without a battery begins in the past, and hears the time later."""
     room = Room()
     token = room.joins("Ana")
-    room.here(token, text="F(1, 50)")
+    room.checks_in(token, text="F(1, 50)")
     keeper.keep(room.made.state_to_keep())
     whole = json.loads(kept_at.read_text())
     for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # since it was kept
         kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
         after = Room(0)
         assert goes_on(after, keeper) == 1
-        assert after.here(token)["name"] == "Ana" and after.made.code == room.made.code
+        assert after.checks_in(token)["name"] == "Ana" and after.made.code == room.made.code
     for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
         kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
         after = Room(0)
@@ -698,9 +698,9 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
         keeper.keep(after.made.state_to_keep())
         assert "F(1, 50)" in kept_at.read_text()  # nor does the next crash lose it
         with pytest.raises(BadRequest):
-            after.here(token)
-        again = {"do": "join", "code": after.made.code, "name": "Ana", "before": token}
-        assert after.made.answer("", HERE, again) == {"token": token, "name": "Ana"}
+            after.checks_in(token)
+        request = {"do": "join", "code": after.made.code, "name": "Ana", "before": token}
+        assert after.made.answer("", HERE, request) == {"token": token, "name": "Ana"}
         assert texts_of(after) == ["F(1, 50)"]
 
 
@@ -741,8 +741,8 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
 def test_the_teacher_sees_stops_and_takes_back() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True, text="F(1, 50)")
-    room.here(luz, True)
+    room.checks_in(ana, True, text="F(1, 50)")
+    room.checks_in(luz, True)
     robot = room.connects(ana)
     state = room.teaches("class")
     assert [(each["name"], each["place"], each["robot"]) for each in state["pupils"]] == [
@@ -755,11 +755,11 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     assert robot.stopped == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
     assert robot.left == "turn_over"
-    assert room.here(luz)["place"] == 0
+    assert room.checks_in(luz)["place"] == 0
     room.teaches("class_remove", pupil=number)
     assert room.made.most_bytes(ana) == 0
     with pytest.raises(BadRequest):
-        room.here(ana)
+        room.checks_in(ana)
     room.teaches("stop_all")
     assert room.hosting.asked[-1] == {"do": "stop_all"}
 
@@ -767,10 +767,10 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
 def test_robots_come_and_go() -> None:
     room = Room(0)
     ana = room.joins("Ana")
-    assert room.here(ana, True)["robots"] == 0
+    assert room.checks_in(ana, True)["robots"] == 0
     room.teaches("class_robot", port="port7", gives=True)
     assert len(room.teaches("class_robot", port="port7", gives=True)["robots"]) == 1
-    assert room.here(ana)["place"] == 0
+    assert room.checks_in(ana)["place"] == 0
     robot = room.connects(ana)
     assert room.teaches("class_robot", port="port7", gives=False)["robots"] == []
     assert robot.left == "turn_over"
@@ -796,16 +796,16 @@ def test_a_new_code_and_another_turn() -> None:
 def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     robot = room.connects(ana)
-    room.here(luz, True)
+    room.checks_in(luz, True)
     room.teaches("class_over", erases=erases)
     assert robot.left == "turn_over"
     room.made.tend()
     assert not room.made.has_ended
-    assert room.here(ana) == {"over": over}
+    assert room.checks_in(ana) == {"over": over}
     assert not room.made.has_ended
-    assert room.here(luz, True) == {"over": over}
+    assert room.checks_in(luz, True) == {"over": over}
     assert room.made.has_ended
     assert [each["pupil"] for each in room.teaches("class")["robots"]] == [""]
     late = {"do": "join", "code": room.made.code, "name": "Teo"}
@@ -824,7 +824,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     """A list of ports may take seconds, and a robot drives meanwhile."""
     room = Room()
     ana = room.joins("Ana")
-    room.here(ana, True)
+    room.checks_in(ana, True)
     room.connects(ana)
     answered: list[str] = []
 
@@ -859,10 +859,10 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     assert "token" in enters("other", "192.0.2.10")
     room.now_s += classroom.PLACE_S + 1  # the first one's page was closed, and is opened again
     for token in tokens[1:]:
-        room.here(token)
+        room.checks_in(token)
     assert "token" in enters("again")
     with pytest.raises(BadRequest):
-        room.here(tokens[0])
+        room.checks_in(tokens[0])
     assert enters("more") == {"failure": "class_crowded"}
     for places in (1, 60):
         assert room.teaches("class_places", places=places)["places"] == places
@@ -880,44 +880,46 @@ def asks_run(room: Room, pupil: int, asks: bool = False) -> Any:
 
 
 def gives(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
-    told = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
-    room.made.answer(token, HERE, told)
+    request = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
+    room.made.answer(token, HERE, request)
 
 
 def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
     room = Room()
     ana, ben = room.joins("Ana"), room.joins("Ben")
-    assert "run" not in room.here(ana)
+    assert "run" not in room.checks_in(ana)
     assert asks_run(room, 1, True) is None
-    asked = room.here(ana)["run"]
-    assert "run" not in room.here(ben)
+    asked = room.checks_in(ana)["run"]
+    assert "run" not in room.checks_in(ben)
     gives(room, ben, asked, 0, "nobody has asked", True)
     gives(room, ana, asked + 1, 0, "another question", True)
     assert asks_run(room, 1) is None
     gives(room, ana, asked, 0, "one, ", False)
-    assert asks_run(room, 1) is None and room.here(ana)["run"] == asked
+    assert asks_run(room, 1) is None and room.checks_in(ana)["run"] == asked
     gives(room, ana, asked, 5, "two", True)
-    assert "run" not in room.here(ana)
+    assert "run" not in room.checks_in(ana)
     assert asks_run(room, 1) == "one, two"
-    assert asks_run(room, 1, True) is None and room.here(ana)["run"] > asked, "it is asked anew"
+    assert asks_run(room, 1, True) is None
+    assert room.checks_in(ana)["run"] > asked, "it is asked anew"
     assert asks_run(room, 9, True) == "", "who has gone has none"
     assert "class_run" not in json.dumps(room.made.state_to_keep())
 
 
 @pytest.mark.parametrize(
-    "told",
+    "wrong",
     [
         {"part": 1}, {"part": None}, {"from": 1}, {"from": -1}, {"from": "0"}, {"is_last": 1},
         {"part": "x" * (recordings.MOST_BYTES + 1)},
     ],
 )  # fmt: skip
-def test_parts_that_do_not_fit_are_refused(told: Json) -> None:
+def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
     asks_run(room, 1, True)
-    right = {"do": "run", "asked": room.here(ana)["run"], "from": 0, "part": "x", "is_last": True}
+    asked = room.checks_in(ana)["run"]
+    right = {"do": "run", "asked": asked, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, HERE, {**right, **told})
+        room.made.answer(ana, HERE, {**right, **wrong})
     room.made.answer(ana, HERE, right)
     with pytest.raises(BadRequest):
         room.made.answer(ana, HERE, {**right, "from": 1})

@@ -61,16 +61,16 @@ class Clock:
 @pytest.fixture
 def peer() -> Iterator[socket.socket]:
     """A connection of this user."""
-    here, there = connected_pair()
-    with here, there:
-        yield here
+    own_end, other_end = connected_pair()
+    with own_end, other_end:
+        yield own_end
 
 
 @pytest.fixture
 def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
     """All connections within this computer are of another user."""
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.SocketOwner(NOBODY, 1))
+    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(NOBODY, 1))
     monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
 
 
@@ -107,9 +107,9 @@ def test_a_code_that_comes_again_ends_what_it_has_given(
     assert doors.token_for(code, peer) == ""  # the browser
     assert not doors.is_owner(stolen, peer)
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    again = doors.new_code()
-    given = doors.token_for(again, peer)
-    assert doors.token_for(again, peer) == "" and doors.token == given
+    second_code = doors.new_code()
+    given = doors.token_for(second_code, peer)
+    assert doors.token_for(second_code, peer) == "" and doors.token == given
 
 
 @pytest.mark.usefixtures("of_another")
@@ -211,8 +211,8 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
         assert enter(own, code) == (200, {"token": token})
         assert enter(own, code) == (200, {"failure": "host_used"})
         assert post(own, token, {"do": "ports"})[0] == 200
-        again = command.stdout.readline().strip()  # the printed address was opened
-        assert again.startswith(f"{address}#code=") and again != printed
+        next_address = command.stdout.readline().strip()  # the printed address was opened
+        assert next_address.startswith(f"{address}#code=") and next_address != printed
     finally:
         (tmp_path / "closed").touch()
         command.terminate()

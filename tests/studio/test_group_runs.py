@@ -105,12 +105,12 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
     page.looks()
     most = chance.choice((1, 5, 60))
-    told: dict[str, list[str]] = {name: [] for name in DRIVERS}
+    values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
         for _ in range(chance.randint(1, most)):
             before = len(robot.meant)
             news = robot.tells()
-            told[robot.driver] += robot.meant[before:]
+            values_by_driver[robot.driver] += robot.meant[before:]
             runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
         found = page.looks()
@@ -126,7 +126,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     assert is_part(page.values, robot.meant)
     assert missed(page) + len(page.values) == counted(page)
     for each in drivers:
-        assert not set(each.values) & set(told[each.name])
+        assert not set(each.values) & set(values_by_driver[each.name])
     for row in page.heard:
         value = str(row.get("value", row.get("text")))
         assert "nth" not in row or row["nth"] == robot.nth[value]

@@ -121,9 +121,9 @@ def test_pupils_of_a_group_have_one_program(school: School) -> None:
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
-    assert school.here(ana.token)["group"] == "Red"
+    assert school.checks_in(ana.token)["group"] == "Red"
     teo = school.joins("Teo")
-    assert school.here(teo)["groups"] == [{"name": "Red", "members": ["Ana", "Luz"]}]
+    assert school.checks_in(teo)["groups"] == [{"name": "Red", "members": ["Ana", "Luz"]}]
 
 
 def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
@@ -193,7 +193,7 @@ def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     heard: list[Json] = []
     waiting = in_thread(lambda: heard.append(ana.asks("group", **ana.request(waits=True))))
     until(lambda: members_hold(school, ana) > 0, "the page waits")
-    assert school.here(luz.token)["group"] == "Red"  # the class is not held
+    assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
     luz.sends()
     waiting.join(HANGS_S)
@@ -228,7 +228,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
 ) -> None:
     monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANGS_S)
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
-    school.here(ana.token, True)
+    school.checks_in(ana.token, True)
     robot = school.connects(ana.token)
     ana.sends()
     luz.sends()
@@ -254,7 +254,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
 def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     eva = Member(school, "Eva", "Blue")
-    school.here(ana.token, True)
+    school.checks_in(ana.token, True)
     robot = school.connects(ana.token)
 
     def hears(member: Member, value: str) -> bool:
@@ -377,7 +377,7 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
             luz.sends()
             assert ana.text == luz.text and new in luz.text
         school.now_s += 0.1
-    assert school.here(luz.token)["group"] == "Red"
+    assert school.checks_in(luz.token)["group"] == "Red"
     assert {each["name"] for each in school.teaches("class")["groups"]} >= {"Red"}
 
 
@@ -452,7 +452,7 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     assert "F(1, 95)" in members[1].text
     assert school.teaches("class_text", group=seen["key"])["history"] == ["Teacher: → F(1, 95)"]
     assert school.teaches("class")["groups"][0]["pupils"] == seen["pupils"]
-    [shown] = school.here(school.joins("Late"))["groups"]
+    [shown] = school.checks_in(school.joins("Late"))["groups"]
     assert shown["members"] == [each.name for each in members]
     teacher.asks("group_leave")
     assert len(members[0].sends()["others"]) == groups.MOST_MEMBERS - 1
@@ -484,8 +484,8 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
             member = members[k]
             school.now_s += 1
             if does == "wish":
-                school.here(member.token, wants)
-            elif does == "connect" and school.here(member.token)["place"] == 0:
+                school.checks_in(member.token, wants)
+            elif does == "connect" and school.checks_in(member.token)["place"] == 0:
                 school.connects(member.token)
             elif does == "join":
                 member.joins(name)
@@ -493,13 +493,13 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
                 member.asks("group_leave")
             elif does == "stop":
                 member.asks("stop", group_stops=school.now_s)
-        there = schools[0].teaches("class")["groups"]
-        if there:
-            teacher = Teacher(schools[0], chance.choice(there)["key"])
+        shown_groups = schools[0].teaches("class")["groups"]
+        if shown_groups:
+            teacher = Teacher(schools[0], chance.choice(shown_groups)["key"])
             teacher.sends(at="i.1", writes=True)
             if chance.random() < 0.3:
                 teacher.asks("group_leave")
-        seen = [[school.here(member.token) for member in members]
+        seen = [[school.checks_in(member.token) for member in members]
                 for school, members in zip(schools, both, strict=True)]  # fmt: skip
         assert seen[0] == seen[1]
         asked = [[each["do"] for each in school.hosting.asked] for school in schools]
@@ -515,8 +515,8 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     school.now_s += groups.GONE_S + 1
     assert ana.sends()["others"] == []
     assert teacher.asks("group", **teacher.request()) == {"left": True}
-    again = Teacher(school, group["key"], teacher.page.name)
-    assert again.page.name == teacher.page.name
+    second_teacher = Teacher(school, group["key"], teacher.page.name)
+    assert second_teacher.page.name == teacher.page.name
     assert [each["name"] for each in ana.sends()["others"]] == ["Teacher"]
 
 
@@ -546,35 +546,35 @@ def test_who_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School
 def test_a_group_has_one_place_and_one_turn(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     teo, eva = school.joins("Teo"), school.joins("Eva")
-    school.here(teo, True)
+    school.checks_in(teo, True)
     school.connects(teo)
-    school.here(eva, True)
-    assert school.here(luz.token, True)["place"] == 2
-    assert school.here(ana.token, True)["place"] == 2  # the same one
-    assert school.here(teo)["waiting"] == 2
-    school.here(eva, False)
+    school.checks_in(eva, True)
+    assert school.checks_in(luz.token, True)["place"] == 2
+    assert school.checks_in(ana.token, True)["place"] == 2  # the same one
+    assert school.checks_in(teo)["waiting"] == 2
+    school.checks_in(eva, False)
     school.teaches("class_next", pupil=school.number("Teo"))
     school.now_s += 1
-    assert school.here(ana.token)["place"] == 0
-    assert school.here(luz.token)["place"] == 0
-    assert school.here(teo)["waiting"] == 0
+    assert school.checks_in(ana.token)["place"] == 0
+    assert school.checks_in(luz.token)["place"] == 0
+    assert school.checks_in(teo)["waiting"] == 0
     ana.asks("group_leave")
-    places = {school.here(token)["place"] for token in (ana.token, luz.token)}
+    places = {school.checks_in(token)["place"] for token in (ana.token, luz.token)}
     assert places == {0, -1}
 
 
 def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
     teo = school.joins("Teo")
-    school.here(teo, True)
+    school.checks_in(teo, True)
     school.connects(teo)
     ana = Member(school, "Ana")
     luz, eva = school.joins("Luz"), school.joins("Eva")
     for token in (luz, eva, ana.token):
-        school.here(token, True)
-    assert school.here(ana.token)["place"] == 3
+        school.checks_in(token, True)
+    assert school.checks_in(ana.token)["place"] == 3
     school.made.answer(luz, HERE, {"do": "group_join", "name": "Red", "text": ""})
-    assert school.here(ana.token)["place"] == school.here(luz)["place"] == 1
-    assert school.here(teo)["waiting"] == 2
+    assert school.checks_in(ana.token)["place"] == school.checks_in(luz)["place"] == 1
+    assert school.checks_in(teo)["waiting"] == 2
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -586,8 +586,8 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         member = chance.choice(members)
         does = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
         if does == "wish":
-            school.here(member.token, chance.random() < 0.8)
-        elif does == "connect" and school.here(member.token)["place"] == 0:
+            school.checks_in(member.token, chance.random() < 0.8)
+        elif does == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)
         elif does == "join":
@@ -608,11 +608,11 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
 def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     eve = school.joins("Eve")
-    school.here(ana.token, True)
-    school.here(luz.token)
+    school.checks_in(ana.token, True)
+    school.checks_in(luz.token)
     robot = school.connects(ana.token)
-    assert "driver" not in school.here(ana.token)
-    assert school.here(luz.token)["driver"] == "Ana"
+    assert "driver" not in school.checks_in(ana.token)
+    assert school.checks_in(luz.token)["driver"] == "Ana"
     luz.asks("stop", group_stops=1)
     luz.asks("stop", group_stops=1)  # sent again, as the answer was lost
     assert robot.stopped == 1
@@ -624,7 +624,7 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     assert school.made.answer(eve, HERE, {"do": "connect"}) == {"failure": "turn_none"}
     other = school.connects(luz.token)
     assert (robot.left, other.has_ended) == ("group_other", False)
-    assert school.here(ana.token)["driver"] == "Luz"
+    assert school.checks_in(ana.token)["driver"] == "Luz"
     ana.asks("stop")
     assert (other.stopped, robot.stopped) == (1, 3)
 
@@ -635,9 +635,9 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
     anew, which counts from 1 again: no robot that was there drives on."""
     chance = Random(seed)
     members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
-    school.here(members[0].token, True)
+    school.checks_in(members[0].token, True)
     for member in members:
-        school.here(member.token)
+        school.checks_in(member.token)
     school.connects(members[0].token)
     presses = dict.fromkeys(members, 0)
     for _ in range(20):

@@ -138,27 +138,27 @@ def test_a_fault_says_where(page: Page) -> None:
 
 
 @pytest.fixture
-def is_attached(monkeypatch: pytest.MonkeyPatch) -> None:
+def always_attended(monkeypatch: pytest.MonkeyPatch) -> None:
     """The line attends to the robot whatever its page does: only a stop ends a run."""
     monkeypatch.setattr(hosted_robot.HostedRobot, "_ping_while_attended", lambda *_: None)
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)
 
 
-def is_stopped(robot: PtyRobot) -> None:
+def check_stopped(robot: PtyRobot) -> None:
     robot.until(lambda: bytes(STOP_BYTES) in robot.heard and not robot.moves, "it is stopped")
     assert "MOTORS 80 80" in robot.did
 
 
-@pytest.mark.usefixtures("is_attached")
+@pytest.mark.usefixtures("always_attended")
 def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     began_s = time.monotonic()
     page.beat()
-    is_stopped(robot)
+    check_stopped(robot)
     assert time.monotonic() - began_s >= attending.ATTENDED_S
 
 
-@pytest.mark.usefixtures("is_attached")
+@pytest.mark.usefixtures("always_attended")
 def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> None:
     """The robot counts its runs anew: the next one has the number of one that is over."""
     page.upload("SHOW(1)")
@@ -168,7 +168,7 @@ def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> 
     ran = page.upload(FOREVER)
     while "failure" in ran:  # until the session has noticed
         ran = page.upload(FOREVER)
-    is_stopped(robot)
+    check_stopped(robot)
 
 
 def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
@@ -240,10 +240,10 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
     assert robot.moves and other.process.poll() is None
     assert hosting.is_free(robot.port)
-    again = Page(hosting, "another")
-    assert again.connect(robot.port) == {}
-    again.until(lambda each: "connected" in each)
-    again.beat(do="leave")
+    second_page = Page(hosting, "another")
+    assert second_page.connect(robot.port) == {}
+    second_page.until(lambda each: "connected" in each)
+    second_page.beat(do="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
     assert robot.moves and other.process.poll() is None
@@ -264,11 +264,11 @@ def test_a_port_has_one_page(
     assert page.connect(robot.port) == {}  # which it has
     drives(page, robot)
     # STOP of a page without a robot
-    told = {"name": robot.port, "stop": "asked"}
-    assert hosting.answer({"do": "stop_all"}) == {"robots": [told]}
+    stop_report = {"name": robot.port, "stop": "asked"}
+    assert hosting.answer({"do": "stop_all"}) == {"robots": [stop_report]}
     page.until(lambda each: each.get("event") == "STOPPED")
-    told["stop"] = "confirmed"
-    assert hosting.answer({"do": "stops"}) == {"robots": [told]}
+    stop_report["stop"] = "confirmed"
+    assert hosting.answer({"do": "stops"}) == {"robots": [stop_report]}
     image = compile(FOREVER).image.hex()
     refused = page.ask("upload", image=image, robot="tinibot", runs=True)  # it was on its way
     assert refused["failure"] == "stopped_elsewhere" and not robot.moves

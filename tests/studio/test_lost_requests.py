@@ -160,7 +160,7 @@ class TornPage:
                     self._asked = [one for one in self._asked if one["id"] != each.get("id")]
 
 
-def is_kept(page: TornPage) -> None:
+def check_stops_kept(page: TornPage) -> None:
     """Whatever has arrived until now."""
     newest = 0
     accepted = 0
@@ -192,7 +192,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: 
             robot.step()
             if robot.has_ended:
                 page.is_there = False
-        is_kept(page)
+        check_stops_kept(page)
         if World.now_ms % BEAT_MS == 0:
             page.beat()
         does = chance.random()

@@ -62,8 +62,8 @@ def sign(number: float) -> int:
 def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> None:
     runs = [made(random.Random(seed)) for seed in range(20)]
     moods = set()
-    for states, (seen, again) in zip(runs, faces(*runs), strict=True):
-        assert again == seen
+    for states, (seen, looked_back) in zip(runs, faces(*runs), strict=True):
+        assert looked_back == seen
         for state, face in zip(states, seen, strict=True):
             left, right = state["motors"]
             assert sign(face["ahead"]) == sign(left + right), state

@@ -31,13 +31,13 @@ def played(path: Path, *story: Any) -> dict[str, Any]:
     return found
 
 
-def told(path: Path, *story: Any) -> list[Any]:
+def sent_to_robot(path: Path, *story: Any) -> list[Any]:
     """Return what the robot is told, without its side."""
     return [[ms, *held] for ms, _, *held in played(path, *story)["told"]]
 
 
 def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
-    found = told(
+    found = sent_to_robot(
         page_data, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
     )  # fmt: skip
@@ -46,7 +46,7 @@ def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -
 
 
 def test_a_stick_goes_where_the_finger_is_and_returns_with_it(page_data: Path) -> None:
-    found = told(
+    found = sent_to_robot(
         page_data, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
         ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
     )  # fmt: skip
@@ -54,7 +54,7 @@ def test_a_stick_goes_where_the_finger_is_and_returns_with_it(page_data: Path) -
 
 
 def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: Path) -> None:
-    found = told(
+    found = sent_to_robot(
         page_data, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
         ["down", "stick", 3, 99, 60], ["move", "stick", 3, 99, 60], ["up", "stick", 3],
         ["up", "stick", 1], ["down", "KEY_A", 4], ["up", "KEY_A", 2], ["cancel", "KEY_A", 4],
@@ -64,14 +64,14 @@ def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: P
 
 def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data: Path) -> None:
     both = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
-    assert told(page_data, WHOLE, *both) == [
+    assert sent_to_robot(page_data, WHOLE, *both) == [
         [0, UP, 0, 0], [0, UP | A, 0, 0], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
     stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
-    assert told(page_data, stick, *both) == [
+    assert sent_to_robot(page_data, stick, *both) == [
         [0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
-    assert told(page_data, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
+    assert sent_to_robot(page_data, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
         [0, 0, 0, 100], [0, 0, -71, 71],
     ]  # fmt: skip
 
@@ -79,12 +79,12 @@ def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data
 @pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
 def test_keys_that_are_somebody_elses(page_data: Path, more: dict[str, Any]) -> None:
     """Of a field, of the browser, or of one that was held before."""
-    assert told(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
+    assert sent_to_robot(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
 
 
 def test_a_button_that_has_the_focus_is_held_by_the_space_bar(page_data: Path) -> None:
     on = {"on": "KEY_A"}
-    assert told(page_data, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
+    assert sent_to_robot(page_data, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
         [0, A, 0, 0],
         [0, *NOTHING],
     ]
@@ -98,7 +98,7 @@ LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
 @pytest.mark.parametrize("end", LET_GO, ids=str)
 def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: list[Any]) -> None:
     gamepad = ["gamepads", [[0, -1], [0]]]
-    found = told(
+    found = sent_to_robot(
         page_data, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
         ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
         WHOLE, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}], ["passes", 500],
@@ -113,12 +113,12 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: 
 def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
     """It was let go in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
-    helds = [held for _, *held in told(page_data, WHOLE, *story)]
+    helds = [held for _, *held in sent_to_robot(page_data, WHOLE, *story)]
     assert helds == [[32, 0, 0], NOTHING, [UP, 0, 0]]
 
 
 def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
-    found = told(
+    found = sent_to_robot(
         page_data, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
         ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
         ["passes", 500],
@@ -165,7 +165,9 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
 
 
 def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> None:
-    found = told(page_data, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190])
+    found = sent_to_robot(
+        page_data, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190]
+    )
     assert found == [[0, UP, 0, 0], [200, UP, 0, 0]]
 
 

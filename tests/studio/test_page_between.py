@@ -128,7 +128,7 @@ class Found(NamedTuple):
     silence_s: float
     took_s: float
     wrong: tuple[str, ...]
-    told: tuple[str, ...]
+    messages: tuple[str, ...]
 
 
 class Scene:
@@ -166,14 +166,14 @@ class Scene:
         wrong = [] if has_ended else ["it has no end"]
         page.wait_for_timeout(500)
         self._mend(fault)
-        told: list[tuple[float, str]] = page.evaluate("window.told")
-        said = [text for _, text in told]
+        timed_messages: list[tuple[float, str]] = page.evaluate("window.told")
+        said = [text for _, text in timed_messages]
         wrong += [f"said twice: {each}" for each, after in pairwise(said) if each == after]
         wrong += self._next_try()
-        times = [begun_ms, *(at_ms for at_ms, _ in told)]
+        times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
         gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
                 if not k or not STANDING.search(said[k - 1])]  # fmt: skip
-        first = [at_ms for at_ms, text in told if re.search(ENDS[action], text)]
+        first = [at_ms for at_ms, text in timed_messages if re.search(ENDS[action], text)]
         took_s = ((first[0] if first else begun_ms + 1000 * ENDS_S) - begun_ms) / 1000
         return Found(action, fault.name, gaps[0] if gaps else ENDS_S, took_s,
                      tuple(wrong), tuple(said))  # fmt: skip
@@ -224,8 +224,8 @@ class Scene:
     def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
         end_s, page = CLOCK.now_s + limit_s, page or self.page
         while CLOCK.now_s < end_s:
-            told = page.evaluate("window.told")
-            if any(re.search(pattern, text) for _, text in told):
+            timed_messages = page.evaluate("window.told")
+            if any(re.search(pattern, text) for _, text in timed_messages):
                 return True
             page.wait_for_timeout(50)
         return False
@@ -405,7 +405,7 @@ if __name__ == "__main__":
                     for action in CLASS_ACTIONS:
                         all_found.append(taught.tried(action, line))
                         found = all_found[-1]
-                        print(*found[:4], judged(found), found.told, sep="; ", flush=True)
+                        print(*found[:4], judged(found), found.messages, sep="; ", flush=True)
         for seed in range(given.seed, given.seed + given.count * (not given.taught)):
             with scene(opened, Random(seed)) as seen:
                 faults: list[Fault | Between] = [*BETWEEN * (not given.line),
@@ -414,6 +414,6 @@ if __name__ == "__main__":
                     for action in ACTIONS:
                         all_found.append(seen.tried(action, fault))
                         found = all_found[-1]
-                        print(*found[:4], judged(found), found.told, sep="; ", flush=True)
+                        print(*found[:4], judged(found), found.messages, sep="; ", flush=True)
     printed(all_found)
     sys.exit(any(map(judged, all_found)))

@@ -303,8 +303,8 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     page.click("#view_text")
     row, first = page.locator("#messages li"), page.locator("#first_message")
     for place in (row, first):
-        told = place.text_content() or ""
-        assert message.message in told and message.fix in told
+        row_text = place.text_content() or ""
+        assert message.message in row_text and message.fix in row_text
     page.locator("#messages .repair").wait_for()
     page.click("#view_blocks")
     shown(page)

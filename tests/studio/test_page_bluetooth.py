@@ -104,11 +104,12 @@ class Radio:
         self._ask("simulateGATTOperationResponse", address=ADDRESS, type=asked["type"], code=0)
 
     def _characteristics(self) -> list[tuple[str, dict[str, bool]]]:
-        to, back = {"write": True, "writeWithoutResponse": True}, {"notify": True, "read": True}
+        to_robot = {"write": True, "writeWithoutResponse": True}
+        to_computer = {"notify": True, "read": True}
         if self._service == HM10:
-            return [(HM10.replace("ffe0", "ffe1"), {**to, **back})]
-        return [(NORDIC.replace("0001-b5", "0002-b5"), to),
-                (NORDIC.replace("0001-b5", "0003-b5"), back)]  # fmt: skip
+            return [(HM10.replace("ffe0", "ffe1"), {**to_robot, **to_computer})]
+        return [(NORDIC.replace("0001-b5", "0002-b5"), to_robot),
+                (NORDIC.replace("0001-b5", "0003-b5"), to_computer)]  # fmt: skip
 
     def _characteristic(self, asked: Any) -> None:
         answer: dict[str, Any] = {}

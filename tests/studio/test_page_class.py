@@ -340,8 +340,8 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
         asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
         tokens.append(room.answer("", "192.0.2.7", asked)["token"])
         text = "SI|F(1, 50);" * (k % 3 + 1)
-        here = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
-        room.answer(tokens[k], "192.0.2.7", here)
+        beat = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
+        room.answer(tokens[k], "192.0.2.7", beat)
     for language, (width, height) in product(("en", "es"), ((1366, 768), (1024, 600))):
         teacher.set_viewport_size({"width": width, "height": height})
         speak(teacher, language)

@@ -206,34 +206,34 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
 def test_a_robot_has_the_first_four(page: Page) -> None:
     put(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
-    told = page.locator("#link_breakpoints")
-    assert "at the first 4" in told.inner_text()
+    note = page.locator("#link_breakpoints")
+    assert "at the first 4" in note.inner_text()
     for line in (1, 2, 3, 4):
         halts(page, line)
         page.click("#link_go_on")
     said(page, "Done.")
     press_margin(page, 1)
-    told.wait_for(state="hidden")
+    note.wait_for(state="hidden")
 
 
 @drawn
 def test_a_robot_that_cannot_halt_says_so_and_runs(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = page.locator("#link_breakpoints")
+    note = page.locator("#link_breakpoints")
     with monkeypatch.context() as patch:
         patch.setattr(robot_link, "BREAKPOINTS", 0)
         connect_again(page, robot)
         write(page, "SHOW(1);\nSHOW(2)")
-        assert told.is_hidden()
+        assert note.is_hidden()
         press_margin(page, 2)
-        assert "This robot cannot stop at breakpoints." in told.inner_text()
+        assert "This robot cannot stop at breakpoints." in note.inner_text()
         page.click("#link_upload")
         said(page, "Done.")
         page.click("#link_step")
         said(page, "This robot cannot stop at breakpoints.")
     connect_again(page, robot)
-    assert told.is_hidden()
+    assert note.is_hidden()
 
 
 HALTING = title_of(robots.load("tinibot"), True)

@@ -387,14 +387,14 @@ def test_a_robot_that_does_not_tell_readings_says_so_where_the_program_has_some(
     page.click("#link_leave")
     page.locator("#link_ways").wait_for()
     connect(page, robot)
-    told = page.locator("#record_lacks")
+    note = page.locator("#record_lacks")
     for text, is_told in (("SHOW(1)", False), ("X = LIGHT_L;SHOW(X)", True)):
         write(page, text)
         upload_until_it_runs(page)
         said(page, "Done.")
-        assert told.is_visible() is is_told
+        assert note.is_visible() is is_told
         assert [each for each in events(page) if each.startswith("READ")] == []
-    assert told.inner_text().startswith("This robot does not report what its program reads")
+    assert note.inner_text().startswith("This robot does not report what its program reads")
 
 
 def agrees(page: Page, run: Callable[[], None]) -> None:
@@ -476,7 +476,7 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
 
 def upload_until_told(page: Page, at: int) -> None:
     """Upload, and wait until the page was told `at` in place of where the robot is."""
-    told: list[int] = []
+    places: list[int] = []
 
     def changed(route: Route) -> None:
         response = route.fetch()
@@ -484,12 +484,12 @@ def upload_until_told(page: Page, at: int) -> None:
         for each in answer.get("news", []):
             if each.get("event") == "PLACE":
                 each["at"] = at
-                told.append(each["at"])
+                places.append(each["at"])
         route.fulfill(response=response, json=answer)
 
     page.route("**/robots", changed)
     page.click("#link_upload")
-    hears(page, lambda: told, "a place is told")
+    hears(page, lambda: places, "a place is told")
     page.unroute_all(behavior="wait")
     page.wait_for_timeout(200)
 

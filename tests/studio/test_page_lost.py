@@ -118,8 +118,8 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page.evaluate(LISTEN)
     page.click("#link_connect")
     said(page, "Connected: ")
-    told = page.evaluate("window.told")
-    assert [each.split("…")[0].split(":")[0] for each in told] == ["Connecting", "Connected"]
+    messages = page.evaluate("window.told")
+    assert [each.split("…")[0].split(":")[0] for each in messages] == ["Connecting", "Connected"]
 
 
 # -- what is said of a stop
@@ -260,9 +260,9 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     page.click("#link_upload")
     said(page, "The robot has stopped responding")
     page.wait_for_timeout(4000)
-    told = [each.split(";")[0] for each in page.evaluate("window.told")]
-    assert told[0] == "Sending…"
-    assert [each for each in told if each == "The robot has stopped responding"] == told[-1:]
+    texts = [each.split(";")[0] for each in page.evaluate("window.told")]
+    assert texts[0] == "Sending…"
+    assert [each for each in texts if each == "The robot has stopped responding"] == texts[-1:]
 
 
 @drawn

@@ -103,11 +103,11 @@ def test_a_program_gets_a_name(page: Page) -> None:
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
-    for address, told in (("https://school.example/studio/", "sees the program on this page, at"),
+    for address, note in (("https://school.example/studio/", "sees the program on this page, at"),
                           ("http://192.168.1.9:8000/", "on this network")):  # fmt: skip
         page.fill("#public", address)
         page.locator("#public").blur()
-        page.locator("#shared_told", has_text=told).wait_for()
+        page.locator("#shared_told", has_text=note).wait_for()
         assert page.input_value("#shared").startswith(address + "#program=")
     page.fill("#public", "javascript:alert(1)")
     page.locator("#public").blur()

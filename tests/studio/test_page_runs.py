@@ -53,7 +53,7 @@ def doing(page: Page) -> str:
     return page.locator("#doing").text_content() or ""
 
 
-def told(page: Page, said: str) -> None:
+def wait_for_status(page: Page, said: str) -> None:
     page.locator("#doing", has_text=said).wait_for()
 
 
@@ -75,7 +75,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
     assert len(kept(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
-    told(page, "Looking back: this was at ")  # its text is another one
+    wait_for_status(page, "Looking back: this was at ")  # its text is another one
     assert page.locator("#where").text_content() == pose
     assert value(page, "X") == "7"
     page.focus("#time_at")
@@ -125,7 +125,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#runs_close")
     write(page, "SI|S")
     opened(page, data, tmp_path / "run.tsr")
-    told(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
+    wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
     kept(page)
     assert decode(saved(page, 0)).rows == recording.rows
     page.click("#runs_close")
@@ -135,7 +135,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
     opened(page, data, tmp_path / "run.tsr")
-    told(page, f"The virtual robot did exactly the same again. Rows: {len(rows)}.")
+    wait_for_status(page, f"The virtual robot did exactly the same again. Rows: {len(rows)}.")
     first = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
         first["robot"], first["world"])  # fmt: skip
@@ -147,17 +147,19 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     opened(page, real(*rows), tmp_path / "run.tsr")
-    told(page, "Both did the same. Values compared: 4.")
+    wait_for_status(page, "Both did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
     opened(page, real(*changed), tmp_path / "run.tsr")
-    told(page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after")
+    wait_for_status(
+        page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after"
+    )
     names = kept(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
     assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
     opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
-    told(page, "Line 1: the program reads DISTANCE, but the recording lacks")
+    wait_for_status(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
 @pytest.mark.sampled("data", "said")
@@ -204,4 +206,4 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
         "#note", has_text="x.png was not opened. The file name of a saved run ends in .tsr."
     ).wait_for()
     page.evaluate(drop, ["mine.tsr", real(*rows)])
-    told(page, "Both did the same. Values compared: 4.")
+    wait_for_status(page, "Both did the same. Values compared: 4.")

@@ -65,8 +65,8 @@ def screen(page: Page) -> str:
 
 def moves(page: Page) -> bool:
     """Whether its robot has moved."""
-    told = page.locator("#trace").text_content() or ""
-    return re.search("MOTORS .*[1-9]", told) is not None
+    trace = page.locator("#trace").text_content() or ""
+    return re.search("MOTORS .*[1-9]", trace) is not None
 
 
 def test_one_click_moves_the_robot(start: Page) -> None:

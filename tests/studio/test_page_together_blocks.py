@@ -164,8 +164,8 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
     until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
-    first, loop, back, *rest = ROWS[:-1]
-    ends(two, first, "S;", loop, back, "BEEP(1, 440);", *rest)
+    first, loop, end_loop, *rest = ROWS[:-1]
+    ends(two, first, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
 @drawn

@@ -120,7 +120,7 @@ def left(context: BrowserContext, loot: Stranger, name: str, options: dict[str, 
         return stranger.server_port
 
 
-def is_own(page: Page, server: serving.Server) -> None:
+def check_own_worker(page: Page, server: serving.Server) -> None:
     """The page has the robots, and only its own worker is or comes there."""
     assert page.evaluate(TOKEN) == server.entrances.token
     assert "code" not in page.evaluate("location.href")
@@ -139,11 +139,11 @@ def test_no_worker_of_a_stranger_hears_the_code(
     with hosted(port) as server:
         page = context.new_page()
         enter(page, server.entrance())
-        is_own(page, server)
+        check_own_worker(page, server)
         page.close()
         page = context.new_page()
         enter(page, server.entrance())  # nothing that it has kept is shown later
-        is_own(page, server)
+        check_own_worker(page, server)
         assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER_FILE}"
     assert loot.taken == []
 
@@ -157,7 +157,7 @@ def test_the_own_worker_stays(context: BrowserContext) -> None:
             page = context.new_page()
             page.on("load", lambda page: loads.append(page.url))
             enter(page, server.entrance())
-            is_own(page, server)
+            check_own_worker(page, server)
             page.close()
         assert len(loads) == 2
 

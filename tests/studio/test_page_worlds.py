@@ -131,9 +131,9 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     line = [(round(x), round(y)) for x, y in world.lines[0].points]
     assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
     assert [round(each) for each in world.lamps[0].place] == [200, 180]
-    there = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
-             (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
-    for place, name in there.items():
+    name_at = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
+               (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
+    for place, name in name_at.items():
         floor.mouse.click(*on_screen(floor, place))
         assert chosen(floor) == name
     floor.mouse.click(*on_screen(floor, (80, 45)))
@@ -261,8 +261,8 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
     turn(page, "robot")
     page.tap("#world_draw")
-    again = saved(page)
-    assert abs(again.start.y_cm - 100) <= 1 and again.lines == world.lines
+    redrawn = saved(page)
+    assert abs(redrawn.start.y_cm - 100) <= 1 and redrawn.lines == world.lines
 
 
 def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:

@@ -70,8 +70,9 @@ def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -
     """Whether what follows is the same or not."""
     text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
     lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
-    there = parting(*lines, text=text)
-    assert (there.what, there.agreed, there.line, there.sensor) == ("unread", 1, 2, "DISTANCE")
+    divergence = parting(*lines, text=text)
+    assert (divergence.what, divergence.agreed) == ("unread", 1)
+    assert (divergence.line, divergence.sensor) == (2, "DISTANCE")
     wrong = parting((20, "SHOW 7"), *lines[1:], text=text)
     assert wrong.what == "value"  # before it
 
@@ -88,10 +89,10 @@ def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(v
 
 
 def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
-    there = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
-    assert (there.what, there.agreed, there.line) == ("value", 3, 5)
-    assert there.robot == Row(2060, "SHOW 9")
-    assert there.virtual is not None and there.virtual.event == "SHOW 8"
+    divergence = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
+    assert (divergence.what, divergence.agreed, divergence.line) == ("value", 3, 5)
+    assert divergence.robot == Row(2060, "SHOW 9")
+    assert divergence.virtual is not None and divergence.virtual.event == "SHOW 8"
     late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
     assert found(*late) == ("time", 2, 3)
 
@@ -132,10 +133,10 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
     text = "SB|W(1);SHOW(5);W(2);SHOW(6)"
     lines = [(waited_ms, "SHOW 5"), (waited_ms + 2000, "SHOW 6"), (waited_ms + 2001, "DONE")]
     assert parting(*lines, text=text) == Divergence("same", 3)
-    there = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
-    assert (there.what, there.agreed) == ("time", 1)
-    assert there.virtual is not None and there.virtual.ms < 3100
-    assert there.robot is not None and there.robot.ms == there.virtual.ms + 1000
+    divergence = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
+    assert (divergence.what, divergence.agreed) == ("time", 1)
+    assert divergence.virtual is not None and divergence.virtual.ms < 3100
+    assert divergence.robot is not None and divergence.robot.ms == divergence.virtual.ms + 1000
     assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Divergence("same", 1)
     assert parting((0, "STOPPED"), text=text) == Divergence("same", 0)
     assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Divergence("same", 2)
@@ -158,9 +159,9 @@ def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
 
 
 def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
-    there = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
-    assert there.what == "value" and there.virtual is not None
-    assert there.virtual.event == "SHOW 400"
+    divergence = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
+    assert divergence.what == "value" and divergence.virtual is not None
+    assert divergence.virtual.event == "SHOW 400"
 
 
 def test_a_program_that_means_something_else_now_is_not_played() -> None:
@@ -273,8 +274,9 @@ def test_each_row_that_is_another_one_is_told() -> None:
         at = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
         for changed in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
             other = "\n".join((*lines[:at], *changed, *lines[at + 1 :]))
-            there = play(prepare(decode(other.encode()))).divergence
-            assert there is not None and there.what == "otherwise" and there.agreed <= k
+            divergence = play(prepare(decode(other.encode()))).divergence
+            assert divergence is not None
+            assert divergence.what == "otherwise" and divergence.agreed <= k
 
 
 @pytest.mark.parametrize("number", range(12))
@@ -305,8 +307,9 @@ def test_behind_a_reading_that_was_not_told_no_parting_is_marked(
             (1060, "SHOW 2"), (1061, "DONE")]  # fmt: skip
     if is_known_again:
         rows.insert(4, (1030, "READ DISTANCE 8"))
-    there = parting(*rows, text=UNTOLD_TEXT)
-    assert (there.what, there.agreed, there.line, there.sensor) == ("unread", 1, 4, "DISTANCE")
+    divergence = parting(*rows, text=UNTOLD_TEXT)
+    assert (divergence.what, divergence.agreed) == ("unread", 1)
+    assert (divergence.line, divergence.sensor) == (4, "DISTANCE")
     wrong = parting(*rows[:2], (20, "SHOW 7"), *rows[3:], text=UNTOLD_TEXT)
     assert wrong.what == "value", "before it"
 
@@ -315,8 +318,8 @@ def test_a_sensor_that_is_shown_is_known_there_also_where_others_of_it_were_not_
     rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (1020, "SHOW 9"), (1040, "DONE")]
     assert parting(*rows, text="X = DISTANCE + 0;W(1);\nSHOW(DISTANCE)").what == "same"
     text = "X = DISTANCE + 0;W(1);\nSHOW(DISTANCE);\nX = DISTANCE + 0;W(1)"
-    there = parting(*rows[:-1], (2040, "DONE"), text=text)
-    assert (there.what, there.line) == ("unread", 3)
+    divergence = parting(*rows[:-1], (2040, "DONE"), text=text)
+    assert (divergence.what, divergence.line) == ("unread", 3)
 
 
 def test_a_reading_may_stand_after_rows_that_are_later() -> None:
@@ -337,18 +340,18 @@ def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
     """Also where more than 65 s go by between two of them, and each is 300 ms under way."""
     kit, rng = TINIBOT.kit, random.Random(1)
     for _ in range(200):
-        told, ms, ms_of = ReadingRows(kit), 0, dict[str, list[int]]()
+        reading_rows, ms, ms_of = ReadingRows(kit), 0, dict[str, list[int]]()
         for _ in range(20):
             ms += rng.choice((0, 1, 20, 999, 40_000, 70_000, 150_000))
             is_untold = rng.random() < 0.1
             event = ReadingEvent(1, 2 | UNTOLD * is_untold, rng.randrange(400_000), ms % 65_536)
-            rows = told.rows(event, ms + rng.randrange(300))
+            rows = reading_rows.rows(event, ms + rng.randrange(300))
             assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
             if len(rows) == 2:
                 before = ms_of.get("DISTANCE", [-1])[-1]
                 assert rows[0] == Row(before + 1, "UNREAD DISTANCE")
             ms_of.setdefault("DISTANCE", []).append(ms)
-        assert told.incomplete_names in ([], ["DISTANCE"])
+        assert reading_rows.incomplete_names in ([], ["DISTANCE"])
     assert ReadingRows(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"
 
 

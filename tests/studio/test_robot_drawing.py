@@ -46,7 +46,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
 
 
 def test_wheels_turn_as_far_as_they_have_rolled() -> None:
-    still, ahead, back, around, turned = drawings_of(
+    still, ahead, backward, around, turned = drawings_of(
         *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
@@ -61,7 +61,7 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
         assert len(before) == 4
         assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(before)
         assert treads(around, is_left) == pytest.approx(before)
-        assert treads(back, is_left) != before
+        assert treads(backward, is_left) != before
     assert treads(turned, True) == treads(ahead, True)
     assert treads(turned, False) == treads(still, False)
 

@@ -31,9 +31,9 @@ def stories() -> list[list[Kept]]:
 
 
 def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_first() -> None:
-    told = stories()
+    histories = stories()
     by_count = by_size = 0
-    for line in in_node(SCRIPT, given=json.dumps(told)):
+    for line in in_node(SCRIPT, given=json.dumps(histories)):
         sizes: list[int] = []
         for count, (kept, size, own) in enumerate(json.loads(line), 1):
             sizes.append(own)

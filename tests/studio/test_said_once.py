@@ -50,7 +50,9 @@ def twice(parts: Parts) -> list[str]:
     """Return what is said again at once: a word after itself, or one of a block beside it."""
     said = "".join(part for _, part in parts)
     found = [
-        again for again in re.findall(r"\b(\w+)[ (%]{1,3}\1\b", said, re.I) if not again.isdigit()
+        repeated
+        for repeated in re.findall(r"\b(\w+)[ (%]{1,3}\1\b", said, re.I)
+        if not repeated.isdigit()
     ]
     for k, (is_block, label) in enumerate(parts):
         if not is_block:
@@ -159,7 +161,7 @@ def test_no_text_has_a_word_twice(language: str) -> None:
             assert twice([(False, each.replace("`", ""))]) == [], each
 
 
-@pytest.mark.parametrize("parts, again", [
+@pytest.mark.parametrize("parts, repeated", [
     ([(True, "repeat forever"), (False, " repeats forever. Which?")], ["repeats", "forever"]),
     ([(False, "The "), (True, "bumper"), (False, " is the bumper.")], []),
     ([(True, "motors: left left %, right 5 %")], ["left"]),
@@ -167,5 +169,5 @@ def test_no_text_has_a_word_twice(language: str) -> None:
     ([(True, "gira a la izquierda"), (False, " gira.")], ["gira"]),
     ([(True, "turn left"), (False, ". Turn the key.")], []),
 ])  # fmt: skip
-def test_what_is_twice_is_found(parts: Parts, again: list[str]) -> None:
-    assert twice(parts) == again
+def test_what_is_twice_is_found(parts: Parts, repeated: list[str]) -> None:
+    assert twice(parts) == repeated

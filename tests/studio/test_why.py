@@ -18,7 +18,7 @@ ARMS = "IF(DISTANCE < 10)\nB(1, 10)\nELSEIF(N > 3)\nF(1, 20)\nELSE\nF(1, 30)\nEN
 ONE, TWO = [1, "DISTANCE < 10", "12.3 < 10"], [3, "N > 3", "4 > 3"]
 
 
-def told(*cases: tuple[str, str]) -> list[Any]:
+def explanations(*cases: tuple[str, str]) -> list[Any]:
     """Return what is told of programs, each at the first instruction with a text."""
     rows = []
     for text, wanted in cases:
@@ -50,7 +50,7 @@ def told(*cases: tuple[str, str]) -> list[Any]:
 def test_the_conditions_around_an_instruction_are_told_with_their_values(
     text: str, wanted: str, found: list[Any]
 ) -> None:
-    assert told((f"N = 0;{text}", wanted))[0]["told"] == found
+    assert explanations((f"N = 0;{text}", wanted))[0]["told"] == found
 
 
 def test_any_nesting_is_told_from_the_outside() -> None:
@@ -66,10 +66,12 @@ def test_any_nesting_is_told_from_the_outside() -> None:
             body = f"S\nELSE\n{text}" if is_else else text
             text = f"{before}{head}(DISTANCE < {depth})\n{body}\n{end}"
             wanted.insert(0, [f"DISTANCE < {depth}", not is_else])
-        assert [[row[1], row[3]] for row in told((text, "W(0.5)"))[0]["told"]] == wanted, text
+        assert [[row[1], row[3]] for row in explanations((text, "W(0.5)"))[0]["told"]] == wanted, (
+            text
+        )
 
 
 def test_the_task_is_told_that_an_instruction_is_in() -> None:
     text = "W(1)\nTASK\nF(1, 20)\nEND_TASK\nWHEN(DISTANCE < 4)\nS\nEND_WHEN"
-    rows = told((text, "W(1)"), (text, "F(1, 20)"), (text, "S"))
+    rows = explanations((text, "W(1)"), (text, "F(1, 20)"), (text, "S"))
     assert [row["tasks"] for row in rows] == [[], [2], [5]]

@@ -37,8 +37,8 @@ def test_the_text_of_a_form_is_the_same_world() -> None:
     found = shipped()
     assert len(found) > 10 and any(world.lamps for world in found)
     for world in found:
-        again = read(toml_of(form_of(world)), world.name)
-        assert is_near(tuple(again), tuple(world)), world.name
+        round_tripped = read(toml_of(form_of(world)), world.name)
+        assert is_near(tuple(round_tripped), tuple(world)), world.name
 
 
 def test_random_forms_keep_every_number() -> None:

@@ -36,9 +36,9 @@ def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
     assert after.is_right and after.image == image, printed.text
     assert format_source(Source(printed.text)) == printed.text
     assert comment_words(printed.text) == comment_words(text), printed.text
-    again = read_blocks(printed.text, kit)
-    assert format_blocks(again).text == printed.text
-    found = zip(in_order(again.body), printed.places, strict=True)
+    round_tripped = read_blocks(printed.text, kit)
+    assert format_blocks(round_tripped).text == printed.text
+    found = zip(in_order(round_tripped.body), printed.places, strict=True)
     for block, place in found:
         if block.kind != "comment":
             assert block.place == place, (block, place, printed.text)

@@ -36,7 +36,7 @@ class Table:
     def send(self, text: str, **how: bool) -> None:
         send(self.robot, self.session, text, **how)
 
-    def is_ready(self, power: int, is_saved: bool = True) -> None:
+    def upload_program(self, power: int, is_saved: bool = True) -> None:
         self.send(f"SB|F(600, {power})", saves=is_saved)
         if is_saved:
             stored(self.robot, self.session)
@@ -56,19 +56,19 @@ def empty(table: Table) -> None:
 
 
 def saved(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
 
 
 def in_memory(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.is_ready(MEMORY, is_saved=False)
+    table.upload_program(SAVED)
+    table.upload_program(MEMORY, is_saved=False)
 
 
 def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
     """Have a person type; `power` is that of the program which the button starts then."""
 
     def enter(table: Table) -> None:
-        table.is_ready(SAVED)
+        table.upload_program(SAVED)
         table.quiet()
         typed(table.robot, text)
         table.program = power
@@ -80,7 +80,7 @@ def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
     """Have a computer send a live line, and go on."""
 
     def enter(table: Table) -> None:
-        table.is_ready(SAVED)
+        table.upload_program(SAVED)
         request = table.session.live(image_of(line).code)
         assert table.robot.until(table.session, request) == OK
         table.talk(milliseconds)
@@ -89,24 +89,24 @@ def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
 
 
 def runs_memory(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     table.send(f"SI|F(600, {MEMORY})", saves=False)
     table.program = MEMORY
 
 
 def runs_saved(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     assert table.robot.until(table.session, table.session.start()) == OK
 
 
-def was_stopped(table: Table) -> None:
-    table.is_ready(SAVED)
+def enter_stopped(table: Table) -> None:
+    table.upload_program(SAVED)
     table.session.stop(table.robot.now_ms)
     table.talk(300)
 
 
 def receives(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
     while request.done_bytes < 60:
         table.talk(1)
@@ -119,28 +119,28 @@ def saves(table: Table) -> None:
 
 
 def brings_back(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.is_ready(OTHER)
+    table.upload_program(SAVED)
+    table.upload_program(OTHER)
     assert table.robot.until(table.session, table.session.undo()) == OK
     table.program = SAVED
 
 
 def keeps_trim(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     table.session.trim(b"\0\0\1")
     table.talk(40)
 
 
-def is_claimed(table: Table) -> None:
+def begin_claim(table: Table) -> None:
     table.keys = Keys()
     table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=table.keys)
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     table.session.claim(KEY_OWNER)
     table.talk(300)
 
 
-def has_owner(table: Table) -> None:
-    is_claimed(table)
+def enter_owned(table: Table) -> None:
+    begin_claim(table)
     table.talk(1, PRESSED)
     table.talk(31)
     table.talk(2100, HELD)
@@ -151,7 +151,7 @@ def has_owner(table: Table) -> None:
 
 
 def reset_down(table: Table) -> None:
-    table.is_ready(SAVED)
+    table.upload_program(SAVED)
     memory = table.robot.memory()
     table.robot = type(table.robot)(KIT, memory)
     table.talks = None
@@ -168,13 +168,13 @@ STATES: dict[str, Callable[[Table], None]] = {
     "is running a live line": runs(f"SI|F(600, {LINE})"),
     "is running text": types(f"SI|F(600, {TYPED})\n"),
     "has an open block of text": types(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
-    "was stopped": was_stopped,
+    "was stopped": enter_stopped,
     "has a fault": runs("SI|X = 0; SHOW(5 / X)", 300),
     "is receiving an upload": receives,
     "is saving its program": saves,
     "is bringing back the previous program": brings_back,
     "is saving a trim": keeps_trim,
-    "is being claimed": is_claimed,
-    "has an owner": has_owner,
+    "is being claimed": begin_claim,
+    "has an owner": enter_owned,
     "was reset with the button down": reset_down,
 }

@@ -75,7 +75,7 @@ class Room:
         answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
         return str(answer["token"])
 
-    def here(self, token: str, wants: bool | None = None, **more: Any) -> Json:
+    def checks_in(self, token: str, wants: bool | None = None, **more: Any) -> Json:
         request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
         return self.made.answer(token, HERE, request)
 

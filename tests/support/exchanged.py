@@ -123,14 +123,14 @@ def _exchange(each: Try) -> Callable[[], None]:
     name = each.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
     right = (ROOT / each.file).read_text(encoding="utf-8")
-    there = {function.__code__: function for function in _functions(module, module)}
+    function_by_code = {function.__code__: function for function in _functions(module, module)}
     pairs = list(_pairs(*(compile(text, each.file, "exec") for text in (right, each.text))))
-    if not pairs or any(was not in there for was, _ in pairs):
+    if not pairs or any(was not in function_by_code for was, _ in pairs):
         raise Elsewhere("a function that differs is not found")
 
     def exchange() -> None:
         for was, becomes in pairs:
-            there[was].__code__ = becomes
+            function_by_code[was].__code__ = becomes
 
     return exchange
 

@@ -35,7 +35,7 @@ STEP_S = 10.0  # timeout of a step in the bus's thread
 _Nothing = Annotated[None, DBusSignature("")]
 
 
-def told(name: str, signature: str, tell: Callable[[Any], object]) -> property:
+def read_only(name: str, signature: str, tell: Callable[[Any], object]) -> property:
     """Return a property that can be read, of this name and with the signature of its type."""
 
     def read(self: Any) -> object:
@@ -70,10 +70,10 @@ class Adapter(ServiceInterface):
     def StopDiscovery(self) -> _Nothing:  # noqa: N802
         self.is_scanning = False
 
-    Address = told("Address", "s", lambda self: "00:11:22:33:44:55")
-    Roles = told("Roles", "as", lambda self: ["central"])
-    Powered = told("Powered", "b", lambda self: self.is_powered)
-    Discovering = told("Discovering", "b", lambda self: self.is_scanning)
+    Address = read_only("Address", "s", lambda self: "00:11:22:33:44:55")
+    Roles = read_only("Roles", "as", lambda self: ["central"])
+    Powered = read_only("Powered", "b", lambda self: self.is_powered)
+    Discovering = read_only("Discovering", "b", lambda self: self.is_scanning)
 
 
 class Device(ServiceInterface):
@@ -137,16 +137,16 @@ class Device(ServiceInterface):
     def Disconnect(self) -> _Nothing:  # noqa: N802
         self.part()
 
-    Address = told("Address", "s", lambda self: self.peripheral.address)
-    AddressType = told("AddressType", "s", lambda self: "public")
-    Name = told("Name", "s", lambda self: self.peripheral.name)
-    Alias = told("Alias", "s", lambda self: self.peripheral.name)
-    Adapter = told("Adapter", "o", lambda self: ADAPTER)
-    UUIDs = told("UUIDs", "as", lambda self: [self.peripheral.service])
-    RSSI = told("RSSI", "n", lambda self: self.signal)
-    Connected = told("Connected", "b", lambda self: self.is_connected)
-    Paired = told("Paired", "b", lambda self: False)
-    ServicesResolved = told("ServicesResolved", "b", lambda self: self.is_resolved)
+    Address = read_only("Address", "s", lambda self: self.peripheral.address)
+    AddressType = read_only("AddressType", "s", lambda self: "public")
+    Name = read_only("Name", "s", lambda self: self.peripheral.name)
+    Alias = read_only("Alias", "s", lambda self: self.peripheral.name)
+    Adapter = read_only("Adapter", "o", lambda self: ADAPTER)
+    UUIDs = read_only("UUIDs", "as", lambda self: [self.peripheral.service])
+    RSSI = read_only("RSSI", "n", lambda self: self.signal)
+    Connected = read_only("Connected", "b", lambda self: self.is_connected)
+    Paired = read_only("Paired", "b", lambda self: False)
+    ServicesResolved = read_only("ServicesResolved", "b", lambda self: self.is_resolved)
 
 
 class Service(ServiceInterface):
@@ -154,9 +154,9 @@ class Service(ServiceInterface):
         super().__init__("org.bluez.GattService1")
         self.device = device
 
-    UUID = told("UUID", "s", lambda self: self.device.peripheral.service)
-    Device = told("Device", "o", lambda self: self.device.path)
-    Primary = told("Primary", "b", lambda self: True)
+    UUID = read_only("UUID", "s", lambda self: self.device.peripheral.service)
+    Device = read_only("Device", "o", lambda self: self.device.path)
+    Primary = read_only("Primary", "b", lambda self: True)
 
 
 class Characteristic(ServiceInterface):
@@ -194,12 +194,12 @@ class Characteristic(ServiceInterface):
     def StopNotify(self) -> _Nothing:  # noqa: N802
         self.is_notifying = False
 
-    UUID = told("UUID", "s", lambda self: self.uuid)
-    Service = told("Service", "o", lambda self: f"{self.device.path}/service0010")
-    Flags = told("Flags", "as", lambda self: self.flags)
-    Value = told("Value", "ay", lambda self: self.value)
-    Notifying = told("Notifying", "b", lambda self: self.is_notifying)
-    MTU = told("MTU", "q", lambda self: self.device.peripheral.mtu)
+    UUID = read_only("UUID", "s", lambda self: self.uuid)
+    Service = read_only("Service", "o", lambda self: f"{self.device.path}/service0010")
+    Flags = read_only("Flags", "as", lambda self: self.flags)
+    Value = read_only("Value", "ay", lambda self: self.value)
+    Notifying = read_only("Notifying", "b", lambda self: self.is_notifying)
+    MTU = read_only("MTU", "q", lambda self: self.device.peripheral.mtu)
 
 
 class Root(ServiceInterface):

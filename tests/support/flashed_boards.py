@@ -54,12 +54,12 @@ def tsc(package: Path, *words: str, **variables: str) -> Done:
     return Done(done.returncode, done.stdout, done.stderr)
 
 
-def interrupted(told: Path, *words: str, **variables: str) -> Done:
+def interrupted(ready_file: Path, *words: str, **variables: str) -> Done:
     """Return what it did where Ctrl-C comes as soon as something is in a file."""
     running = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )
-    while not (told.exists() and told.read_text()):
+    while not (ready_file.exists() and ready_file.read_text()):
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=HANGS_S)

@@ -8,11 +8,11 @@ import ssl
 
 def tls_hello() -> bytes:
     """What a browser says first for https."""
-    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
-    tls = ssl.create_default_context().wrap_bio(there, back, server_hostname="localhost")
+    incoming, outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
+    tls = ssl.create_default_context().wrap_bio(incoming, outgoing, server_hostname="localhost")
     with contextlib.suppress(ssl.SSLWantReadError):
         tls.do_handshake()
-    return back.read()
+    return outgoing.read()
 
 
 STUN = bytes.fromhex("2112a442") + bytes(range(1, 13))  # its cookie and a transaction

@@ -19,16 +19,16 @@ def saved(robot: HostFirmware, session: Session) -> str:
 
 
 def name_after_power_off(robot: HostFirmware) -> str:
-    again, session = switched_on(robot.memory()), computer(77)
-    assert again.until(session, session.hello()) == OK
+    restarted, session = switched_on(robot.memory()), computer(77)
+    assert restarted.until(session, session.hello()) == OK
     assert session.robot is not None
     return session.robot.name
 
 
 def program_after_power_off(robot: HostFirmware) -> bytes:
-    again, session = switched_on(robot.memory()), computer(78)
+    restarted, session = switched_on(robot.memory()), computer(78)
     request = session.fetch()
-    if again.until(session, request) != OK:
+    if restarted.until(session, request) != OK:
         return b""
     return outcome(request).values.image
 

@@ -173,13 +173,13 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
             data = computer.poll(now_ms)
             mark = _mark(">", data, lost)
             step = robot.step(now_ms, b"" if mark == ">x" else data, is_late)
-            back = _mark("<", step.sent, lost)
-            computer.receive(b"" if back == "<x" else step.sent, now_ms)
+            reply_mark = _mark("<", step.sent, lost)
+            computer.receive(b"" if reply_mark == "<x" else step.sent, now_ms)
             if data:
                 found += wire_rows(now_ms, mark, data)
             found += [f"{now_ms:6} did {row}" for row in step.did]
             if step.sent:
-                found += wire_rows(now_ms, back, step.sent)
+                found += wire_rows(now_ms, reply_mark, step.sent)
             found += [f"{now_ms:6} {row}" for row in computer.said()]
             now_ms += STEP_MS
             is_late = False

@@ -123,8 +123,8 @@ class World:
     def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
         self.cpp, self.draw, self.drops = cpp, draw, drops
         baud = draw.choice((9600, 9600, 57600, 115200))
-        self.there = Radio(draw, baud, faults)
-        self.back = Radio(draw, baud, faults)
+        self.to_robot = Radio(draw, baud, faults)
+        self.to_computer = Radio(draw, baud, faults)
         self.now_ms = 0
         self.session = Session(draw.getrandbits(32), baud, KIT)
         self.did: list[str] = []
@@ -132,7 +132,7 @@ class World:
         self.line = 240 if cpp.is_large else 54  # bytes of code of a live line
         cpp.begin(room=8192 if cpp.is_large else 389, kit=KIT, epoch=draw.randrange(256))
 
-    def again(self) -> None:
+    def reconnect(self) -> None:
         """Another session with the same robot."""
         self.session = Session(self.draw.getrandbits(32), 9600, KIT)
 
@@ -142,20 +142,20 @@ class World:
         while self.now_ms < end_ms and (request is None or request.outcome is None):
             if self.draw.random() < self.drops:
                 self._out_until = self.now_ms + self.draw.randrange(100, 3000)
-            self.there.is_out = self.back.is_out = self.now_ms < self._out_until
+            self.to_robot.is_out = self.to_computer.is_out = self.now_ms < self._out_until
             self.disturb()
             data = self.session.poll(self.now_ms)
             if data:
                 self.heard(data)
-                self.there.send(data, self.now_ms)
-            came = self.there.arrived(self.now_ms)
+                self.to_robot.send(data, self.now_ms)
+            came = self.to_robot.arrived(self.now_ms)
             if came or self.now_ms % 50 == 0:
                 step = self.cpp.step(self.now_ms, came)
                 self.did += step.did
                 if step.sent:
                     self.heard(step.sent)
-                    self.back.send(step.sent, self.now_ms)
-            self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
+                    self.to_computer.send(step.sent, self.now_ms)
+            self.session.receive(self.to_computer.arrived(self.now_ms), self.now_ms)
             self.now_ms += self.STEP_MS
 
     def disturb(self) -> None:
@@ -178,19 +178,19 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     faults = draw.choice((0, 0.001, 0.01))
     world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
     old = pack("SI", 0, program(draw, cpp.is_large))
-    world.there.faults = world.back.faults = 0
+    world.to_robot.faults = world.to_computer.faults = 0
     drops, world.drops = world.drops, 0
     first = world.session.upload(unpack(old), runs=False)
     world.run(first)
     assert first.outcome and first.outcome.status == 0 and cpp.held() == old
-    world.there.faults = world.back.faults = faults
-    world.there.is_split = world.back.is_split = world.is_split
+    world.to_robot.faults = world.to_computer.faults = faults
+    world.to_robot.is_split = world.to_computer.is_split = world.is_split
     world.drops = drops
     if cpp.is_large:
-        world.there.shuffles = world.back.shuffles = draw.choice((0, 0, 0.02, 0.2))
+        world.to_robot.shuffles = world.to_computer.shuffles = draw.choice((0, 0, 0.02, 0.2))
 
     new = pack("SI", 0, program(draw, cpp.is_large))
-    world.again()
+    world.reconnect()
     request = world.session.upload(unpack(new))
     world.run(request)
     assert request.outcome, f"seed {seed}: an upload has no end"

@@ -92,15 +92,15 @@ class Owned:
         self, session: Session, request: PendingRequest[Any]
     ) -> tuple[list[bytes], list[bytes]]:
         """Let both talk until a request is done; return the frames to the robot, and those back."""
-        there = back = b""
+        requests = replies = b""
         while request.outcome is None:
             data = session.poll(self.robot.now_ms)
-            sent = self.robot.step(data)
-            session.receive(sent, self.robot.now_ms)
-            there, back = there + data, back + sent
+            reply = self.robot.step(data)
+            session.receive(reply, self.robot.now_ms)
+            requests, replies = requests + data, replies + reply
         assert request.outcome.status == 0
-        return [part for part in there.split(b"\0") if part], [
-            part for part in back.split(b"\0") if part
+        return [part for part in requests.split(b"\0") if part], [
+            part for part in replies.split(b"\0") if part
         ]
 
     def answer(self, frame: Frame | bytes) -> Frame | None:

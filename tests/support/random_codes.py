@@ -115,9 +115,11 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
             code += simple("UNTIL") if slip == 1 else b""
         else:
             inner = jump("BREAK", far, len(inner) + (3 if far else 2)) + inner
-            back = jump("AGAIN", far, len(inner) + (3 if far else 2))
-            code += rng.choice((simple("FOREVER"), jump("WHILE", far, len(inner + back) + slip)))
-            code += inner + back
+            loop_end = jump("AGAIN", far, len(inner) + (3 if far else 2))
+            code += rng.choice(
+                (simple("FOREVER"), jump("WHILE", far, len(inner + loop_end) + slip))
+            )
+            code += inner + loop_end
     return code
 
 

@@ -53,6 +53,6 @@ def apart_ms(one: list[Did], other: list[Did]) -> float:
     """Return how far two runs are apart at most, as long as both last: `inf` if they do not do the
     same in the same order."""
     both = list(zip(one, other, strict=False))
-    if any(here[1] != there[1] for here, there in both):
+    if any(one[1] != other[1] for one, other in both):
         return inf
-    return max((abs(here[0] - there[0]) for here, there in both), default=0)
+    return max((abs(one[0] - other[0]) for one, other in both), default=0)

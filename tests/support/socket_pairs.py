@@ -7,5 +7,5 @@ import socket
 
 def connected_pair() -> tuple[socket.socket, socket.socket]:
     with socket.create_server(("127.0.0.1", 0)) as server:
-        there = socket.create_connection(server.getsockname())
-        return server.accept()[0], there
+        client = socket.create_connection(server.getsockname())
+        return server.accept()[0], client

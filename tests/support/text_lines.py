@@ -26,18 +26,18 @@ def check_line(text: str, kit: Kit) -> None:
     assert line == line.upper()
     longest = re.sub(r"\w+", written_out, text)
     assert len(line) <= len(longest.encode()) + len("SI|~00000000")
-    again = compile_text(line, kit)
-    assert again.is_right and again.image == found.image, line
-    assert found.program is not None and again.program is not None
-    assert plain_code(again.program).code == plain_code(found.program).code, line
+    compiled_line = compile_text(line, kit)
+    assert compiled_line.is_right and compiled_line.image == found.image, line
+    assert found.program is not None and compiled_line.program is not None
+    assert plain_code(compiled_line.program).code == plain_code(found.program).code, line
     # A line has no notes, nor a block with nothing but a note inside.
-    told, then = (
+    text_codes, line_codes = (
         sorted(
             diagnostic.code.number
             for diagnostic in one.diagnostics
             if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
         )
-        for one in (found, again)
+        for one in (found, compiled_line)
     )
-    assert told == then
+    assert text_codes == line_codes
     assert line_of(Source(line)) == line

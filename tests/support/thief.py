@@ -15,8 +15,8 @@ class Thief:
     def __init__(self, chance: random.Random, old: list[bytes]) -> None:
         self.chance = chance
         self.old = old
-        self.there: list[bytes] = []  # of the present seal
-        self.back: list[bytes] = []
+        self.sent: list[bytes] = []  # of the present seal
+        self.replies: list[bytes] = []
 
     def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
         chance = self.chance
@@ -24,14 +24,14 @@ class Thief:
             ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
              "forged", "sealed by another key")
         )  # fmt: skip
-        mine = chance.choice(self.there)
+        mine = chance.choice(self.sent)
         frame = decode_frame(mine)
         assert frame
         if how == "replayed":
             return how, mine
         if how == "reflected":
-            back = decode_frame(chance.choice(self.back))
-            return how, wire_of(back._replace(is_reply=False)) if back else mine
+            reply = decode_frame(chance.choice(self.replies))
+            return how, wire_of(reply._replace(is_reply=False)) if reply else mine
         if how == "other session":
             return how, chance.choice(self.old)
         if how == "cut":

@@ -220,19 +220,19 @@ RIGHT = (
 )  # fmt: skip
 
 
-@pytest.mark.sampled("behind")
-@pytest.mark.parametrize("behind", ["", "  ", "// note", " // note"])
+@pytest.mark.sampled("tail")
+@pytest.mark.parametrize("tail", ["", "  ", "// note", " // note"])
 @pytest.mark.parametrize("line", RIGHT)
 def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
-    line: str, behind: str
+    line: str, tail: str
 ) -> None:
     """Of a right line that is cut after any of its tokens nothing but its rest is missing.
 
     It belongs before a comment.
     """
-    refused, gap = 0, behind.find("/") > 0
+    refused, gap = 0, tail.find("/") > 0
     for token in scan(line).tokens[:-1]:
-        answer = one(line[: token.end] + behind)
+        answer = one(line[: token.end] + tail)
         if answer.problem and answer.problem not in AT_ITS_WORD:
             assert answer.column == token.end + 1 + gap, line[: token.end]
             refused += 1

@@ -148,8 +148,8 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
         found = apply_change(old, Change("n:1", tuple(made)))
         assert found.tree.shape() == new.shape()
         assert text_of(found.tree) == text_of(new)
-        again = apply_change(found.tree, Change("n:2", found.inverse)).tree
-        assert text_of(again) == text_of(old)
-        assert again.subtree_ids() == old.subtree_ids()
+        restored = apply_change(found.tree, Change("n:2", found.inverse)).tree
+        assert text_of(restored) == text_of(old)
+        assert restored.subtree_ids() == old.subtree_ids()
         tried.update(type(each).__name__ for each in made or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

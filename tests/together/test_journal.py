@@ -56,15 +56,15 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     journal.close()
     cut = chance.randint(sizes[0], sizes[-1])
     os.truncate(path, cut)
-    again = Journal(path).resume("e2")
-    assert again is not None
+    resumed = Journal(path).resume("e2")
+    assert resumed is not None
     last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (again.number, again.last_count_by_page) == seen[last]
-    assert again.epoch == "e2"
-    changed(again, 2000)
+    assert (resumed.number, resumed.last_count_by_page) == seen[last]
+    assert resumed.epoch == "e2"
+    changed(resumed, 2000)
     whole = Journal(path).resume("e3")
     assert whole is not None
-    assert same(whole, again)
+    assert same(whole, resumed)
 
 
 def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
@@ -72,9 +72,9 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
     _, program = begun(path)
     for value in (5, 0, 6):
         changed(program, value)
-        there = Journal(path).resume("e2")
-        assert there is not None
-        assert same(there, program)
+        resumed = Journal(path).resume("e2")
+        assert resumed is not None
+        assert same(resumed, program)
 
 
 def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
@@ -93,9 +93,9 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
     monkeypatch.setattr(os, "write", write)
     assert changed(program, 8)
     assert not journal.is_incomplete
-    there = Journal(path).resume("e2")
-    assert there is not None
-    assert (there.number, text_of(there.tree)) == (2, text_of(program.tree))
+    resumed = Journal(path).resume("e2")
+    assert resumed is not None
+    assert (resumed.number, text_of(resumed.tree)) == (2, text_of(program.tree))
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -107,10 +107,10 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
     def look() -> None:
-        again = Journal(path)
-        there = again.resume("e2")
-        again.close()
-        assert there is not None and there.number >= kept_number
+        reopened = Journal(path)
+        resumed = reopened.resume("e2")
+        reopened.close()
+        assert resumed is not None and resumed.number >= kept_number
 
     def on_disk(call: Callable[..., Any]) -> Callable[..., Any]:
         def made(*arguments: Any, **more: Any) -> Any:
@@ -136,8 +136,8 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
             program = resumed
     is_full = False
     assert changed(program, 99) and not journal.is_incomplete
-    there = Journal(path).resume("e3")
-    assert there is not None and same(there, program)
+    final = Journal(path).resume("e3")
+    assert final is not None and same(final, program)
 
 
 def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
@@ -150,9 +150,9 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
         changed(program, value)
         assert path.stat().st_size < 6000
     assert path.with_name(path.name + OLD_ENDING).exists()
-    there = Journal(path).resume("e2")
-    assert there is not None
-    assert there.tree.checksum() == program.tree.checksum()
+    resumed = Journal(path).resume("e2")
+    assert resumed is not None
+    assert resumed.tree.checksum() == program.tree.checksum()
 
 
 @pytest.mark.parametrize(

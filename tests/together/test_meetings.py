@@ -69,9 +69,11 @@ class Two:
         assert self.luz.view.checksum() == self.program.tree.checksum()
         return " ".join(text_of(self.program.tree).split())
 
-    def inserts(self, page: Page, container: str, behind: str, text: str = "BEEP(1, 440)") -> None:
+    def inserts(
+        self, page: Page, container: str, previous: str, text: str = "BEEP(1, 440)"
+    ) -> None:
         node = Subtree(page.new_id(), text)
-        assert does(page, [Insert(Place(container, behind), (node,))])
+        assert does(page, [Insert(Place(container, previous), (node,))])
 
     def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""

@@ -214,9 +214,9 @@ class World:
         self._check_instructions(tree, text, parsed.program.body)
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks say the same program.
-        again = format_blocks(read_blocks(text, KIT)).text
-        one, other = compile_text(_whole(text), KIT), compile_text(_whole(again), KIT)
-        assert one.image and one.image == other.image, (text, again, one.diagnostics)
+        round_tripped = format_blocks(read_blocks(text, KIT)).text
+        one, other = compile_text(_whole(text), KIT), compile_text(_whole(round_tripped), KIT)
+        assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
         # Nobody's values were mixed; nothing is there twice.
         for node in tree.node_by_id.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text

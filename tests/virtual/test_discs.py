@@ -324,13 +324,13 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     one = wheel(robot, number)
     step = one.step
 
-    def back(has_two: bool) -> float:
+    def step_backward(has_two: bool) -> float:
         before = one.counted_edges
         speed = step(has_two)
         one.counted_edges = 2 * before - one.counted_edges
         return speed
 
-    monkeypatch.setattr(one, "step", back)
+    monkeypatch.setattr(one, "step", step_backward)
     talk.wait(600)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number]
     talk.wait(300)

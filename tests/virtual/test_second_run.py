@@ -106,9 +106,9 @@ def check(seed: int) -> str:
     did, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
     said = f"seed {seed} {ends} {name} {text}\n{did}\nnot\n{want}"
     assert did[:2] == want[:2], said
-    there, its = did.pose, want.pose
-    assert hypot(there.x_cm - its.x_cm, there.y_cm - its.y_cm) < NEAR_CM, said
-    assert abs(there.heading - its.heading) < NEAR_DEGREES, said
+    did_pose, want_pose = did.pose, want.pose
+    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < NEAR_CM, said
+    assert abs(did_pose.heading - want_pose.heading) < NEAR_DEGREES, said
     left = {k: value for k, value in did.actuators.items() if k not in want.actuators}
     assert {**want.actuators, **left} == did.actuators, said
     assert is_done or not any(left.values()), said  # what a program's own end leaves on

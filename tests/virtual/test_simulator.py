@@ -61,15 +61,15 @@ def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
     for client in crowd:
         client.sendall(PING)
     heard = [bytearray() for _ in crowd]
-    told = 0
+    refused_count = 0
 
     def all_are_told() -> bool:
-        nonlocal told
-        told = sum(
+        nonlocal refused_count
+        refused_count = sum(
             bytes(received(client, into)) == limits.PORT_TAKEN
             for client, into in zip(crowd, heard, strict=True)
         )
-        return told == 5
+        return refused_count == 5
 
     until(simulator, all_are_told)
     for client in crowd:

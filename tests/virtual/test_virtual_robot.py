@@ -242,15 +242,15 @@ def test_off_and_on_ends_what_runs_where_it_is() -> None:
 def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
     robot = robot_in(seed=seed)
     chance = Random(seed)
-    there, back = BadLine(15, chance), BadLine(15, chance)
+    to_robot, to_computer = BadLine(15, chance), BadLine(15, chance)
     talk = Talk(robot)
     session = talk.session
 
     def wait() -> None:
         now_ms = robot.now_ms + 1
-        there.send_bytes(session.poll(now_ms), now_ms)
-        back.send_bytes(robot.step(now_ms, there.take_arrived(now_ms)), now_ms)
-        session.receive(back.take_arrived(now_ms), now_ms)
+        to_robot.send_bytes(session.poll(now_ms), now_ms)
+        to_computer.send_bytes(robot.step(now_ms, to_robot.take_arrived(now_ms)), now_ms)
+        session.receive(to_computer.take_arrived(now_ms), now_ms)
 
     long = "SI|" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 31)) + "S"
     image = unpack(compile_text(long, KIT).image)
@@ -260,7 +260,7 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
         assert request.outcome.status == 0
     for _ in range(3000):
         wait()
-    assert there.fault_count + back.fault_count > 1
+    assert to_robot.fault_count + to_computer.fault_count > 1
     said = trace(robot.take_events())
     assert [each.split(" ", 1)[1] for each in said][-1] == "DONE"
     assert [each.split()[2] for each in said if " MOTORS " in each][:3] == ["1", "2", "3"]
@@ -322,9 +322,11 @@ def test_it_keeps_what_its_board_promises_and_what_it_says_itself(name: str, is_
     talk.wait(20_000)
     assert talk.wait_for(talk.session.status()).values.saved == SAVED_STORED
     robot.power_cycle()
-    again = Talk(robot, nonce=6)
-    assert again.wait_for(again.session.hello()).values.program == unpack(image).checksum
-    assert again.wait_for(again.session.fetch()).values.image == image
+    second_talk = Talk(robot, nonce=6)
+    assert (
+        second_talk.wait_for(second_talk.session.hello()).values.program == unpack(image).checksum
+    )
+    assert second_talk.wait_for(second_talk.session.fetch()).values.image == image
 
 
 def test_what_it_does_not_hold_is_refused() -> None:

@@ -170,7 +170,7 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
         def write_as_pupils() -> None:
             while True:
                 for k, token in enumerate(tokens):
-                    here = {
+                    beat = {
                         "do": "here",
                         "text": f"SI|{PUPIL_PROGRAMS[k % len(PUPIL_PROGRAMS)]}",
                         "robot": "tinibot",
@@ -179,7 +179,7 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
                     classroom.answer(
                         token,
                         PUPIL_ADDRESS,
-                        {**here, "lessons": done_lessons, "hand": k == RAISED_HAND},
+                        {**beat, "lessons": done_lessons, "hand": k == RAISED_HAND},
                     )
                 if is_over.wait(1):
                     return
