@@ -166,6 +166,17 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
     assert uploaded(robot, ends, first) == "OTHER_DRIVER"
 
 
+def test_who_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
+    """Between short runs, too, and for longer than one silence may last."""
+    robot = booted()
+    first, second = session(1, robot), session(2, robot)
+    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    for _ in range(4):
+        assert uploaded(robot, ends, first, "SI|F(0.1, 30)") == "OK"
+        talk(robot, ends, AUTHORITY_MS - 500)
+        assert uploaded(robot, ends, second) == "OTHER_DRIVER"
+
+
 @pytest.mark.parametrize("make", RADIOS)
 def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     robot = booted()
