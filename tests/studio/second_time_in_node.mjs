@@ -1614,6 +1614,11 @@ const PARTS = {
         if (k < 55) seen.push(shown()); // the answer is there
         if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
+      if (!isGood && isAnswered && chance() < 0.5) { // whatever gets lost, each that confirms is counted
+        await passes(15_000);
+        const confirmedCount = robots.filter((each) => each.late_ms < 1e6).length;
+        if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
+      }
       return { ends: [isGood ? 'over' : robots.some((each) => each.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
   },
