@@ -105,7 +105,7 @@ class Clone:
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
         self.package = copied(self.root)
-        self.page = self.package / "tiniscript" / "studio" / "page" / serving.INDEX_FILE
+        self.page = self.package / "tiniscript" / "studio" / "page" / building.INDEX_FILE
         self.put("tools/studio/package-lock.json", "{}")
         lock = install_advice.LOCKS[install_advice.STUDIO]
         self.put("tools/studio/requirements.txt", lock.read_text())

@@ -108,10 +108,10 @@ def _drop_output() -> None:
 def _tell_missing_parts(language: str) -> None:
     """Say which parts that are made before a wheel are not in this installation."""
     from tiniscript.flash import ready
-    from tiniscript.studio import serving
+    from tiniscript.studio import building
 
     parts = {
-        "version_page": serving.is_built(),
+        "version_page": building.has_page(),
         "version_firmware": any(ready.FOLDER.glob("*.hex")),
     }
     for key, is_installed in parts.items():

@@ -14,6 +14,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+PAGE = Path(__file__).with_name("page")
+INDEX_FILE = "index.html"
 CLONE = Path(__file__).resolve().parent.parent.parent.parent
 SOURCES = CLONE / "tools" / "studio"
 LOCK = SOURCES / "package-lock.json"  # which packages of npm
@@ -48,6 +50,11 @@ class Tools(NamedTuple):
 def is_possible() -> bool:
     """Whether tsc runs from a clone, which has the page's sources."""
     return LOCK.is_file()
+
+
+def has_page(page: Path = PAGE) -> bool:
+    """Whether this installation has the page."""
+    return (page / INDEX_FILE).is_file()
 
 
 def is_built_from_sources(page: Path) -> bool:

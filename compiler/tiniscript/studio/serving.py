@@ -72,8 +72,7 @@ TYPES = {
 }
 
 
-PAGE = Path(__file__).with_name("page")
-INDEX_FILE = "index.html"
+PAGE = building.PAGE
 WORKER_FILE = "service_worker.js"
 FIRMWARE_FILE = "firmware.json"  # which files of firmware there are
 HOST = "127.0.0.1"
@@ -116,7 +115,7 @@ class File(NamedTuple):
 
 def is_built() -> bool:
     """Whether this installation has the page."""
-    return (PAGE / INDEX_FILE).is_file()
+    return building.has_page(PAGE)
 
 
 def files(folder: Path | None = None) -> dict[str, File]:
@@ -154,7 +153,7 @@ def for_class(page: dict[str, File]) -> dict[str, File]:
     class_page = {}
     for name, file in page.items():
         data = file.data
-        if name == INDEX_FILE:
+        if name == building.INDEX_FILE:
             data = data.replace(HTML_START, HTML_START + b" data-class", 1)
         gzipped = gzip.compress(data, 6, mtime=0)
         class_page[name] = _with_etag(
@@ -383,7 +382,7 @@ class _Handler(BaseHTTPRequestHandler):
         if not self._is_own():
             self._send(HTTPStatus.FORBIDDEN, _FORBIDDEN_ANSWER)
             return
-        name = urlsplit(self.path).path.removeprefix("/") or INDEX_FILE
+        name = urlsplit(self.path).path.removeprefix("/") or building.INDEX_FILE
         file = self.server.page.get(name)
         if self.headers.get("Service-Worker") == "script" and name != WORKER_FILE:
             self._send(HTTPStatus.OK, _GONE_WORKER)
