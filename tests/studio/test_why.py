@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,10 @@ from tests.support.node import in_node
 from tiniscript.studio.checking import check
 
 SCRIPT = Path(__file__).with_name("why_in_node.mjs")
-VALUES = {"DISTANCE": "12.3", "N": "4"}
+VALUES = {"DISTANCE": "12.3", "N": "4", "KEY_UP": "TRUE"}
 ARMS = "IF(DISTANCE < 10)\nB(1, 10)\nELSEIF(N > 3)\nF(1, 20)\nELSE\nF(1, 30)\nENDIF"
-ONE, TWO = [1, "DISTANCE < 10", "12.3 < 10"], [3, "N > 3", "4 > 3"]
+DISTANCE, N = ["DISTANCE", "12.3"], ["N", "4"]
+ONE, TWO = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
 
 
 def explanations(*cases: tuple[str, str]) -> list[Any]:
@@ -36,14 +38,19 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
 @pytest.mark.parametrize(
     ("text", "wanted", "found"),
     [
-        (ARMS, "B(1, 10)", [[*ONE, True]]),
+        (ARMS, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # it has been read again
         (ARMS, "F(1, 20)", [[*ONE, False], [*TWO, True]]),
-        (ARMS, "F(1, 30)", [[*ONE, False], [*TWO, False]]),
-        (ARMS, "IF", [[*ONE, None]]),
+        (ARMS, "F(1, 30)", [[*ONE, False], [3, "N > 3", [], False]]),
+        (ARMS, "IF", [[*ONE, False]]),
         (ARMS + "\nB(1, 40)", "B(1, 40)", []),
         ("// IF(N > 1)\nW(1)", "W(1)", []),
         ("WHILE(MIN(N, 2) < 3)\nN = N + 1\nF(9, 50) UNTIL(DISTANCE < 15)\nEND_WHILE", "F(9",
-         [[1, "MIN(N, 2) < 3", "MIN(4, 2) < 3", True], [3, "DISTANCE < 15", "12.3 < 15", None]]),
+         [[1, "MIN(N, 2) < 3", [N], True], [3, "DISTANCE < 15", [DISTANCE], True]]),
+        ("F(9, 50) UNTIL(KEY_UP AND NOT (N > 5 OR DISTANCE > N))", "F(9",
+         [[1, "KEY_UP AND NOT (N > 5 OR DISTANCE > N)", [["KEY_UP", "TRUE"], N, DISTANCE], False]]),
+        ("F(9, 50) UNTIL(RANDOM(1, 6) > N)", "F(9", [[1, "RANDOM(1, 6) > N", [N], None]]),
+        ("F(9, 50) UNTIL(N = 4 OR RANDOM(1, 6) > 3)", "F(9",
+         [[1, "N = 4 OR RANDOM(1, 6) > 3", [N], True]]),
         ("DEF GO;IF(DISTANCE > 3);S;ENDIF;END_DEF\nGO", "GO", []),
     ],
 )  # fmt: skip
@@ -69,6 +76,40 @@ def test_any_nesting_is_told_from_the_outside() -> None:
         assert [[row[1], row[3]] for row in explanations((text, "W(0.5)"))[0]["told"]] == wanted, (
             text
         )
+
+
+def expression(rng: random.Random, depth: int, *, is_question: bool) -> str:
+    """Return one in brackets as few as can be, of numbers or of yes and no."""
+    if is_question:
+        if not depth:
+            return rng.choice(("KEY_UP", "TRUE", "FALSE"))
+        form = rng.choice(("{q} AND {q}", "{q} OR {q}", "NOT {q}", "({q})", *["{n} {c} {n}"] * 4))
+    elif not depth:
+        return rng.choice(("N", "DISTANCE", "2", "0.5", "-3"))
+    else:
+        form = rng.choice(
+            ("{n} + {n}", "{n} - {n}", "{n} * {n}", "({n})", "-{n}", "MIN({n}, {n})", "ABS({n})")
+        )
+    while hole := next((hole for hole in ("{q}", "{n}", "{c}") if hole in form), ""):
+        filling = (
+            rng.choice(("<", "<=", ">", ">=", "=", "<>"))
+            if hole == "{c}"
+            else expression(rng, rng.randrange(depth), is_question=hole == "{q}")
+        )
+        form = form.replace(hole, filling, 1)
+    return form
+
+
+def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
+    rng = random.Random(3)
+    words = {"AND": "and", "OR": "or", "NOT": "not", "=": "==", "<>": "!=", "TRUE": "1 == 1"}
+    words |= {"FALSE": "1 == 2", "KEY_UP": "1 == 1", "ABS": "abs", "MIN": "min", **{
+        name: value for name, value in VALUES.items() if name != "KEY_UP"}}  # fmt: skip
+    conditions = [expression(rng, 3, is_question=True) for _ in range(120)]
+    rows = told(*((f"N = 0;F(9, 50) UNTIL({condition})", "F(9") for condition in conditions))
+    for condition, row in zip(conditions, rows, strict=True):
+        python = re.sub(r"[A-Z_]+|<>|(?<![<>])=", lambda found: words[found[0]], condition)
+        assert row["told"][0][3] == eval(python), condition
 
 
 def test_the_task_is_told_that_an_instruction_is_in() -> None:

@@ -18,7 +18,7 @@ import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
 import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
-import { textKey, text } from '../page/texts.js';
+import { currentLanguage, textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
@@ -721,7 +721,12 @@ export class SimulatorPanel {
     if (offset === null) return text('why_nothing');
     const values = new Map(variables.map(({ name, is_yes_no }, index) => [name, variableText(state.variables[index], is_yes_no)]));
     const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
-    const sentences = conditions.map(({ line, condition, values: with_values, is: isTrue }) => text(isTrue === null ? 'why_asks' : isTrue ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
+    const joiner = new Intl.ListFormat(currentLanguage());
+    const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
+      text('why_asks', { line, condition }),
+      conditionValues.length ? `${joiner.format(conditionValues.map(([name, value]) => text('why_value', { name, value })))}.` : '',
+      isTrue === null ? '' : text(isTrue ? 'why_yes' : 'why_no'),
+    ]).filter(Boolean);
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
     const task = driver === null ? undefined : tasks.find(({ has: hasOffset }) => hasOffset(driver));
     if (driver !== null && tasks.length) sentences.push(task ? text('why_task', { line: task.line }) : text('why_main'));

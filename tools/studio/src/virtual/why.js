@@ -1,19 +1,30 @@
-// Why a program was where it was at a moment: the conditions around the instruction with the values that were read, and
-// whose motors they were. Knows no page.
+// Why a program was where it was at a moment: the conditions around the instruction with the values that were read and
+// the answers, and whose motors they were. Knows no page.
 
 /** @typedef {import('../python.js').CheckResult['places']} Places */
-/** @typedef {{line: number, condition: string, values: string, is: boolean | null}} Condition `is` null: it goes on being asked */
+/** @typedef {{line: number, condition: string, values: [string, string][], is: boolean | null}} Condition `values` of what it names, `is` null: nobody knows */
+/** @typedef {(name: string) => string | undefined} ValueOf of a sensor or a variable, as it was */
 
 const BLOCK_WORD = /\b(?:IF|WHILE|WHEN|ELSEIF|ELSE|END_?(?:IF|WHILE|WHEN))\b/gi;
 const UNTIL_WORD = /\bUNTIL\b/gi;
 const NAME = /[A-Z_]\w*/gi;
 const COMMENT = /\/\/.*/g;
+const TOKEN = /\d+(?:\.\d+)?|[A-Z_]\w*|<>|<=|>=|\S/gi;
+/** @typedef {(left: number, right: number) => number | boolean} Operation */
+/** From what binds least to what binds most; NOT is between AND and the comparisons. @type {Record<string, Operation>[]} */
+const COMPARISONS_AND_SUMS = [
+  { '=': (a, b) => a === b, '<>': (a, b) => a !== b, '<': (a, b) => a < b, '<=': (a, b) => a <= b, '>': (a, b) => a > b, '>=': (a, b) => a >= b },
+  { '+': (a, b) => a + b, '-': (a, b) => a - b },
+  { '*': (a, b) => a * b, '/': (a, b) => a / b, '%': (a, b) => a % b },
+];
+/** @type {Record<string, (...values: number[]) => number>} */
+const FUNCTIONS = { ABS: Math.abs, MIN: Math.min, MAX: Math.max };
 
 /**
  * @param {string} text of the program
  * @param {Places} places
  * @param {number} offset an offset in its code
- * @param {(name: string) => string | undefined} valueOf of a sensor or a variable, as it was
+ * @param {ValueOf} valueOf
  * @returns {Condition[]} from the outermost to the innermost one
  */
 export function conditionsAt(text, places, offset, valueOf) {
@@ -27,14 +38,87 @@ export function conditionsAt(text, places, offset, valueOf) {
   const conditions = [];
   const addCondition = (/** @type {number} */ headOffset, /** @type {boolean | null} */ isTrue) => {
     const condition = bracketContent(plainText, headOffset);
-    const values = condition.replace(NAME, (name) => valueOf(name.toUpperCase()) ?? name);
-    if (condition) conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, is: isTrue });
+    if (!condition) return;
+    const answer = answerOf(condition, valueOf);
+    const names = [...new Set(condition.toUpperCase().match(NAME))];
+    // Other values than those that it was answered with say nothing of the answer: they were read later.
+    const isLater = isTrue !== null && answer !== null && answer !== isTrue;
+    const values = isLater ? [] : names.flatMap((name) => { const value = valueOf(name); return value === undefined ? [] : [/** @type {[string, string]} */ ([name, value])]; });
+    conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, is: isTrue ?? answer });
   };
   for (const heads of openBlocksAt(plainText, start)) heads.forEach((headOffset, index) => addCondition(headOffset, index === heads.length - 1));
   const statement = (lines[line - 1] ?? '').slice(column - 1, endLine > line ? undefined : endColumn - 1);
   if (/^(?:IF|ELSEIF|WHILE|WHEN)\b/i.test(statement)) addCondition(start, null);
   for (const { index } of statement.matchAll(UNTIL_WORD)) addCondition(start + index, null);
   return conditions;
+}
+
+/** What values make of a condition; null if that is not known, as of RANDOM. @param {string} condition @param {ValueOf} valueOf @returns {boolean | null} */
+function answerOf(condition, valueOf) {
+  const tokens = condition.toUpperCase().match(TOKEN) ?? [];
+  const takeToken = (/** @type {string} */ wanted) => tokens[0] === wanted && Boolean(tokens.shift());
+  /** @typedef {number | boolean | null} Answer */
+  const isTrue = (/** @type {Answer} */ value) => (value === null ? null : Boolean(value));
+  /** @returns {Answer} */
+  const readOr = () => {
+    let value = readAnd();
+    while (takeToken('OR')) {
+      const left = isTrue(value), right = isTrue(readAnd());
+      value = left || right || (left === null || right === null ? null : false);
+    }
+    return value;
+  };
+  /** @returns {Answer} */
+  const readAnd = () => {
+    let value = readNot();
+    while (takeToken('AND')) {
+      const left = isTrue(value), right = isTrue(readNot());
+      value = left === false || right === false ? false : left === null || right === null ? null : true;
+    }
+    return value;
+  };
+  /** @returns {Answer} */
+  const readNot = () => {
+    if (!takeToken('NOT')) return readBinary(0);
+    const value = isTrue(readNot());
+    return value === null ? null : !value;
+  };
+  /** @param {number} level @returns {Answer} */
+  const readBinary = (level) => {
+    const operations = COMPARISONS_AND_SUMS[level];
+    if (!operations) return readOne();
+    let value = readBinary(level + 1);
+    for (let operation = operations[tokens[0] ?? '']; operation; operation = operations[tokens[0] ?? '']) {
+      tokens.shift();
+      const right = readBinary(level + 1);
+      value = value === null || right === null ? null : operation(Number(value), Number(right));
+    }
+    return value;
+  };
+  /** @returns {Answer} */
+  const readOne = () => {
+    const token = tokens.shift() ?? '';
+    if (token === '-') {
+      const value = readOne();
+      return value === null ? null : -value;
+    }
+    if (token === '(') {
+      const value = readOr();
+      takeToken(')');
+      return value;
+    }
+    if (takeToken('(')) {
+      const values = [readOr()];
+      while (takeToken(',')) values.push(readOr());
+      takeToken(')');
+      return values.includes(null) ? null : FUNCTIONS[token]?.(...values.map(Number)) ?? null;
+    }
+    const valueText = valueOf(token) ?? token;
+    const value = valueText === 'TRUE' ? 1 : valueText === 'FALSE' ? 0 : Number(valueText);
+    return Number.isFinite(value) ? value : null;
+  };
+  const answer = readOr();
+  return tokens.length ? null : isTrue(answer);
 }
 
 /** The blocks that are open at a place, each by its heads until there: an IF and its ELSEIFs and ELSE. @param {string} text @param {number} offset */
