@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_blocks import PROGRAM, becomes, block, box_of
+from tests.support.sampling import some_of
 from tests.support.studio import (
     SETTLED,
     Pages,
@@ -276,7 +277,7 @@ ORDERS = (
 
 
 def test_the_block_that_is_pressed_after_a_run_is_dragged_and_all_is_seen_as_before(
-    page: Page,
+    page: Page, pytestconfig: pytest.Config
 ) -> None:
     """In whatever order a run, the whole screen, a press and a language come. The mouse presses at
     once after STOP, where the block is seen."""
@@ -309,7 +310,7 @@ def test_the_block_that_is_pressed_after_a_run_is_dragged_and_all_is_seen_as_bef
     whole, width = scale(), page.evaluate("blocks.clientWidth")
     languages = ["es", "en"] * 2
     screens: list[ViewportSize] = [{"width": 1920, "height": 768}, {"width": 1366, "height": 768}]
-    for order in ORDERS:
+    for order in some_of(pytestconfig, "orders", ORDERS, 2):
         for step in order:
             if step == "run":
                 page.click("#run")
