@@ -106,7 +106,9 @@ def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
     words |= {"FALSE": "1 == 2", "KEY_UP": "1 == 1", "ABS": "abs", "MIN": "min", **{
         name: value for name, value in VALUES.items() if name != "KEY_UP"}}  # fmt: skip
     conditions = [expression(rng, 3, is_question=True) for _ in range(120)]
-    rows = told(*((f"N = 0;F(9, 50) UNTIL({condition})", "F(9") for condition in conditions))
+    rows = explanations(
+        *((f"N = 0;F(9, 50) UNTIL({condition})", "F(9") for condition in conditions)
+    )
     for condition, row in zip(conditions, rows, strict=True):
         python = re.sub(r"[A-Z_]+|<>|(?<![<>])=", lambda found: words[found[0]], condition)
         assert row["told"][0][3] == eval(python), condition
