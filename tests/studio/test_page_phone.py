@@ -281,34 +281,3 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
     assert width() > 360
     page.evaluate("document.documentElement.dataset.phase = 'ended'")
     assert width() < 130
-
-
-@drawn
-def test_stop_is_as_wide_as_a_phone_on_both_screens_while_something_may_move(phone: Page) -> None:
-    """What is tapped on begins and ends no other thing: the two others stay where they are."""
-    write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
-
-    def boxes() -> dict[str, dict[str, float]]:
-        found = phone.locator("#bar button:visible").evaluate_all(
-            "all => all.map((e) => [e.id, e.getBoundingClientRect().toJSON()])"
-        )
-        return dict(found)
-
-    assert boxes()["stop"]["width"] < 130
-    run = boxes()["run"]
-    phone.click("#run")
-    in_phase(phone, "running")
-    for where in ("program", "robot"):
-        turn(phone, where)
-        assert boxes()["stop"]["width"] > 360
-        assert boxes()["stop"]["bottom"] <= boxes()["run"]["top"] == run["top"], where
-    assert axe(phone) == []
-    phone.click("#pause")
-    in_phase(phone, "paused")
-    assert boxes()["stop"]["width"] > 360
-    phone.click("#stop")
-    in_phase(phone, "ended")
-    assert boxes()["stop"]["width"] < 130
-    phone.evaluate("document.querySelector('#link_connected').hidden = false")
-    assert boxes()["stop"]["width"] > 360
-    phone.evaluate("document.querySelector('#link_connected').hidden = true")
