@@ -229,8 +229,7 @@ export class Blocks {
       this.#zoomButtons?.remove();
       this.#zoomButtons = makeZoomButtons(workspace, START_SCALE);
       this.#container.append(this.#zoomButtons);
-      this.#runFollower ??= new RunFollower(workspace);
-      this.#runFollower.follow(workspace);
+      this.#runFollower = new RunFollower(workspace);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;

@@ -1,9 +1,6 @@
 // What runs is in sight: the blocks are scrolled to it, and made smaller where it stands far apart. Once it has
 // run, they are as large as before, and where they were. Whoever scrolls during a run has it left to them. A large
 // robot leaves the blocks less room, after the run, too: what was seen before is seen there, however small.
-//
-// One view is kept: the last that the page had no part in. It is shown again once nothing runs and the room is there,
-// in whatever order that comes. Nothing moves while somebody holds a block.
 
 import * as Blockly from 'blockly/core';
 
@@ -14,29 +11,21 @@ const WORD_UNITS = 160; // and so much of a row, where there is no room for all 
 const SCROLL_INTERVAL_MS = 500; // for which nothing is scrolled again
 const RUN_END_MS = 600; // without anything that runs, until the run is over
 
-/** @typedef {{scale: number, x: number, y: number}} View */
-/** @typedef {View & {width: number, seenSizes: [string, number, number][]}} OwnView */
-
 export class RunFollower {
   #workspace;
   /** @type {string[]} */
   #runningIds = [];
-  /** How the blocks were seen before the page changed it, how wide, and how much of each stack. @type {OwnView | null} */
-  #ownView = null;
-  /** How somebody who is at the blocks found them: it is left to them. @type {View | null} */
-  #foundView = null;
+  /** How the blocks were seen before the run. @type {{scale: number, x: number, y: number} | null} */
+  #viewBefore = null;
+  /** How they were seen where there was more room, and how much of each stack. @type {{scale: number, x: number, y: number, width: number, seenSizes: [string, number, number][]} | null} */
+  #viewWithRoom = null;
+  #isLeftAlone = false; // to somebody who scrolls
   #lastScroll_ms = -Infinity;
   #endTimer = 0;
 
   /** @param {Blockly.WorkspaceSvg} workspace */
   constructor(workspace) {
     this.#workspace = workspace;
-  }
-
-  /** The same blocks are there from now on, in another language. @param {Blockly.WorkspaceSvg} workspace */
-  follow(workspace) {
-    this.#workspace = workspace;
-    this.#foundView = null;
   }
 
   /** These blocks run now. @param {string[]} ids */
@@ -53,26 +42,27 @@ export class RunFollower {
 
   /** Somebody is at the blocks: what they see stays until the run is over. */
   leaveAlone() {
-    if (this.#runningIds.length) this.#foundView ??= this.#currentView;
+    this.#isLeftAlone = this.#runningIds.length > 0;
+    if (this.#isLeftAlone) this.#viewBefore = null;
   }
 
   /** Has all that runs be seen, or, where it stands too far apart for that, some of it. */
   keepInView() {
-    if (this.#foundView || this.#isHeld) return;
+    if (this.#isLeftAlone || this.#workspace.isDragging()) return;
     const boxes = this.#runningIds.flatMap((id) => this.#workspace.getBlockById(id) ?? []).map((block) => {
       const { top, bottom, left, right } = block.getBoundingRectangleWithoutChildren();
       return new Blockly.utils.Rect(top, Math.min(bottom, top + ROW_UNITS), Math.min(left, block.getRootBlock().getRelativeToSurfaceXY().x), right);
     });
     const view = this.#view;
     if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
-    const { scale } = this.#workspace;
+    const { scale, scrollX: x, scrollY: y } = this.#workspace;
     const headBoxes = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD_UNITS)));
     const boundingBox = this.#scaleToFit(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
     const fittingScale = this.#scaleToFit(boundingBox);
     const isTooFar = fittingScale < LEAST_SCALE;
     if (headBoxes.every((box) => contains(box, view)) && scale <= LEAST_SCALE) return;
     if (isTooFar && (headBoxes.some((box) => contains(box, view)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
-    this.#ownView ??= this.#makeOwnView();
+    this.#viewBefore ??= { scale, x, y };
     this.#lastScroll_ms = performance.now();
     if (fittingScale < scale) this.#workspace.setScale(Math.max(LEAST_SCALE, fittingScale));
     this.#scrollTo(isTooFar ? headBoxes[0] ?? boundingBox : boundingBox);
@@ -84,43 +74,18 @@ export class RunFollower {
    * @param {() => void} resize
    */
   resizeBy(resize) {
-    const viewBefore = this.#makeOwnView();
+    const view = this.#view, { scale, scrollX: x, scrollY: y } = this.#workspace, { width } = this.#workspace.getMetricsManager().getViewMetrics();
+    const seenSizes = this.#sizesSeenIn(view);
     resize();
-    if (!this.#ownView && this.#width < viewBefore.width && isForRobot()) this.#ownView = viewBefore;
-    else if (!this.#ownView || (this.#foundView && !this.#hasRoom)) return;
-    this.#showOwnView();
-  }
-
-  /** @returns {View} */
-  get #currentView() {
-    const { scale, scrollX: x, scrollY: y } = this.#workspace;
-    return { scale, x, y };
-  }
-
-  get #width() {
-    return this.#workspace.getMetricsManager().getViewMetrics().width;
-  }
-
-  /** Whether there is as much of it as in their own view. */
-  get #hasRoom() {
-    return !isForRobot() || this.#width >= (this.#ownView?.width ?? 0);
-  }
-
-  /** Whether what is moved now would go from under somebody's finger. */
-  get #isHeld() {
-    return Blockly.Gesture.inProgress() || this.#workspace.isDragging();
-  }
-
-  #makeOwnView() {
-    return { ...this.#currentView, width: this.#width, seenSizes: this.#sizesSeenIn(this.#view) };
-  }
-
-  /** Or, without the room, all that was seen of it. Where nothing runs and there is room, it is theirs again. */
-  #showOwnView() {
-    if (!this.#ownView) return;
-    this.#showAs(this.#ownView);
-    if (!this.#hasRoom) this.#makeFit(this.#ownView);
-    else if (!this.#runningIds.length) this.#ownView = this.#foundView = null;
+    const isNarrower = this.#workspace.getMetricsManager().getViewMetrics().width < (this.#viewWithRoom?.width ?? width);
+    const isForRobot = 'big' in document.documentElement.dataset && !('phone' in document.documentElement.dataset);
+    if (isNarrower && isForRobot) {
+      this.#viewWithRoom ??= { scale, x, y, width, seenSizes };
+      this.#makeFit();
+    } else if (this.#viewWithRoom) {
+      this.#showAs(this.#viewWithRoom);
+      this.#viewWithRoom = null;
+    }
   }
 
   /** How much of each stack is seen, from its corner. @param {Blockly.utils.Rect} view @returns {[string, number, number][]} */
@@ -131,16 +96,16 @@ export class RunFollower {
     });
   }
 
-  /** Has all be seen that was seen where there was more room. @param {OwnView} ownView */
-  #makeFit({ scale, seenSizes }) {
-    const boxes = seenSizes.flatMap(([id, width, height]) => {
+  /** Has all be seen that was seen where there was more room, if it does not fit in. */
+  #makeFit() {
+    const boxes = (this.#viewWithRoom?.seenSizes ?? []).flatMap(([id, width, height]) => {
       const { left, top } = this.#workspace.getBlockById(id)?.getBoundingRectangle() ?? {};
       return left === undefined || top === undefined ? [] : new Blockly.utils.Rect(top, top + height, left, left + width);
     });
     const view = this.#view;
-    if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
+    if (!this.#viewWithRoom || !boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
     const seenBox = boundsOf(boxes);
-    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(scale, this.#scaleToFit(seenBox))));
+    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(this.#viewWithRoom.scale, this.#scaleToFit(seenBox))));
     this.#scrollTo(seenBox);
   }
 
@@ -150,7 +115,7 @@ export class RunFollower {
     return this.#workspace.scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), view.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
   }
 
-  /** @param {View} view */
+  /** @param {{scale: number, x: number, y: number}} view */
   #showAs({ scale, x, y }) {
     const toolbox = this.#workspace.getToolbox(), openGroup = toolbox?.getSelectedItem() ?? null;
     if (scale !== this.#workspace.scale) this.#workspace.setScale(scale); // which closes what somebody has opened
@@ -172,18 +137,14 @@ export class RunFollower {
   }
 
   #restoreView() {
-    this.#endTimer = this.#isHeld ? window.setTimeout(() => this.#restoreView(), RUN_END_MS) : 0;
-    if (this.#endTimer) return;
-    const foundView = this.#foundView, { scale, x, y } = this.#currentView;
-    this.#foundView = null;
-    if (!foundView || (foundView.scale === scale && foundView.x === x && foundView.y === y)) this.#showOwnView();
-    else if (this.#hasRoom) this.#ownView = null; // they have made another one
+    this.#endTimer = 0;
+    this.#isLeftAlone = false;
+    const viewBefore = this.#viewBefore;
+    this.#viewBefore = null;
+    if (!viewBefore) return;
+    this.#showAs(viewBefore);
+    this.#makeFit();
   }
-}
-
-/** Whether a large robot takes room from the blocks. */
-function isForRobot() {
-  return 'big' in document.documentElement.dataset && !('phone' in document.documentElement.dataset);
 }
 
 /** @param {Blockly.utils.Rect} box @param {Blockly.utils.Rect} view */

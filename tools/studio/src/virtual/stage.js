@@ -21,7 +21,6 @@ export class Stage {
   #page;
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
   #chosenCamera = '';
-  #isHeld = false; // what is written, by a finger or a mouse
   #isScreenFilled = false; // the browser has filled the screen, too
   #cameraPath = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
   #cameraButton = makeButton('', () => this.#turnCamera(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#cameraPath));
@@ -50,15 +49,21 @@ export class Stage {
       this.#setFull(false); // by Escape, of which the page hears nothing else
       page.stop();
     });
-    // Whoever goes on writing has the room for it again; a finger or a mouse once it has left what would go from under it.
+    // Whoever goes on writing has the room for it again; a finger once it has left what would go from under it.
     const writing = element('writing', HTMLElement);
+    let isHeld = false;
+    writing.addEventListener('pointerenter', ({ pointerType, buttons }) => {
+      if (pointerType !== 'touch' && !buttons) this.#shrink();
+    });
     writing.addEventListener('pointerdown', () => {
-      this.#isHeld = true;
+      isHeld = true;
     }, { capture: true });
-    for (const kind of ['focusin', 'wheel']) writing.addEventListener(kind, () => this.#shrink(), { capture: true, passive: true });
+    writing.addEventListener('focusin', () => {
+      if (!isHeld) this.#shrink();
+    });
     for (const kind of ['pointerup', 'pointercancel']) addEventListener(kind, () => {
-      if (this.#isHeld) setTimeout(() => this.#shrink()); // after what it did to a block
-      this.#isHeld = false;
+      if (isHeld) setTimeout(() => this.#shrink()); // after what it did to a block
+      isHeld = false;
     }, { capture: true });
     // Whoever is at a lesson reads on: once a button has been pressed, which else would go from under the finger.
     const lessons = element('lessons', HTMLElement);
@@ -95,9 +100,9 @@ export class Stage {
     this.#shrink();
   }
 
-  /** @param {boolean} isAsked also while something runs, or is held */
+  /** @param {boolean} isAsked also while something runs */
   #shrink(isAsked = false) {
-    if (!('big' in root.dataset) || (!isAsked && (this.#isHeld || ['running', 'paused'].includes(root.dataset['phase'] ?? '')))) return;
+    if (!('big' in root.dataset) || (!isAsked && ['running', 'paused'].includes(root.dataset['phase'] ?? ''))) return;
     delete root.dataset['big'];
     this.#show();
   }
