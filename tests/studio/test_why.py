@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,8 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
         ("F(9, 50) UNTIL(KEY_UP AND NOT (N > 5 OR DISTANCE > N))", "F(9",
          [[1, "KEY_UP AND NOT (N > 5 OR DISTANCE > N)", [["KEY_UP", "TRUE"], N, DISTANCE], False]]),
         ("F(9, 50) UNTIL(RANDOM(1, 6) > N)", "F(9", [[1, "RANDOM(1, 6) > N", [N], None]]),
+        ("F(9, 50) UNTIL(N - 3.7 = 0.3)", "F(9", [[1, "N - 3.7 = 0.3", [N], True]]),
+        ("F(9, 50) UNTIL(N / 3 * 3 = N)", "F(9", [[1, "N / 3 * 3 = N", [N], None]]),
         ("F(9, 50) UNTIL(N = 4 OR RANDOM(1, 6) > 3)", "F(9",
          [[1, "N = 4 OR RANDOM(1, 6) > 3", [N], True]]),
         ("DEF GO;IF(DISTANCE > 3);S;ENDIF;END_DEF\nGO", "GO", []),
@@ -85,11 +88,9 @@ def expression(rng: random.Random, depth: int, *, is_question: bool) -> str:
             return rng.choice(("KEY_UP", "TRUE", "FALSE"))
         form = rng.choice(("{q} AND {q}", "{q} OR {q}", "NOT {q}", "({q})", *["{n} {c} {n}"] * 4))
     elif not depth:
-        return rng.choice(("N", "DISTANCE", "2", "0.5", "-3"))
+        return rng.choice(("N", "DISTANCE", "2", "0.1", "0.2", "-3"))
     else:
-        form = rng.choice(
-            ("{n} + {n}", "{n} - {n}", "{n} * {n}", "({n})", "-{n}", "MIN({n}, {n})", "ABS({n})")
-        )
+        form = rng.choice(("{n} + {n}", "{n} - {n}", "({n})", "-{n}", "MIN({n}, {n})", "ABS({n})"))
     while hole := next((hole for hole in ("{q}", "{n}", "{c}") if hole in form), ""):
         filling = (
             rng.choice(("<", "<=", ">", ">=", "=", "<>"))
@@ -111,7 +112,8 @@ def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
     )
     for condition, row in zip(conditions, rows, strict=True):
         python = re.sub(r"[A-Z_]+|<>|(?<![<>])=", lambda found: words[found[0]], condition)
-        assert row["told"][0][3] == eval(python), condition
+        exact = re.sub(r"\d+(?:\.\d+)?", r"Fraction('\g<0>')", python)
+        assert row["told"][0][3] == eval(exact, {"Fraction": Fraction}), condition
 
 
 def test_the_task_is_told_that_an_instruction_is_in() -> None:

@@ -1,5 +1,5 @@
-// Frames that are damaged on their way, as many as one likes, and the receiver of a robot. None
-// that was changed may be accepted, and damage may cost the frame after it, no other.
+// Frames that are damaged on their way, as many as one likes, and the receiver of a robot. None that
+// was changed may be accepted, and damage may cost the frame after it, no other.
 //
 // A line is a thousand frames, half of them damaged; its seed determines all of it. A request is
 // four bytes of length and a letter with what it asks, an answer four bytes of length and what was
@@ -34,10 +34,8 @@ namespace {
 
 constexpr uint32_t kFrames = 1024;  // of a line
 constexpr uint8_t kNumberBytes = 4;
-const uint8_t kTypes[] = {1,  2,  3,  4,  5,  6,  7,  8,  9,  11, 12,
-                          14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
-constexpr const char* kTexts[] = {"OK+LOST", "OK+LOST\r\n",
-                                  "+DISC:SUCCESS\r\n"};  // of radio modules
+const uint8_t kTypes[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+constexpr const char* kTexts[] = {"OK+LOST", "OK+LOST\r\n", "+DISC:SUCCESS\r\n"};  // of radio modules
 
 // SplitMix64: a generator whose states are the numbers.
 class Draw {
@@ -75,15 +73,13 @@ SentFrame sent[kFrames];
 std::string stream;  // what arrives of a line
 std::string wrong;   // what must not be, or nothing
 
-// -- what is sent
-// -----------------------------------------------------------------------------------
+// -- what is sent -----------------------------------------------------------------------------------
 
 // Returns a frame on the wire. Its payload begins with its number; in one of four frames it repeats
 // few values, so that COBS has much to do.
 std::string next_frame(uint32_t number, Draw* draw, bool may_repeat) {
   uint8_t frame[kWireBytes] = {};
-  const uint8_t payload =
-      static_cast<uint8_t>(kNumberBytes + draw->below(kPayloadBytes - kNumberBytes + 1));
+  const uint8_t payload = static_cast<uint8_t>(kNumberBytes + draw->below(kPayloadBytes - kNumberBytes + 1));
   const uint8_t begin = payload_at(static_cast<uint8_t>(kPayloadAt + payload));
   const uint8_t end = static_cast<uint8_t>(begin + payload);
   frame[kTypeAt] = kTypes[draw->below(sizeof kTypes)];
@@ -166,8 +162,8 @@ void damage_once(std::string* way, Draw* draw) {
   }
 }
 
-// Fills `sent` and `stream`, which begins with a 0x00 as whoever sends frames does. Returns how
-// many frames are damaged: one to three times, half of them or none.
+// Fills `sent` and `stream`, which begins with a 0x00 as whoever sends frames does. Returns how many
+// frames are damaged: one to three times, half of them or none.
 uint32_t send_line(uint64_t seed, bool may_damage = true, bool may_repeat = true) {
   Draw draw(seed);
   uint32_t damaged = 0;
@@ -186,11 +182,9 @@ uint32_t send_line(uint64_t seed, bool may_damage = true, bool may_repeat = true
   return damaged;
 }
 
-// -- what arrives
-// -----------------------------------------------------------------------------------
+// -- what arrives -----------------------------------------------------------------------------------
 
-// Passes the stream to a receiver; calls `on_frame` with each frame that it accepts, from its type
-// on.
+// Passes the stream to a receiver; calls `on_frame` with each frame that it accepts, from its type on.
 template <typename OnFrame>
 void receive_line(OnFrame on_frame) {
   Receiver receiver = Receiver();
@@ -212,8 +206,7 @@ void judge_line(uint64_t seed) {
   const char* what = nullptr;
   uint32_t next = 0;  // the number that is accepted at the earliest
   receive_line([&](const uint8_t* bytes, uint8_t length) {
-    const uint8_t at =
-        static_cast<uint8_t>(payload_at(static_cast<uint8_t>(kTypeAt + length)) - kTypeAt);
+    const uint8_t at = static_cast<uint8_t>(payload_at(static_cast<uint8_t>(kTypeAt + length)) - kTypeAt);
     uint32_t number = kFrames;
     if (length >= at + kNumberBytes) memcpy(&number, bytes + at, kNumberBytes);
     if (number >= kFrames || !sent[number].is(bytes, length)) {
@@ -227,14 +220,12 @@ void judge_line(uint64_t seed) {
   });
   for (uint32_t k = 0; k < kFrames; k++) {
     const bool is_clear = !sent[k].is_damaged && (k == 0 || !sent[k - 1].is_damaged);
-    if (is_clear && !sent[k].is_accepted)
-      what = "a frame is lost without damage to it or the one before";
+    if (is_clear && !sent[k].is_accepted) what = "a frame is lost without damage to it or the one before";
   }
   if (what != nullptr) wrong = std::string(what) + ", line " + std::to_string(seed);
 }
 
-// -- typed stops
-// ------------------------------------------------------------------------------------
+// -- typed stops ------------------------------------------------------------------------------------
 
 // How many typed stops a line of frames holds for the receiver, as the link takes them: where bytes
 // arrive, or after a frame that is not whole.
@@ -262,12 +253,11 @@ struct TypedByte {
   uint16_t pause_ms;
 };
 
-// What a stop may be at a byte. kInFrame: of its frame, if that is not whole. kWaits: where silence
-// follows. kEither: the laws leave it open, or it depends on what was deleted.
+// What a stop may be at a byte. kInFrame: of its frame, if that is not whole. kWaits: where silence follows.
+// kEither: the laws leave it open, or it depends on what was deleted.
 enum class Law : uint8_t { kNone, kStop, kInFrame, kWaits, kEither };
 
-const char* const kWords[] = {"s",     "stop", "stopnow", "alto", "para",
-                              "parar", "pare", "detente", "halt"};
+const char* const kWords[] = {"s", "stop", "stopnow", "alto", "para", "parar", "pare", "detente", "halt"};
 
 bool is_end(uint8_t byte) { return byte == '\r' || byte == '\n'; }
 bool is_printable(uint8_t byte) { return byte >= ' ' && byte <= '~'; }
@@ -293,13 +283,11 @@ std::string without_keys(const std::string& bytes) {
 
 std::string small(const std::string& bytes) {
   std::string found;
-  for (const char byte : bytes)
-    found += byte >= 'A' && byte <= 'Z' ? static_cast<char>(byte | 0x20) : byte;
+  for (const char byte : bytes) found += byte >= 'A' && byte <= 'Z' ? static_cast<char>(byte | 0x20) : byte;
   return found;
 }
 
-// Whether a line of text is a typed stop: of words of S and STOP the last one counts, none in a
-// comment.
+// Whether a line of text is a typed stop: of words of S and STOP the last one counts, none in a comment.
 Law of_line(const std::string& line) {
   std::string letters;
   bool is_deleted = false;  // maybe an S that had made another one one
@@ -389,14 +377,11 @@ Law law_of(const std::vector<TypedByte>& all, size_t restart, bool is_running) {
   while (line > text && !is_end(all[line - 1].byte)) line--;
   const std::string bytes = without_keys(between(std::max(line, restart), last));
   const bool is_after_zero = is_framed && line == text;
-  // A line of text that has begun before a silence is the same one for some: a control byte in it,
-  // say.
+  // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t before = line;
-  while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte))
-    before--;
-  const bool is_new =
-      std::all_of(all.begin() + static_cast<long>(before), all.begin() + static_cast<long>(line),
-                  [](const TypedByte& each) { return each.byte <= ' '; });
+  while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte)) before--;
+  const bool is_new = std::all_of(all.begin() + static_cast<long>(before), all.begin() + static_cast<long>(line),
+                                  [](const TypedByte& each) { return each.byte <= ' '; });
   const std::string whole = between(line, is_end(byte) ? last : last + 1);
   if (!whole.empty() && whole.find_first_not_of('\3') == std::string::npos) {
     return is_new ? Law::kWaits : Law::kEither;
@@ -407,8 +392,7 @@ Law law_of(const std::vector<TypedByte>& all, size_t restart, bool is_running) {
     return law == Law::kStop && is_after_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
-    return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1)))
-                      : Law::kNone;
+    return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1))) : Law::kNone;
   }
   bool has_begun = false;
   for (const char each : without_keys(between(line, last))) {
@@ -425,52 +409,16 @@ Law law_of(const std::vector<TypedByte>& all, size_t restart, bool is_running) {
 
 // What senders send before a line, and what people and modules leave unfinished.
 const char* const kPrefixes[] = {
-    "\r\n",
-    "\r\r",
-    "\n",
-    "\t\t",
-    "5\n",
-    "\x1b[A",
-    "\x1b[1;5C",
-    "\x1bOB",
-    "\b",
-    "\x7f",
-    "(\n",
-    " \n",
-    "SI|F(60,80)",
-    "SI|LOOP(3)\n",
-    "F(2,\n",
-    "// x",
-    "S",
-    "STOP",
-    "ST",
-    "\x1b",
-    "\x1b[",
-    ";",
-    " ",
-    "\t",
-    "\n",
-    "OK+CONN",
-    "\xef\xbb\xbf",
-    "u",
-    "+DISC:SUCCESS\r\n",
-    "\3",
-    "SS",
-    "F(1,S S",
-    "/",
-    "NOW",
-    "\xc2\xa1",
-    "alt",
+    "\r\n", "\r\r", "\n", "\t\t", "5\n", "\x1b[A", "\x1b[1;5C", "\x1bOB", "\b", "\x7f", "(\n", " \n",
+    "SI|F(60,80)", "SI|LOOP(3)\n", "F(2,\n", "// x", "S", "STOP", "ST", "\x1b", "\x1b[", ";", " ", "\t", "\n",
+    "OK+CONN", "\xef\xbb\xbf", "u", "+DISC:SUCCESS\r\n", "\3", "SS", "F(1,S S", "/", "NOW", "\xc2\xa1", "alt",
 };
-const char* const kBegins[] = {"\r",   "\n",   "\r\n",   "",       "\b",
-                               "\x1b", "\x7f", "\x1b[A", "\x1bOD", "\x1b[1;5C"};
+const char* const kBegins[] = {"\r", "\n", "\r\n", "", "\b", "\x1b", "\x7f", "\x1b[A", "\x1bOD", "\x1b[1;5C"};
 constexpr uint8_t kFresh = 4;  // the first of these begin a line in a frame, too
 constexpr uint8_t kZeroBegins = 3;
-const char* const kStops[] = {"S",   "s",  "STOP", "stop", "StOp",        " S",
-                              "\tS", ";S", "S;",   "S ",   " ; STOP ;\t", "  s"};
-const char* const kLoose[] = {"SS",       "S.",      "Stop.", "stop!",     "S()",  "stop();",
-                              "STOP NOW", "alto",    "PARA",  "parar",     "pare", "HALT!",
-                              "s s s ",   "detente", "S;S",   "stopstop;", "S S.", "Stop, now"};
+const char* const kStops[] = {"S", "s", "STOP", "stop", "StOp", " S", "\tS", ";S", "S;", "S ", " ; STOP ;\t", "  s"};
+const char* const kLoose[] = {"SS",       "S.",   "Stop.", "stop!",  "S()",     "stop();", "STOP NOW",  "alto", "PARA",
+                              "parar",    "pare", "HALT!", "s s s ", "detente", "S;S",     "stopstop;", "S S.", "Stop, now"};
 
 template <typename Item, size_t kCount>
 Item one_of(const Item (&some)[kCount], Draw* draw) {
@@ -497,15 +445,13 @@ void judge_typed(uint64_t seed) {
     what = complaint;
     for (size_t k = all.size() > 60 ? all.size() - 60 : 0; k < all.size(); k++) {
       char part[8];
-      snprintf(part, sizeof part, "%s%02x", all[k].pause_ms >= kSilenceMs ? " ~" : " ",
-               all[k].byte);
+      snprintf(part, sizeof part, "%s%02x", all[k].pause_ms >= kSilenceMs ? " ~" : " ", all[k].byte);
       what += part;
     }
   };
   const auto put = [&](uint8_t byte, uint16_t pause_ms) {
     const uint8_t before = all.empty() ? 0 : all.back().byte;
-    const bool may_be_key =
-        before == 0x1b || before == '[' || before == 'O' || (before >= ' ' && before < '@');
+    const bool may_be_key = before == 0x1b || before == '[' || before == 'O' || (before >= ' ' && before < '@');
     if (may_be_key && pause_ms >= kSilenceMs) {  // a key is not cut by silence
       receiver.put('\n', now_ms);
       finder.put('\n', now_ms);
@@ -523,8 +469,7 @@ void judge_typed(uint64_t seed) {
     const bool may_wait = law == Law::kInFrame || law == Law::kWaits;
     if (may_wait && !is_stop && !receiver.is_held()) note("a stop that waits is not seen");
     if (law == Law::kNone && is_stop && !was_held) note("a stop that nobody has typed");
-    if (law == Law::kNone && receiver.is_held() && !waited)
-      note("a stop waits that nobody has typed");
+    if (law == Law::kNone && receiver.is_held() && !waited) note("a stop waits that nobody has typed");
     if (is_stop && receiver.due_stop() == Cause::kNone && !receiver.has_mark()) {
       note("the link does not know of a stop");
     }
@@ -532,12 +477,11 @@ void judge_typed(uint64_t seed) {
     if (restart == 0 && law != Law::kEither) {
       const bool is_in_frame = law == Law::kInFrame;
       const bool ends_waiting = law == Law::kWaits && (byte == 0 || is_end(byte));
-      const StopKind wanted = is_urgent                                        ? StopKind::kOfRun
-                              : law == Law::kStop || ends_waiting || are_zeros ? StopKind::kStop
-                              : is_in_frame                                    ? StopKind::kInFrame
-                                                                               : StopKind::kNothing;
-      if (found != wanted && (is_running || found != StopKind::kOfRun))
-        note("a finder says something else");
+      const StopKind wanted = is_urgent ? StopKind::kOfRun
+                           : law == Law::kStop || ends_waiting || are_zeros ? StopKind::kStop
+                           : is_in_frame ? StopKind::kInFrame
+                                         : StopKind::kNothing;
+      if (found != wanted && (is_running || found != StopKind::kOfRun)) note("a finder says something else");
     }
     if (is_urgent && is_running) restart = all.size();
     was_held = byte != 0 && !is_stop && (was_held || law == Law::kInFrame);
@@ -550,7 +494,7 @@ void judge_typed(uint64_t seed) {
     }
     receiver.take_stop();
   };
-  const bool reads_text = draw.below(4) != 0;  // otherwise its ring is soon full
+  const bool reads_text = draw.below(4) != 0;   // otherwise its ring is soon full
   const bool reads_frames = draw.below(4) != 0;
   const auto look = [&] {
     if (reads_text) take();
@@ -563,13 +507,11 @@ void judge_typed(uint64_t seed) {
   for (uint32_t parts = draw.below(6); parts > 0; parts--) {
     if (draw.below(2) == 0) {
       if (draw.below(4) == 0) put(0, 0);
-      for (const char* at = one_of(kPrefixes, &draw); *at != 0; at++)
-        put(static_cast<uint8_t>(*at), 0);
+      for (const char* at = one_of(kPrefixes, &draw); *at != 0; at++) put(static_cast<uint8_t>(*at), 0);
     } else {
       for (uint32_t k = draw.below(80); k > 0; k--) {
         const bool is_odd = draw.below(4) != 0;
-        put(static_cast<uint8_t>(is_odd ? "\0\1S\n s;T\r\x1b[OPp\t5\3SsS/.\b"[draw.below(25)]
-                                        : draw.byte()),
+        put(static_cast<uint8_t>(is_odd ? "\0\1S\n s;T\r\x1b[OPp\t5\3SsS/.\b"[draw.below(25)] : draw.byte()),
             static_cast<uint16_t>(draw.below(200) == 0 ? 1000 + draw.below(500) : 0));
         look();
       }
@@ -611,8 +553,7 @@ void judge_typed(uint64_t seed) {
       has_stopped = put(is_cut ? 0 : 1, 0);
     }
     const bool waits = receiver.has_frame() && receiver.frame_may_stop();
-    if (receiver.is_held() || (!has_stopped && !waits && reads_frames))
-      note("a stop in a frame is forgotten");
+    if (receiver.is_held() || (!has_stopped && !waits && reads_frames)) note("a stop in a frame is forgotten");
   }
   if (receiver.has_frame()) receiver.release();
   take();
@@ -620,8 +561,7 @@ void judge_typed(uint64_t seed) {
   if (!what.empty()) wrong = what + ", prefix " + std::to_string(seed);
 }
 
-// -- requests
-// ---------------------------------------------------------------------------------------
+// -- requests ---------------------------------------------------------------------------------------
 
 uint64_t seed_of(RequestReader* request) {
   const uint64_t high = request->u32();
@@ -641,8 +581,8 @@ void answer_judged(RequestReader* request, Writer* answer) {
   answer->text(wrong);
 }
 
-// F: the seed of a line, whether frames are damaged and whether some repeat few values, and how
-// many lines: how many frames of that kind, and how many typed stops in them.
+// F: the seed of a line, whether frames are damaged and whether some repeat few values, and how many
+// lines: how many frames of that kind, and how many typed stops in them.
 void answer_false_stops(RequestReader* request, Writer* answer) {
   uint64_t seed = seed_of(request);
   const bool may_damage = request->u8() != 0;
@@ -679,8 +619,7 @@ void answer_line(RequestReader* request, Writer* answer) {
     answer->text(std::string(each.bytes, each.bytes + each.length));
   }
   std::vector<std::string> accepted;
-  receive_line(
-      [&](const uint8_t* bytes, uint8_t length) { accepted.emplace_back(bytes, bytes + length); });
+  receive_line([&](const uint8_t* bytes, uint8_t length) { accepted.emplace_back(bytes, bytes + length); });
   answer->u32(static_cast<uint32_t>(accepted.size()));
   for (const std::string& each : accepted) answer->text(each);
 }

@@ -259,9 +259,9 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return answer->u16(network_port());
     case 'I': {
       const RadioSettings found = radio_settings();
-      for (const std::string& each :
-           {found.advertised, found.serial_port, found.host, found.instance, found.service,
-            found.network, found.password}) {
+      for (const std::string& each : {found.advertised, found.serial_port, found.host,
+                                      found.instance, found.service, found.network,
+                                      found.password}) {
         answer->text(each);
       }
       answer->u8(found.is_access_point);
@@ -300,8 +300,8 @@ void answer_panic(RequestReader*, Writer*) {
   look();
 }
 
-// O: what a pin has, 0 to 255. F: whether NVS is full. Z: for how many milliseconds a write of it
-// stops the chip. L: LEDC does nothing any more.
+// O: what a pin has, 0 to 255. F: whether NVS is full. Z: for how many milliseconds a write of it stops
+// the chip. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
 const Answers answers = {

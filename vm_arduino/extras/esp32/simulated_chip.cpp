@@ -37,14 +37,14 @@ constexpr uint32_t kEchoBeginsUs = 450;
 constexpr size_t kFifoBytes = 128;
 constexpr size_t kRingBytes = 32;
 constexpr uint32_t kNextPort = 0xc;  // from a register of pins 0 to 31 to that of the others
-constexpr int kMostHandles = 4;      // of NVS: the store's, and one that is just used
+constexpr int kMostHandles = 4;  // of NVS: the store's, and one that is just used
 
 // Pins, as components/soc/CHIP/include/soc/soc_caps.h has them, and the data sheets: those of the
 // flash are not for the firmware.
 #ifdef CONFIG_IDF_TARGET_ESP32
 constexpr uint64_t kPins = 0xff0effffff & ~uint64_t{0xfc0};
 constexpr uint64_t kOutputs = kPins & 0x3ffffffff;
-constexpr uint64_t kFirstAdc = 0xff00000000;     // 32 to 39
+constexpr uint64_t kFirstAdc = 0xff00000000;    // 32 to 39
 constexpr uint64_t kSecondAdc = 0x00000e00f015;  // 0, 2, 4, 12 to 15, 25 to 27
 constexpr uint8_t kChannels = 16;
 constexpr uint8_t kMostBits = 20;
@@ -200,8 +200,8 @@ size_t used_entries() {
 
 namespace {
 
-// A page is erased: the chip stands still, and then the timer's task comes before the main loop,
-// for each time that it has missed, or for one.
+// A page is erased: the chip stands still, and then the timer's task comes before the main loop, for
+// each time that it has missed, or for one.
 void erase() {
   chip.now_us += chip.erase_ms * uint64_t{1000};
   while (chip.erase_ms != 0 && timer.due_us <= chip.now_us) {
@@ -565,8 +565,8 @@ int HardwareSerial::available() {
   return static_cast<int>(chip.received.size());
 }
 
-// Behind the UART's FIFO the driver may have a ring. Then the core adds all of that ring, full or
-// not; a byte takes 32 of it, with its length and two heads, and waits where there is no room.
+// Behind the UART's FIFO the driver may have a ring. Then the core adds all of that ring, full or not;
+// a byte takes 32 of it, with its length and two heads, and waits where there is no room.
 int HardwareSerial::availableForWrite() {
   const size_t waiting = chip.sending < kFifoBytes ? chip.sending : kFifoBytes;
   return static_cast<int>(kFifoBytes - waiting + chip.send_room);

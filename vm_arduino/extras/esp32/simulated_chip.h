@@ -1,12 +1,12 @@
 // An ESP32 on a computer, for tests: what `core/` declares, done by variables.
 //
 // Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
-// `simulated_radio` has the radios, `simulated_counter` the pulse counter. What the real parts
-// refuse ends the run.
+// `simulated_radio` has the radios, `simulated_counter` the pulse counter. What the real parts refuse ends the run.
 
 #pragma once
 
 #include <Arduino.h>
+
 #include <stddef.h>
 
 #include <atomic>
@@ -59,11 +59,11 @@ struct SimulatedChip {
 
   std::map<std::string, std::string> entries;  // of NVS
   uint32_t nvs_writes = 0;
-  int nvs_handles = 0;    // that are open
+  int nvs_handles = 0;  // that are open
   uint32_t erase_ms = 0;  // how long a write stops the chip
   NvsFault nvs_fault = NvsFault::kNone;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
-  uint32_t cut_at = 0;                  // the power fails at this write; 0: it does not
+  uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
   TornEntry torn = TornEntry::kOld;
   bool is_off = false;  // since then nothing is written
 
@@ -78,7 +78,7 @@ struct SimulatedChip {
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};
 
-  bool is_ledc_stuck = false;                           // no duty changes any more
+  bool is_ledc_stuck = false;  // no duty changes any more
   void (*on_input)(uint8_t pin, bool level) = nullptr;  // of the pulse counter, where it is used
 
   uint8_t echo_pin = 0xff;
@@ -102,12 +102,12 @@ void set_input(uint8_t pin, bool level);
 
 size_t used_entries();  // of NVS
 
-// The line of the cable goes low for longer than a byte, or high again: of a break, however long,
-// the UART makes one byte 0, and its driver tells it once.
+// The line of the cable goes low for longer than a byte, or high again: of a break, however long, the
+// UART makes one byte 0, and its driver tells it once.
 void hold_line(bool is_low);
 
-// The next byte that arrives has a framing error: the driver tells it before it hands the byte
-// over, and not which it is.
+// The next byte that arrives has a framing error: the driver tells it before it hands the byte over,
+// and not which it is.
 void spoil_byte();
 
 // What the sketch does in a panic, before anything is printed.

@@ -70,10 +70,9 @@ bool next_packet(const std::string& data, size_t* at, Packet* found) {
     }
   }
   const bool is_message = type >> 4 == 3;
-  const bool is_known = is_message
-                            ? (type & 6) == 0 && length >= 2
-                            : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
-                                  (type == 0xd0 && length == 0);
+  const bool is_known = is_message ? (type & 6) == 0 && length >= 2
+                                   : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
+                                         (type == 0xd0 && length == 0);
   if (!is_known) {
     *at = place;
     found->event = MqttEvent::kBroken;
@@ -81,8 +80,8 @@ bool next_packet(const std::string& data, size_t* at, Packet* found) {
   }
   const std::string body = data.substr(place, length);
   if (is_message && body.size() >= 2) {
-    const size_t topic =
-        static_cast<size_t>(static_cast<uint8_t>(body[0]) << 8 | static_cast<uint8_t>(body[1]));
+    const size_t topic = static_cast<size_t>(static_cast<uint8_t>(body[0]) << 8 |
+                                             static_cast<uint8_t>(body[1]));
     if (topic > length - 2) {
       *at = place + 2;
       found->event = MqttEvent::kBroken;

@@ -175,8 +175,7 @@ void cut_next(World world, const ExpectedContents& expected, Task next, uint32_t
 }
 
 // The second cut, where the first has left `world`, and sometimes a third one.
-void second_cuts(const World& world, const ExpectedContents& expected, const Task& next,
-                 uint32_t stride) {
+void second_cuts(const World& world, const ExpectedContents& expected, const Task& next, uint32_t stride) {
   starts(world, expected);
   World started = world;
   ExpectedContents now = expected;

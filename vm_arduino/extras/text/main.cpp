@@ -23,8 +23,7 @@ std::vector<uint8_t> words;
 
 // An array of its own, so that the sanitizer sees an access outside.
 struct SanitizedReader {
-  explicit SanitizedReader(size_t bytes)
-      : room(static_cast<uint16_t>(bytes)), buffer(new uint8_t[bytes]) {}
+  explicit SanitizedReader(size_t bytes) : room(static_cast<uint16_t>(bytes)), buffer(new uint8_t[bytes]) {}
 
   void begin() { reader.begin(buffer.get(), room); }
 

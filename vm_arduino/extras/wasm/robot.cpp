@@ -262,8 +262,9 @@ tini_exported("reading") int32_t* module_reading() { return &reading; }
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
                                          uint32_t speed, uint32_t turn, uint32_t edge_cm,
-                                         uint32_t edge_degrees, uint32_t has_two, uint32_t line_us,
-                                         uint32_t eeprom_us, uint32_t language) {
+                                         uint32_t edge_degrees, uint32_t has_two,
+                                         uint32_t line_us, uint32_t eeprom_us,
+                                         uint32_t language) {
   byte_us = line_us;
   write_us = eeprom_us;
   own.kit = static_cast<uint16_t>(kit);

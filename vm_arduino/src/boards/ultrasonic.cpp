@@ -20,7 +20,7 @@ constexpr uint16_t kNearUs = 175;       // 3 cm
 constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
 constexpr uint16_t kNothing = 0xffff;
 constexpr uint32_t kFarthest = 400000;
-constexpr uint16_t kFarUs = 23326;               // an echo from there
+constexpr uint16_t kFarUs = 23326;      // an echo from there
 constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
 
 // A Nano has no room for more.

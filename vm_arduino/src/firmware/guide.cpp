@@ -10,17 +10,17 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kTurnMs = 10;        // of the controller
-constexpr uint16_t kStuckMs = 500;     // a wheel that drives and shows no edge for so long
-constexpr uint8_t kStandsMs = 250;     // the other one, for so long, does not turn either
-constexpr uint8_t kStillMs = 150;      // one that shows none for so long stands
-constexpr uint16_t kRestMs = 1000;     // and any does so long after its motor was turned off
-constexpr uint8_t kSlowMs = 150;       // one that shows none for so long gets more power
-constexpr uint16_t kGivesUpMs = 300;   // a correction that does nothing
+constexpr uint8_t kTurnMs = 10;      // of the controller
+constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
+constexpr uint8_t kStandsMs = 250;   // the other one, for so long, does not turn either
+constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
+constexpr uint16_t kRestMs = 1000;   // and any does so long after its motor was turned off
+constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
+constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
 constexpr uint16_t kLongestMs = 1000;  // one at most
-constexpr int32_t kEdge = 64;          // positions are in 64ths of the way between two edges
-constexpr int32_t kFar = 5 * kEdge;    // so far ahead a wheel gets as little power as may be
-constexpr uint8_t kRollMs = 60;        // until the robot has seen how it rolls
+constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
+constexpr int32_t kFar = 5 * kEdge;  // so far ahead a wheel gets as little power as may be
+constexpr uint8_t kRollMs = 60;      // until the robot has seen how it rolls
 constexpr uint8_t kLeastRollMs = 10;
 constexpr uint8_t kMostRollMs = 200;
 constexpr int8_t kCreep = 35;        // percent: slow, but it moves
@@ -37,36 +37,36 @@ enum class Phase : uint8_t {
 };
 
 struct Wheel {
-  int32_t edges;          // that it has gone in the direction of the move
-  uint16_t counted;       // by the board, when it was last asked
-  uint16_t edge_ms;       // when the last edge came,
-  uint16_t before_ms;     // and the one before
-  uint16_t two_ms;        // how long the last two took; 0: not known
-  uint8_t first;          // how far the first one was, in parts of the way between two
+  int32_t edges;       // that it has gone in the direction of the move
+  uint16_t counted;    // by the board, when it was last asked
+  uint16_t edge_ms;    // when the last edge came,
+  uint16_t before_ms;  // and the one before
+  uint16_t two_ms;     // how long the last two took; 0: not known
+  uint8_t first;       // how far the first one was, in parts of the way between two
   bool is_backward : 1;   // the move
   bool is_returning : 1;  // its motor last drove it against the move
   bool stands : 1;        // its motor is off, and it cannot turn
-  uint8_t more;   // edges until it is further than before; after something has taken its motor:
-                  // that it may roll
-  uint8_t noise;  // edges while it could not turn, modulo 256
-  int8_t power;   // in the direction of the move
+  uint8_t more;        // edges until it is further than before; after something has taken its motor:
+                       // that it may roll
+  uint8_t noise;       // edges while it could not turn, modulo 256
+  int8_t power;        // in the direction of the move
 };
 
 struct Guide {
   Phase phase;
   Going going;
   uint8_t corrections;
-  int8_t most;        // power that the program wants
-  int8_t least;       // power that moves a wheel
-  uint8_t roll_ms;    // a wheel rolls on as far as it would go in this time
-  uint16_t turn_ms;   // when the controller last did something
-  uint16_t begun_ms;  // when the move began
-  uint16_t off_ms;    // when both motors were turned off, or something else or a correction began
-  uint16_t off_at;    // where both wheels were then, together, modulo 2^16,
-  uint16_t off_roll;  // and how far they were to roll
-  int16_t uneven;     // sum of what the left wheel was ahead
+  int8_t most;         // power that the program wants
+  int8_t least;        // power that moves a wheel
+  uint8_t roll_ms;     // a wheel rolls on as far as it would go in this time
+  uint16_t turn_ms;    // when the controller last did something
+  uint16_t begun_ms;   // when the move began
+  uint16_t off_ms;     // when both motors were turned off, or something else or a correction began
+  uint16_t off_at;     // where both wheels were then, together, modulo 2^16,
+  uint16_t off_roll;   // and how far they were to roll
+  int16_t uneven;      // sum of what the left wheel was ahead
   int32_t target;
-  uint32_t edge;  // what a wheel, or the robot, goes between two edges
+  uint32_t edge;       // what a wheel, or the robot, goes between two edges
   Wheel wheels[kWheels];
 };
 
@@ -81,7 +81,9 @@ int32_t limited(int32_t value, int32_t most) {
 }
 
 // Where a wheel is when it stands: in the middle between two edges, as far as is known.
-int32_t place(const Wheel& wheel) { return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2; }
+int32_t place(const Wheel& wheel) {
+  return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
+}
 
 // Changes what `place` returns.
 void put(Wheel* wheel, int32_t at) {
@@ -377,11 +379,9 @@ void guide_go_on() {
 
 Going guide_going(int32_t* rest) {
   if (guide.phase == Phase::kDriven) coast();
-  const int32_t missing =
-      guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
+  const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
   const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
-  *rest =
-      static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
+  *rest = static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
   return guide.going;
 }
 

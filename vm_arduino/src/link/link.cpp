@@ -38,8 +38,8 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in
-  // the next call.
+  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in the
+  // next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
   const bool is_line = receiver_->has_open_line();

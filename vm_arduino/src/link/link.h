@@ -45,8 +45,8 @@ class Link {
   // The memory of the image that was made ahead goes to somebody else: it must not start.
   void drop_ahead() { is_ready_ = false; }
 
-  // Call it after the motors are served: writes the checksum of a program that came in one frame,
-  // and starts to send what is due.
+  // Call it after the motors are served: writes the checksum of a program that came in one frame, and
+  // starts to send what is due.
   void send_due();
 
   // Writes that checksum now, because it is needed.
@@ -89,8 +89,8 @@ class Link {
   // Whether the run ends when no frame arrives.
   bool is_attached() const { return is_attached_; }
 
-  // What the remote control of this session says, or nullptr: nothing that still counts. It lets
-  // all go, and for how long it counts.
+  // What the remote control of this session says, or nullptr: nothing that still counts. It lets all
+  // go, and for how long it counts.
   const RemoteKeys* remote() const {
     return kHasRemote && left_ms_[kHold] != 0 ? &remote_ : nullptr;
   }
@@ -263,7 +263,9 @@ class Link {
   void tell_wifi();
 
   // seals: `link_seals.cpp`
-  bool may_seal() const { return kMaySeal && (port_identity().more_features & kMoreSeals) != 0; }
+  bool may_seal() const {
+    return kMaySeal && (port_identity().more_features & kMoreSeals) != 0;
+  }
   bool has_seal() const { return kMaySeal && seal_.is_set(); }
   // Whether the current request is sealed with it.
   bool is_sealed() const { return kMaySeal && is_sealed_; }
@@ -366,18 +368,18 @@ class Link {
   uint8_t event_seq_;
   uint8_t last_epoch_;
   uint8_t rights_;
-  Reply last_;         // the last reply to a numbered request
-  Reply reply_;        // the current reply
+  Reply last_;          // the last reply to a numbered request
+  Reply reply_;          // the current reply
   uint32_t checksum_;  // of the image in a receipt
   // The long program in transfer.
   uint8_t* image_;  // or nullptr
   uint8_t mode_;
-  uint16_t length_;            // number of bytes after the checksum
-  uint16_t next_;              // offset of the next one
+  uint16_t length_;    // number of bytes after the checksum
+  uint16_t next_;      // offset of the next one
   uint8_t* without_checksum_;  // the taken image without a checksum yet, or nullptr
-  uint8_t* made_;              // the image that was made last
-  uint8_t ahead_;              // end of the payload of an image made ahead, or 0
-  bool is_ready_;              // it is `made_`, and may start if the frame ends there
+  uint8_t* made_;      // the image that was made last
+  uint8_t ahead_;      // end of the payload of an image made ahead, or 0
+  bool is_ready_;      // it is `made_`, and may start if the frame ends there
   // Output.
   uint8_t size_;           // bytes written so far
   uint8_t sent_;           // bytes already sent
@@ -393,15 +395,15 @@ class Link {
   tini_with_seals Seal seal_;
   tini_with_transports bool was_stopped_;
   tini_with_breakpoints bool has_breakpoints_;  // of this session
-  tini_with_breakpoints bool owns_halt_;        // it was told of the last halt: that ends with it
-  tini_with_readings bool tells_readings_;      // to this session
+  tini_with_breakpoints bool owns_halt_;  // it was told of the last halt: that ends with it
+  tini_with_readings bool tells_readings_;  // to this session
   tini_with_readings bool has_late_value_;
   tini_with_readings uint8_t behind_;  // by how many bytes readings delay what is sent
   tini_with_readings uint8_t late_epoch_;
   tini_with_readings uint8_t reply_bytes_;  // of the last one
   tini_with_readings ShownValue late_value_;
   tini_with_remote RemoteKeys remote_;  // what the remote control has said last
-  uint32_t nonce_;                      // of the session
+  uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];
 };

@@ -34,7 +34,8 @@ tini_noinline void Link::make_ahead() {
     return;
   }
   ahead_ = end;
-  is_ready_ = fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
+  is_ready_ =
+      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.
@@ -64,7 +65,8 @@ tini_noinline uint8_t Link::refuse(Answer answer, uint16_t detail) {
 // Whether the robot may take a program of this instruction set at all.
 uint8_t Link::allow(uint8_t mode, const uint8_t* isa) {
   if (isa[0] != kIsaMajor || isa[1] > kIsaMinor) return refuse(Answer::kOtherMachine, kIsa);
-  if ((mode & kStartBits) >= kStartPing || (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
+  if ((mode & kStartBits) >= kStartPing ||
+      (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
     return refuse(Answer::kBadValue, 0);
   }
   if (!may_start(mode)) return refuse(Answer::kLatched, 0);
@@ -188,8 +190,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   if (admission.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
-  if (admission.refusal != 0)
-    return refuse(static_cast<Answer>(admission.refusal), admission.offset);
+  if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
   port_has_checksum(image);
   return kIsFine;

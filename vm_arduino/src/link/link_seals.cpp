@@ -1,5 +1,4 @@
-// Sealed frames: which ones the robot takes, and which of its own it seals. `docs/develop/link.md`
-// says why.
+// Sealed frames: which ones the robot takes, and which of its own it seals. `docs/develop/link.md` says why.
 
 #include "../vm/build.h"
 #include "link.h"
@@ -15,8 +14,8 @@ uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
 
 }  // namespace
 
-// Returns where the payload ends of the request in a frame that ends at `end`, or 0: a frame whose
-// seal is wrong is not answered. STOP is taken from anybody.
+// Returns where the payload ends of the request in a frame that ends at `end`, or 0: a frame whose seal
+// is wrong is not answered. STOP is taken from anybody.
 uint8_t Link::open_seal(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
   const uint8_t type = bytes[kTypeAt];
@@ -30,8 +29,7 @@ uint8_t Link::open_seal(uint8_t end) {
   return is_stop || !seal_.is_set() ? kSealedPayloadAt : 0;
 }
 
-// The request is answered: its reply is sealed as it was, and that to the right tag with the new
-// seal.
+// The request is answered: its reply is sealed as it was, and that to the right tag with the new seal.
 void Link::close_seal() {
   const bool is_tag = reply_.number == number_of(Message::kAuthenticate) &&
                       reply_.status == kIsFine && (rights_ & kHasChallenge) == 0;
@@ -56,8 +54,7 @@ bool Link::keeps_answer(uint8_t type) const {
   return type == number_of(Message::kAuthenticate) && reply_.status == kIsFine;
 }
 
-// The mark in the type of a frame to the computer. Where the counter is at its end, authority is,
-// too.
+// The mark in the type of a frame to the computer. Where the counter is at its end, authority is, too.
 uint8_t Link::seal_mark() {
   if (seal_.may_close()) return kSealed;
   expire();

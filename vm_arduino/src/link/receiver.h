@@ -4,12 +4,11 @@
 // Everything is text until a 0x00. After it everything is frames, until a second passes without a
 // byte or the connection is lost; there CR or LF after nothing but printable ASCII ends a line of
 // text, because no whole frame looks so, and text goes on.
-// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Asks `port.h`
-// only whether a program runs, for what is typed in a hurry. Holds frames until they are released,
-// kWindow of them; a frame that finds no place is dropped. Text is passed on as it arrives. Finds
-// the same packets as `receiver.py`, in the same modes and in kStopInFrame, as typed stops are a
-// class of their own there. `put` may be called from an interrupt, everything else from the main
-// loop.
+// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Asks `port.h` only
+// whether a program runs, for what is typed in a hurry. Holds frames until they are released, kWindow
+// of them; a frame that finds no place is dropped. Text is passed on as it arrives. Finds the same
+// packets as `receiver.py`, in the same modes and in kStopInFrame, as typed stops are a class of their
+// own there. `put` may be called from an interrupt, everything else from the main loop.
 
 #pragma once
 
@@ -19,9 +18,9 @@
 #include "key_sequence.h"
 #include "messages.h"
 #include "sizes.h"
-#include "stop_sequence.h"
 #include "text_ring.h"
 #include "typed_stop.h"
+#include "stop_sequence.h"
 
 namespace tiniscript {
 
@@ -63,21 +62,21 @@ class PacketPlaces<1> {
 class Receiver : private PacketPlaces<kWindow> {
   // Where the next byte belongs. Below kBegin it is text; from kFrame on no line may end here.
   enum class Mode : uint8_t {
-    kText,         // between two lines of text, or in one
-    kLost,         // in a line of text whose bytes have found no room
-    kBegin,        // after a 0x00
-    kLine,         // in a frame, or in a line of text: all of it is printable
-    kFrame,        // in a frame
+    kText,   // between two lines of text, or in one
+    kLost,   // in a line of text whose bytes have found no room
+    kBegin,  // after a 0x00
+    kLine,   // in a frame, or in a line of text: all of it is printable
+    kFrame,  // in a frame
     kStopInFrame,  // in a frame with a typed stop in it
   };
 
-  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are
-  // skipped, some of it, or some before a second of silence and nothing since.
+  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
+  // some of it, or some before a second of silence and nothing since.
   enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
 
  public:
-  // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a
-  // run of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
+  // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
+  // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
   // framing error is 0.
   bool put(uint8_t byte, uint16_t now_ms) {
     const bool is_stop = count_zeros(byte, now_ms);
@@ -91,8 +90,7 @@ class Receiver : private PacketPlaces<kWindow> {
   }
   bool keep_and_find_stop(uint8_t byte, uint16_t now_ms);
 
-  // Where the count of zeros lies: an AVR's interrupt does `count_zeros` in assembly
-  // (`receiver_avr.h`).
+  // Where the count of zeros lies: an AVR's interrupt does `count_zeros` in assembly (`receiver_avr.h`).
   struct Layout;
 
   // Keeps the byte that completes a stop.
@@ -110,15 +108,15 @@ class Receiver : private PacketPlaces<kWindow> {
   bool frame_may_stop() const { return may_stop_[looked_at()]; }
   void let_frame() { may_stop_[looked_at()] = false; }
 
-  // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all
-  // that has come of a line: it stops when no byte has come for kHeldMs.
+  // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all that
+  // has come of a line: it stops when no byte has come for kHeldMs.
   bool is_held() const { return mode() == Mode::kStopInFrame || line() == Line::kHeld; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
   bool is_at_stop() const { return mode() < Mode::kFrame && typed_.found() != TypedStop::kNone; }
 
-  // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or
-  // LF is in it.
+  // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
+  // is in it.
   bool has_open_line() const {
     return mode() >= Mode::kLine && *const_cast<const volatile bool*>(&may_be_line_);
   }
@@ -154,7 +152,7 @@ class Receiver : private PacketPlaces<kWindow> {
     return is_lost;
   }
 
-  // Forgets that a byte has arrived; returns whether one has since the last call.
+  // Whether any byte has arrived since the last call, which forgets it.
   bool take_heard() {
     if (!has_heard_) return false;
     has_heard_ = false;
@@ -218,9 +216,9 @@ class Receiver : private PacketPlaces<kWindow> {
   Mode mode_;
   Line line_;
   bool is_line_printable_;  // all of the line is printable ASCII
-  bool is_cut_;             // a 0x00 has cut a line: the rest of it is lost
-  bool is_dropping_;        // the packet finds no place
-  bool may_be_line_;        // the packet may be a person's
+  bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
+  bool is_dropping_;  // the packet finds no place
+  bool may_be_line_;  // the packet may be a person's
   TypedStop typed_;
   KeySequence keys_;
   volatile bool is_lost_;

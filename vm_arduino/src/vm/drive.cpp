@@ -1,5 +1,4 @@
-// Waits and moves of tasks, and who has the motors. `tasks_avr.S` is the same for an Uno without
-// discs.
+// Waits and moves of tasks, and who has the motors. `tasks_avr.S` is the same for an Uno without discs.
 
 #include "build.h"
 

@@ -19,7 +19,7 @@ class Drive : public Execution {
   // Each returns whether the next instruction may run now.
   bool wait(uint32_t duration_ms);
   bool drive(uint32_t move_ms);
-  bool watch(uint32_t move_ms);                   // begins to watch a move or a wait
+  bool watch(uint32_t move_ms);  // begins to watch a move or a wait
   bool until(bool stop) tini_called_by_assembly;  // continues or ends it
   bool go_on();
   bool comes_to_end();

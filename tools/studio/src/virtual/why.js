@@ -15,7 +15,6 @@ const TOKEN = /\d+(?:\.\d+)?|[A-Z_]\w*|<>|<=|>=|\S/gi;
 const COMPARISONS_AND_SUMS = [
   { '=': (a, b) => a === b, '<>': (a, b) => a !== b, '<': (a, b) => a < b, '<=': (a, b) => a <= b, '>': (a, b) => a > b, '>=': (a, b) => a >= b },
   { '+': (a, b) => a + b, '-': (a, b) => a - b },
-  { '*': (a, b) => a * b, '/': (a, b) => a / b, '%': (a, b) => a % b },
 ];
 /** @type {Record<string, (...values: number[]) => number>} */
 const FUNCTIONS = { ABS: Math.abs, MIN: Math.min, MAX: Math.max };
@@ -53,7 +52,7 @@ export function conditionsAt(text, places, offset, valueOf) {
   return conditions;
 }
 
-/** What values make of a condition; null if that is not known, as of RANDOM. @param {string} condition @param {ValueOf} valueOf @returns {boolean | null} */
+/** What values make of a condition, counted in thousandths as the robot does. Null if that is not known: of RANDOM, and of what is rounded. @param {string} condition @param {ValueOf} valueOf @returns {boolean | null} */
 function answerOf(condition, valueOf) {
   const tokens = condition.toUpperCase().match(TOKEN) ?? [];
   const takeToken = (/** @type {string} */ wanted) => tokens[0] === wanted && Boolean(tokens.shift());
@@ -114,8 +113,9 @@ function answerOf(condition, valueOf) {
       return values.includes(null) ? null : FUNCTIONS[token]?.(...values.map(Number)) ?? null;
     }
     const valueText = valueOf(token) ?? token;
-    const value = valueText === 'TRUE' ? 1 : valueText === 'FALSE' ? 0 : Number(valueText);
-    return Number.isFinite(value) ? value : null;
+    if (valueText === 'TRUE' || valueText === 'FALSE') return valueText === 'TRUE';
+    const thousandths = Math.round(1000 * Number(valueText));
+    return Number.isFinite(thousandths) ? thousandths : null;
   };
   const answer = readOr();
   return tokens.length ? null : isTrue(answer);

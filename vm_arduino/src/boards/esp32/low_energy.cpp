@@ -1,8 +1,8 @@
 // Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
 //
 // The stack's task tells what is written to the robot, and who connects and leaves, with the number
-// of its connection; the task of this radio sends notifications. That one asks nothing of the
-// core's objects: these change in the stack's task, and no lock is around them.
+// of its connection; the task of this radio sends notifications. That one asks nothing of the core's
+// objects: these change in the stack's task, and no lock is around them.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -14,8 +14,7 @@
 #include "radio.h"
 
 #ifdef CONFIG_NIMBLE_ENABLED
-#error \
-    "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/develop/esp32.md"
+#error "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/develop/esp32.md"
 #endif
 
 namespace tiniscript {

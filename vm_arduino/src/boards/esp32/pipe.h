@@ -83,8 +83,8 @@ class Pipe {
   // The radio's task calls `take`. The three before it are called by that or by one other task, the
   // Bluetooth stack's.
 
-  // Somebody is connected: what was meant for the one before is gone. False: there is no memory,
-  // and nobody hears.
+  // Somebody is connected: what was meant for the one before is gone. False: there is no memory, and
+  // nobody hears.
   bool begin() {
     if (rings_ == nullptr) {
       Rings* const rings = static_cast<Rings*>(__builtin_calloc(1, sizeof(Rings)));
@@ -98,8 +98,8 @@ class Pipe {
     return true;
   }
 
-  // A byte of the client. The main loop does not see a stop that has lost bytes, or whose state
-  // has: what stops by all bytes and not by those that find room is a stop beside the ring.
+  // A byte of the client. The main loop does not see a stop that has lost bytes, or whose state has:
+  // what stops by all bytes and not by those that find room is a stop beside the ring.
   void put(uint8_t byte, uint16_t now_ms) {
     has_parted_ = false;
     Rings* const its = rings();
@@ -127,8 +127,7 @@ class Pipe {
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
 
-  // A stop of which the main loop gets no byte. `only_running`: it stops what runs, if anything
-  // does.
+  // A stop of which the main loop gets no byte. `only_running`: it stops what runs, if anything does.
   void stop(bool only_running = false) { (only_running ? silent_stops_ : stops_).add(); }
 
   // The next byte for the client.
@@ -195,13 +194,13 @@ class Pipe {
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_key_;
-  bool has_parted_;       // the radio's: nothing has come since
+  bool has_parted_;  // the radio's: nothing has come since
   uint32_t put_;          // the radio's: what has found room in all, of bytes and partings
   uint32_t stop_at_;      // how much of that ends with the last stop
   uint32_t run_stop_at_;  // or with the last one for what runs
   uint32_t taken_;        // the main loop's: how much it has taken
-  StopFinder all_;        // in all bytes of the client
-  StopFinder passed_;     // in those that found room
+  StopFinder all_;     // in all bytes of the client
+  StopFinder passed_;  // in those that found room
   Tally stops_;
   Tally silent_stops_;
   Tally lost_;

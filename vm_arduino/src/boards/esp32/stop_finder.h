@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 #include "../../link/key_sequence.h"
-#include "../../link/stop_sequence.h"
 #include "../../link/typed_stop.h"
+#include "../../link/stop_sequence.h"
 
 namespace tiniscript {
 
@@ -39,7 +39,9 @@ class StopFinder {
   }
 
   // Whether what has come of a line stops what runs, if silence follows.
-  bool is_at_stop() const { return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed()); }
+  bool is_at_stop() const {
+    return line_ == Line::kHeld || (mode_ != Mode::kFrame && is_typed());
+  }
 
  private:
   enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };

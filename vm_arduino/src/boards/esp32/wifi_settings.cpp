@@ -47,8 +47,7 @@ struct Settings {
 
 // Why the network has sent the robot away: only these say that the password is another one. The
 // core tells them as "disconnected".
-constexpr uint8_t kRefusals[] = {15, 202, 203,
-                                 204};  // 4-way handshake, authentication, association
+constexpr uint8_t kRefusals[] = {15, 202, 203, 204};  // 4-way handshake, authentication, association
 
 // The core's task writes these two.
 uint8_t reason;      // the last one; 0 since a network was set, or has let the robot in
@@ -165,7 +164,7 @@ void join_again(wl_status_t status) {
 }
 
 // Whether the time has come for the next try, which then counts as made.
-bool take_try() {
+bool begin_try() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (now_ms - tried_ms < kJoinAgainMs) return false;
   tried_ms = now_ms;
@@ -209,11 +208,12 @@ void note_address(const IPAddress& found) {
 void wifi_load() {
   WiFi.onEvent(on_connected, ARDUINO_EVENT_WIFI_STA_CONNECTED);
   WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
-  WiFi.persistent(false);        // the core would keep the password a second time
+  WiFi.persistent(false);  // the core would keep the password a second time
   WiFi.setAutoReconnect(false);  // it would scan without a pause, beside Bluetooth: we try again
   kept.load();
   Settings its = kept.now();
-  if (count_restart() && its.mode() != WifiMode::kOff) {
+  const bool has_restarted_too_often = count_restart();
+  if (has_restarted_too_often && its.mode() != WifiMode::kOff) {
     its.kept_mode |= kRests;
     if (kept.keep(its) != Answer::kOk) kept.use(its);
   }
@@ -227,7 +227,7 @@ bool wifi_turn() {
   if (used.mode() == WifiMode::kOff || used.rests()) return false;
   if (is_young && static_cast<uint32_t>(millis()) - began_ms >= kYoungMs) set_young(false, 0);
   if (used.mode() == WifiMode::kAccessPoint) {
-    if (!is_host && take_try()) host();
+    if (!is_host && begin_try()) host();
     if (!is_host) return false;
     announce();
     note_address(WiFi.softAPIP());
@@ -243,7 +243,7 @@ bool wifi_turn() {
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
   const bool is_sent_away = status == WL_CONNECT_FAILED || is_refused();
   set_state(is_sent_away ? WifiState::kRefused : WifiState::kSearching);
-  if (!is_joined && take_try()) join_again(status);
+  if (!is_joined && begin_try()) join_again(status);
   return false;
 }
 
