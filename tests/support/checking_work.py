@@ -1,8 +1,9 @@
-"""How much work the check of a text is."""
+"""How much work something is, and the check of a text."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from types import FrameType
 
 from tiniscript import robots
@@ -11,8 +12,8 @@ from tiniscript.library.compiling import compile_source
 ROBOT = robots.load("tinibot")
 
 
-def calls_of_check(text: str) -> int:
-    """Return how many calls, of Python's functions and C's, the check of a text makes."""
+def count_calls(act: Callable[[], object]) -> int:
+    """Return how many calls, of Python's functions and C's, something makes."""
     calls = 0
 
     def count(frame: FrameType, event: str, what: object) -> None:
@@ -22,7 +23,12 @@ def calls_of_check(text: str) -> int:
     before = sys.getprofile()
     sys.setprofile(count)
     try:
-        compile_source(text.encode(), ROBOT, "prog.ts", is_strict=False)
+        act()
     finally:
         sys.setprofile(before)
     return calls
+
+
+def calls_of_check(text: str) -> int:
+    """Return how many calls the check of a text makes."""
+    return count_calls(lambda: compile_source(text.encode(), ROBOT, "prog.ts", is_strict=False))

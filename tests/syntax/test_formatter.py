@@ -7,13 +7,13 @@ layout with comments, empty lines and empty instructions wherever the language a
 from __future__ import annotations
 
 import random
-import sys
 
 import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.interpreter import Kit as OracleKit
 from tests.oracle.programs import WIDE_KIT, broken, program
+from tests.support.checking_work import count_calls
 from tiniscript import Compilation, compile_text
 from tiniscript.base import kit
 from tiniscript.base.source import Source
@@ -299,19 +299,7 @@ def test_work_grows_with_the_text_and_no_faster(unit: str) -> None:
 
     def calls(size: int) -> int:
         source = Source(unit * (size // len(unit)))
-        count = 0
-
-        def called(_frame: object, event: str, _argument: object) -> None:
-            nonlocal count
-            count += event in ("call", "c_call")
-
-        before = sys.getprofile()
-        sys.setprofile(called)
-        try:
-            format_source(source)
-        finally:
-            sys.setprofile(before)
-        return count
+        return count_calls(lambda: format_source(source))
 
     assert calls(40_000) < 5 * calls(10_000)
 
