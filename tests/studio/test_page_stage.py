@@ -259,8 +259,59 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     assert page.locator("html[data-big]").count()  # whoever looks at the robot leaves it so
     page.wait_for_timeout(AFTER_RUN_MS)
     assert page.evaluate(CUT) == cut, "what was seen before the run is seen"
-    page.hover("#blocks")
+    page.hover("#views")
     hears(page, lambda: place() == whole, "as before")
+    page.click("#view_text")
+
+
+def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
+    """However the mouse comes there. Once it lets go, or rests on no block, there is the room
+    again."""
+    page.select_option("#world", "free")
+    write(page, HATS)
+    page.click("#view_blocks")
+    shown(page)
+    canvas = page.locator(PROGRAM)
+    name = canvas.locator("> .blocklyDraggable", has_text="each time").get_attribute("data-id")
+    hat = page.locator(f"#blocks [data-id='{name}']")  # which leaves the others once dragged
+
+    def scale() -> str:
+        return (canvas.get_attribute("transform") or "").rpartition("scale")[2]
+
+    def drag(right: float, down: float, steps: int) -> tuple[float, float]:
+        box = box_of(hat)
+        x, y = box["x"] + 20, box["y"] + 20
+        page.mouse.move(x, y, steps=steps)
+        page.evaluate(SETTLED)
+        page.mouse.down()
+        page.mouse.move(x + right, y + down, steps=4)
+        page.wait_for_timeout(AFTER_RUN_MS)
+        now = box_of(hat)
+        page.mouse.up()
+        shown(page)
+        return now["x"] - box["x"], now["y"] - box["y"]
+
+    drag(200, 60, 1)
+    whole, width = scale(), page.evaluate("blocks.clientWidth")
+    for steps, ends, right in (
+        (1, "click", -30),
+        (9, "Escape", 30),
+        (0, "click", -30),
+        (1, "Escape", 30),
+    ):
+        page.click("#run")
+        in_phase(page, "running")
+        hears(page, lambda: scale() != whole, "smaller beside the robot")
+        page.click("#stop") if ends == "click" else page.keyboard.press(ends)
+        in_phase(page, "ended")
+        page.wait_for_timeout(AFTER_RUN_MS)
+        if not steps:
+            page.hover("#views")
+            hears(page, lambda: page.evaluate("blocks.clientWidth") == width, "its room")
+            assert scale() == whole
+        assert drag(right, 20, steps or 1) == pytest.approx((right, 20), abs=4)
+        hears(page, lambda: page.evaluate("blocks.clientWidth") == width, "the room that it had")
+        hears(page, lambda: scale() == whole, "as before")
     page.click("#view_text")
 
 

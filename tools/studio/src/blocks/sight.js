@@ -3,6 +3,7 @@
 // robot leaves the blocks less room, after the run, too: what was seen before is seen there, however small.
 
 import * as Blockly from 'blockly/core';
+import { BLOCK_SELECTOR, isTouched } from '../page/pointer.js';
 
 const LEAST_SCALE = 0.4; // how small the blocks become at most
 const EDGE_UNITS = 12; // units around what is seen
@@ -137,7 +138,8 @@ export class RunFollower {
   }
 
   #restoreView() {
-    this.#endTimer = 0;
+    this.#endTimer = isTouched(BLOCK_SELECTOR) ? window.setTimeout(() => this.#restoreView(), RUN_END_MS) : 0;
+    if (this.#endTimer) return;
     this.#isLeftAlone = false;
     const viewBefore = this.#viewBefore;
     this.#viewBefore = null;

@@ -576,7 +576,9 @@ export class SimulatorPanel {
     const { phase } = this.#simulator, state = this.#shownState;
     this.#showReadings();
     this.#arena.draw(state);
-    document.documentElement.dataset['phase'] = phase;
+    const { dataset } = document.documentElement, isOver = dataset['phase'] === 'running' && phase === 'ended';
+    dataset['phase'] = phase;
+    if (isOver) this.#stage.runEnded();
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();
     this.#markPlaces(); // last: the editor has the page laid out, which is then done once

@@ -3,6 +3,7 @@
 import { makeButton, makeSvg } from '../page/made.js';
 import { element } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
+import { BLOCK_SELECTOR, isMouseOver, isTouched } from '../page/pointer.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./arena.js').Camera} Camera */
@@ -15,12 +16,14 @@ const CAMERA_PATHS = { // of a button
 };
 const FULL_PATH = 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5';
 const TYPING_SELECTOR = 'input, textarea, select, [contenteditable=true], dialog';
+const REST_MS = 200; // after which a mouse rests
 const { documentElement: root } = document;
 
 export class Stage {
   #page;
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
   #chosenCamera = '';
+  #restTimer = 0;
   #isScreenFilled = false; // the browser has filled the screen, too
   #cameraPath = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
   #cameraButton = makeButton('', () => this.#turnCamera(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#cameraPath));
@@ -49,12 +52,10 @@ export class Stage {
       this.#setFull(false); // by Escape, of which the page hears nothing else
       page.stop();
     });
-    // Whoever goes on writing has the room for it again; a finger once it has left what would go from under it.
+    // Whoever goes on writing has the room for it again: by keys at once, by a press once it is over, and by a mouse that rests.
     const writing = element('writing', HTMLElement);
     let isHeld = false;
-    writing.addEventListener('pointerenter', ({ pointerType, buttons }) => {
-      if (pointerType !== 'touch' && !buttons) this.#shrink();
-    });
+    writing.addEventListener('pointermove', () => this.#awaitRest());
     writing.addEventListener('pointerdown', () => {
       isHeld = true;
     }, { capture: true });
@@ -98,6 +99,19 @@ export class Stage {
   /** What stood there before a run of another robot or world is seen whole, as somebody first sees it. */
   showWhole() {
     this.#shrink();
+  }
+
+  /** A run is over: whoever has the mouse over the program goes on with it. */
+  runEnded() {
+    this.#awaitRest();
+  }
+
+  /** A mouse on its way to a block finds it where it was, and so does one that is over it. */
+  #awaitRest() {
+    clearTimeout(this.#restTimer);
+    this.#restTimer = window.setTimeout(() => {
+      if (isMouseOver('#writing') && !isTouched(BLOCK_SELECTOR)) this.#shrink();
+    }, REST_MS);
   }
 
   /** @param {boolean} isAsked also while something runs */
