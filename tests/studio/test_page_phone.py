@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import SETTLED, Pages, axe, checked, in_phase, shown, speak, turn, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    axe,
+    checked,
+    hears,
+    in_phase,
+    shown,
+    speak,
+    turn,
+    write,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -281,3 +292,38 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
     assert width() > 360
     page.evaluate("document.documentElement.dataset.phase = 'ended'")
     assert width() < 130
+
+
+@drawn
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language: str) -> None:
+    """The other screen is a tap away, and all is where it was once the run is over."""
+    speak(phone, language)
+    write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+
+    def boxes() -> dict[str, dict[str, float]]:
+        found = phone.locator("#bar button").evaluate_all(
+            "all => all.map((e) => [e.id, e.getBoundingClientRect().toJSON()])"
+        )
+        return dict(found)
+
+    before = boxes()
+    assert phone.locator("#bar button").evaluate_all(
+        "all => all.every((e) => e.scrollWidth <= e.clientWidth)"
+    )
+    phone.dblclick("#run")  # as children do
+    in_phase(phone, "running")
+    hears(phone, lambda: not phone.locator("#run").is_visible(), "STOP in its place")
+    for step in ("program", "robot", "paused"):
+        phone.click("#pause") if step == "paused" else turn(phone, step)
+        if step == "paused":
+            in_phase(phone, "paused")
+        now = boxes()
+        assert now["stop"]["width"] > 0.75 * 390
+        assert now["run"] == before["run"], "nothing moves"
+        assert axe(phone, within="#bar") == []
+    phone.click("#stop")
+    in_phase(phone, "ended")
+    turn(phone, "program")
+    assert boxes() == before
+    speak(phone, "en")

@@ -132,6 +132,7 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
             assert page.evaluate(AREA) > small
         page.locator("#lesson_steps button").last.click()
         assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA) == small
+        page.click("#stop")
     page.click("#run")
     in_phase(page, "running")
     page.click("#lesson_check")
