@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_robot import running, value
-from tests.support.studio import in_phase, write
+from tests.support.studio import hears, in_phase, shown, speak, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -130,6 +130,10 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 
 
+# What only who sees text is told: a word of the language, or a line by its number.
+CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
+
+
 @drawn
 def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
     """And whose motors they were. Nobody has to ask at each place."""
@@ -154,6 +158,33 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     page.keyboard.press("Home")
     page.click("#why")
     assert "Line 3" not in doing(page) and "motors" not in doing(page)
+
+
+@drawn
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
+    """At each moment of a run: no code, and no line; who sees text is told of that."""
+    loop = "LOOP(3)\nIF(DISTANCE > 3)\nF(0.4, 60) UNTIL(DISTANCE < 2)\nENDIF\nW(0.1)\nEND_LOOP"
+    begun(page, f"SI|WHEN(DISTANCE > 3)\n{loop}\nEND_WHEN\nW(2)\nSHOW(1 / (DISTANCE - DISTANCE))")
+    in_phase(page, "ended")
+    speak(page, language)
+    assert re.search(CODE, doing(page))
+    page.click("#view_blocks")
+    shown(page)
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    page.click("#why")
+    page.focus("#time_at")
+    told = set()
+    for _ in range(12):
+        hears(page, lambda: not re.search(CODE, doing(page)), "no code")
+        told.add(doing(page))
+        page.keyboard.press("ArrowRight")
+    assert any(re.search("(was|era) [\\d.]+", each) for each in told)
+    page.click("#why")
+    page.click("#view_text")
+    hears(page, lambda: re.search(CODE, doing(page)), "code")
+    speak(page, "en")
 
 
 @drawn

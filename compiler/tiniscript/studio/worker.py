@@ -67,6 +67,12 @@ def _on_blocks(message: Message, kit: Kit) -> Json:
     return {"message": said, "fix": fix, "spoken": blocks_of(codes_in([said, fix]), kit)}
 
 
+def _speak(fields: Json, data: bytes) -> Json:
+    """Return which block a code of a program is, if it is one."""
+    del data
+    return blocks_of([fields["code"]], checking.profile_of(fields["robot"]).kit)
+
+
 def _repair(fields: Json, data: bytes) -> Json:
     """Return what the button of the finding `which` does; nothing is no button."""
     changes = checking.repair(data, fields["robot"], fields["which"])
@@ -125,7 +131,7 @@ def _learn(fields: Json, data: bytes) -> Json:
 
 _HANDLERS: dict[str, Callable[[Json, bytes], Json]] = {
     "learn": _learn, "check": _check, "repair": _repair, "open": _open, "line": _line,
-    "blocks": _blocks, "text": _text, "rename": _rename,
+    "blocks": _blocks, "text": _text, "rename": _rename, "speak": _speak,
 }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
+import { areBlocksSeen, BlockNames } from '../blocks/names.js';
 import { sayOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
@@ -93,6 +94,7 @@ export class SimulatorPanel {
   #pauseButton = element('pause', HTMLButtonElement);
   #pushButton = element('push', HTMLButtonElement);
   #whyButton = element('why', HTMLButtonElement);
+  #blockNames;
   #isWhyAsked = false; // somebody, of each place at which they look
   #worldChoice;
   #worldDrawing;
@@ -104,6 +106,7 @@ export class SimulatorPanel {
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
+    this.#blockNames = new BlockNames(python, () => this.#show());
     this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, knownRun) => this.#playOpened(openedRun, knownRun) });
     this.#worldChoice = new WorldChoice(python, work, () => this.#enterWorld());
     this.#simulator = new Simulator(python, (state) => {
@@ -194,6 +197,9 @@ export class SimulatorPanel {
     }).observe(element('arena', HTMLCanvasElement));
     pageState.language.subscribe(() => this.#show());
     pageState.areWordsShown.subscribe(() => this.#show());
+    pageState.view.subscribe(() => {
+      if (pageState.language.value) this.#show();
+    });
     pageState.robotName.subscribe(() => this.begin());
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { // what runs is no longer what is seen
@@ -691,14 +697,14 @@ export class SimulatorPanel {
     if (phase === 'off' || !state) return this.#taskText() || text('robot_off');
     if (state.fault) {
       const faultText = faultSentence(state.fault);
-      const line = this.#shownRange()?.line;
-      return line ? text('say_fault', { line, what: faultText }) : text('robot_fault', { what: faultText });
+      const range = this.#shownRange();
+      return range ? this.#say('say_fault', 'say_fault_block', { line: range.line, what: faultText }, this.#partText(range)) : text('robot_fault', { what: faultText });
     }
     if (this.#wasStopped) return text('robot_stopped');
     const endText = state.score && boutEnd(state.score);
     if (endText) return endText;
-    const heldLine = state.is_held && this.#shownRange()?.line;
-    if (phase === 'paused' && heldLine) return text('robot_held', { line: heldLine });
+    const heldRange = state.is_held && this.#shownRange();
+    if (phase === 'paused' && heldRange) return this.#say('robot_held', 'robot_held_block', { line: heldRange.line }, this.#partText(heldRange));
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
@@ -709,11 +715,27 @@ export class SimulatorPanel {
     const seconds = secondsOf(state), range = this.#shownRange();
     const reasons = this.#isWhyAsked ? [this.#whyText(state)] : [];
     if (!range) return [text('looked_back', { seconds }), ...reasons].join('   ');
-    const { line, column, end_column } = range;
-    const partText = (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
-    const names = new Set(partText.toUpperCase().match(/\w+/g));
-    const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${name} ${value}`);
-    return [text('looked_back_at', { seconds, line, part: partText }), ...values, ...reasons].join('   ');
+    const part = this.#partText(range), names = new Set(part.toUpperCase().match(/\w+/g));
+    const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${this.#nameOf(name)} ${value}`);
+    return [this.#say('looked_back_at', 'looked_back_block', { seconds, line: range.line, part }, part), ...values, ...reasons].join('   ');
+  }
+
+  /** @param {import('../writing/editor.js').Range} range of the program that is seen */
+  #partText({ line, column, end_column }) {
+    return (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
+  }
+
+  /** Code as it looks in the program. @param {string} code */
+  #nameOf(code) {
+    return areBlocksSeen() ? this.#blockNames.nameOf(code.replace(/;.*/, ''), this.#shownRobotName) : code;
+  }
+
+  /**
+   * Says something of an instruction: of its block, where that is seen, or else of its line.
+   * @param {string} key @param {string} blockKey @param {Record<string, string | number>} values @param {string} code
+   */
+  #say(key, blockKey, values, code) {
+    return areBlocksSeen() ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
   }
 
   /** Why it was there: what was asked, with the values that the program had read, and whose motors they were. @param {RobotState} state */
@@ -725,13 +747,13 @@ export class SimulatorPanel {
     const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
     const joiner = new Intl.ListFormat(currentLanguage());
     const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
-      text('why_asks', { line, condition }),
-      conditionValues.length ? `${joiner.format(conditionValues.map(([name, value]) => text('why_value', { name, value })))}.` : '',
+      this.#say('why_asks', 'why_asks_block', { line, condition }, condition),
+      conditionValues.length ? `${joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))}.` : '',
       isTrue === null ? '' : text(isTrue ? 'why_yes' : 'why_no'),
     ]).filter(Boolean);
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
     const task = driver === null ? undefined : tasks.find(({ has: hasOffset }) => hasOffset(driver));
-    if (driver !== null && tasks.length) sentences.push(task ? text('why_task', { line: task.line }) : text('why_main'));
+    if (driver !== null && tasks.length) sentences.push(task ? this.#say('why_task', 'why_task_block', { line: task.line }, run.origin.text.split('\n')[task.line - 1]?.replace(/^.*\|/, '') ?? '') : text('why_main'));
     return sentences.join(' ') || text('why_nothing');
   }
 
