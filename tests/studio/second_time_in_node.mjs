@@ -1745,7 +1745,7 @@ const PARTS = {
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
         older: () => {
           page.byId('my_programs').click();
-          chance.of([...page.byId('versions').children, null])?.children.at(-1).click();
+          chance.of([...page.byId('versions').children, null])?.children[0].click();
         },
         names: () => {
           page.byId('program_name').value = `name ${(count += 1)}`;

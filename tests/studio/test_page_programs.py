@@ -269,7 +269,7 @@ def test_the_window_opens_on_programs(page: Page) -> None:
         page.click("#my_programs")
         page.keyboard.press("Escape")
     page.click("#my_programs")
-    tiles = page.locator("#versions button")
+    tiles = page.locator("#versions button:not(.delete)")
     assert tiles.count() == 3 and tiles.first.get_attribute("id") == "new"
     pictures = [tile.locator("rect").count() for tile in tiles.all()[1:]]
     assert pictures == [2, 1]  # a bar for each instruction
@@ -369,7 +369,7 @@ def test_earlier_programs_come_back(page: Page) -> None:
     assert opened(page) == ["SI|F(3, 30)", "SI|F(2, 20)", "SI|F(1, 10)"]
     rows = page.locator("#versions li")
     assert rows.locator("svg").count() == 4
-    rows.filter(has_text="SI|F(1, 10)").get_by_role("button").click()
+    rows.filter(has_text="SI|F(1, 10)").get_by_role("button").first.click()
     noted(page, "Opened: the program of")
     checked(page)
     assert content(page) == "SI|F(1, 10)" and page.input_value("#robot") == "tinibot"
@@ -377,6 +377,58 @@ def test_earlier_programs_come_back(page: Page) -> None:
     page.keyboard.press("Control+z")
     checked(page)
     assert content(page) == "SI|F(3, 30)"
+
+
+SAME = (
+    "SI|F(1, 10);\nB(2, 20);",
+    "SI|F(1, 10)\nB(2, 20)",
+    "SI|F(1,10)\n\n  B( 2,20 ) ;\n",
+)
+OTHER = ("SI|F(1, 10)\nB(2, 2 0)", "SI|F(1, 10) // B(2, 20)", "SI|F(1, 10)\n// B(2, 20)")
+
+
+def test_a_program_is_kept_once_however_it_is_written(page: Page) -> None:
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+    for text in SAME:
+        write(page, text)
+        page.click("#my_programs")
+        assert len(opened(page)) == 1
+        page.keyboard.press("Escape")
+    for count, text in enumerate(OTHER, 2):
+        write(page, text)
+        page.click("#my_programs")
+        assert len(opened(page)) == count, text
+        page.keyboard.press("Escape")
+
+
+def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
+    """All but the one in the editor, which would come again by itself."""
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+    texts = [f"SI|F({seconds}, 10)" for seconds in range(1, 5)]
+    for text in texts:
+        write(page, text)
+        page.click("#my_programs")
+        page.keyboard.press("Escape")
+    page.click("#my_programs")
+    rows = page.locator("#versions li:not(:has(#new))")
+    for at in (0, 2, 3, 1):
+        title = texts[::-1][at]
+        assert opened(page) == texts[::-1]
+        delete = rows.nth(at).get_by_role("button", name=f"Delete {title}")
+        assert delete.count() == (at > 0)
+        if not at:
+            continue
+        delete.click()
+        assert opened(page) == [each for each in texts[::-1] if each != title]
+        assert axe(page, within="#programs") == []
+        page.keyboard.press("Enter")  # it has the focus, where the program was
+    rows.nth(2).locator(".delete").click()
+    page.keyboard.press("Escape")
+    page.reload()
+    checked(page)
+    page.click("#my_programs")
+    assert opened(page) == [texts[3], texts[2], texts[0]]
+    page.keyboard.press("Escape")
 
 
 def test_no_more_is_kept_than_has_room(page: Page) -> None:

@@ -14,7 +14,7 @@ import { isShippedProgram } from '../start/beginnings.js';
 import { showProgramInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
-import { storeVersion, MOST_CHARACTERS, versionTitle, loadVersions } from './versions.js';
+import { deleteVersion, isSameProgram, loadVersions, MOST_CHARACTERS, restoreVersion, storeVersion, versionTitle } from './versions.js';
 import { makeThumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { storeWork } from './work.js';
@@ -216,6 +216,17 @@ export class Programs {
     }
   }
 
+  /** A program goes, and can be brought back until the window is opened again. @param {Version} version @param {HTMLElement} row its place */
+  #deleteVersion(version, row) {
+    deleteVersion(version);
+    const undoButton = makeButton('undo', () => {
+      if (!restoreVersion(version)) pageState.note.set(text('not_kept'));
+      this.#showVersions();
+    });
+    row.replaceChildren(undoButton);
+    undoButton.focus();
+  }
+
   #showVersions() {
     const language = currentLanguage();
     const timeFormat = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
@@ -231,7 +242,13 @@ export class Programs {
         pageState.note.set(text('opened_again', { time: timeText }));
       }, makeThumbnail(version.text, version.robot), makeElement('strong', '', title), timeElement);
       openButton.title = `${title}, ${robotLabel}`;
-      return makeElement('li', '', openButton);
+      const row = makeElement('li', '', openButton);
+      if (isSameProgram(version, this.#page.work)) return row; // it is in the editor, and would be kept again
+      const deleteButton = makeButton('', () => this.#deleteVersion(version, row), '×');
+      deleteButton.className = 'delete';
+      deleteButton.title = deleteButton.ariaLabel = text('program_delete', { name: title });
+      row.append(deleteButton);
+      return row;
     });
     const versionList = element('versions', HTMLElement);
     versionList.replaceChildren(...[...versionList.children].slice(0, 1), ...rows);

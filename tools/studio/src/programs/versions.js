@@ -30,11 +30,36 @@ export function loadVersions() {
 export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
-  const otherVersions = loadVersions().filter((version) => version.text !== text || version.robot !== robotName);
-  const newVersions = [{ text, robot: robotName, name, at_ms }, ...otherVersions].slice(0, MOST_VERSIONS);
+  const otherVersions = loadVersions().filter((version) => !isSameProgram(version, { text, robot: robotName }));
+  return storeAll([{ text, robot: robotName, name, at_ms }, ...otherVersions]);
+}
+
+/** @param {Version} version */
+export function deleteVersion({ text, robot: robotName }) {
+  storeAll(loadVersions().filter((version) => version.text !== text || version.robot !== robotName));
+}
+
+/** Keeps a program again that was deleted, where it was. @param {Version} version @returns {boolean} whether it is kept */
+export function restoreVersion(version) {
+  return storeAll([...loadVersions(), version].sort((first, second) => second.at_ms - first.at_ms));
+}
+
+/** @param {Version[]} versions the newest first @returns {boolean} whether any is kept */
+function storeAll(versions) {
+  const newVersions = versions.slice(0, MOST_VERSIONS);
   while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
-  while (newVersions.length && !storeText(STORAGE_KEY, JSON.stringify(newVersions))) newVersions.pop();
+  while (!storeText(STORAGE_KEY, JSON.stringify(newVersions)) && newVersions.length) newVersions.pop();
   return newVersions.length > 0;
+}
+
+/** Whether two programs differ in nothing that a robot does. @param {{text: string, robot: string}} first @param {{text: string, robot: string}} second */
+export function isSameProgram(first, second) {
+  return first.robot === second.robot && essenceOf(first.text) === essenceOf(second.text);
+}
+
+/** A program without what changes nothing: spaces, empty lines, and what ends a line. @param {string} text */
+function essenceOf(text) {
+  return text.replace(/[;\s]*(?:\n\s*|$)/g, '\n').replace(/[ \t]+/g, ' ').replace(/ ?([^\w ]) ?/g, '$1').trim();
 }
 
 /**
