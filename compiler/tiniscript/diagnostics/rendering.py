@@ -32,6 +32,8 @@ VALUE_CHARACTERS = 60  # of a program's text within a message
 FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
 TAB = "    "
 
+_LINE_GAPS = frozenset(("line", "row", "here", "first", "last", "out", "rest"))
+_END_WORD = re.compile(r"\bEND(?:_|IF\b)")
 _GAP = re.compile(r"\{(@?)(\w+)\}")
 _TERM_WORD = re.compile(r"[A-Za-z_]+")
 _RED, _YELLOW, _DIM, _PLAIN = "\033[1;31m", "\033[1;33m", "\033[2m", "\033[0m"
@@ -61,8 +63,12 @@ _COPIED_GAPS = frozenset(("fix", "right", "whole", "made", "note", "after", "beg
 _SUPPLEMENT_GAPS = ("lost", "sample", "samples")
 
 
-def message(diagnostic: Diagnostic, source: Source, language: str) -> Message:
-    """Return what is said of a diagnostic, and where."""
+def message(
+    diagnostic: Diagnostic, source: Source, language: str, *, is_on_blocks: bool = False
+) -> Message:
+    """Return what is said of a diagnostic, and where; to who sees blocks, without what these have
+    not, if there is such a text.
+    """
     number = diagnostic.code.number
     start, end = _shown_range(source.text, diagnostic.span)
     line, column = source.position(start)
@@ -70,12 +76,12 @@ def message(diagnostic: Diagnostic, source: Source, language: str) -> Message:
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
-    fix = _format_text(f"{number}/try", diagnostic.values, language)
+    fix = _format_text(f"{number}/try", diagnostic.values, language, is_on_blocks)
     for gap in _SECONDARY_GAPS:
         if diagnostic.values.get(gap):
             values = {**diagnostic.values, "made": diagnostic.values.get("fix", ""), "fix": fix}
             fix = _format_text(f"label/{gap}", values, language)
-    message_text = _format_text(f"{number}/message", diagnostic.values, language)
+    message_text = _format_text(f"{number}/message", diagnostic.values, language, is_on_blocks)
     for gap in _SUPPLEMENT_GAPS:
         if diagnostic.values.get(gap):
             sentence = message_text if message_text[-1:] in (".", "?", "!") else message_text + "."
@@ -176,17 +182,34 @@ def names_found(diagnostic: Diagnostic) -> bool:
     return ("", "found") in _GAP.findall(template)
 
 
-def _first_usable_template(key: str, values: Mapping[str, str], language: str) -> str:
+def _first_usable_template(
+    key: str, values: Mapping[str, str], language: str, is_on_blocks: bool = False
+) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
-    template = ""
-    for template in _templates(key, language):
-        if all(values.get(name) for _, name in _GAP.findall(template)):
-            break
-    return template
+    templates = [*_templates(key, language)]
+    usable = [
+        template
+        for template in templates
+        if all(values.get(name) for _, name in _GAP.findall(template))
+    ]
+    if is_on_blocks:
+        usable = [each for each in usable if not _needs_text(each, values)] or usable
+    return usable[0] if usable else templates[-1] if templates else ""
 
 
-def _format_text(key: str, values: Mapping[str, str], language: str) -> str:
-    template = _first_usable_template(key, values, language)
+def _needs_text(template: str, values: Mapping[str, str]) -> bool:
+    """Return whether a text names a line, or the end of a block: blocks have none of them."""
+    names = [name for _, name in _GAP.findall(template)]
+    has_line = any(name in _LINE_GAPS and values[name].isdigit() for name in names)
+    return has_line or any(
+        _END_WORD.search(part) for part in (template, *(values[name] for name in names))
+    )
+
+
+def _format_text(
+    key: str, values: Mapping[str, str], language: str, is_on_blocks: bool = False
+) -> str:
+    template = _first_usable_template(key, values, language, is_on_blocks)
 
     def fill_gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in _COPIED_GAPS else VALUE_CHARACTERS

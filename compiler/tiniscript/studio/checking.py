@@ -42,6 +42,7 @@ class Finding(NamedTuple):
 
     message: Message
     may_repair: bool
+    on_blocks: Message
 
 
 class Variable(NamedTuple):
@@ -182,7 +183,11 @@ def _findings(compilation: Compilation, language: str) -> tuple[Finding, ...]:
         k for k, diagnostic in enumerate(compilation.diagnostics) if edits_of(diagnostic)
     ][:MOST_OFFERS]
     return tuple(
-        Finding(message(diagnostic, compilation.source, language), k in repairable_indexes)
+        Finding(
+            message(diagnostic, compilation.source, language),
+            k in repairable_indexes,
+            message(diagnostic, compilation.source, language, is_on_blocks=True),
+        )
         for k, diagnostic in enumerate(compilation.diagnostics)
     )
 

@@ -45,7 +45,7 @@ def _check(fields: Json, data: bytes) -> Json:
             {
                 **finding.message._asdict(),
                 "may_repair": finding.may_repair,
-                "on_blocks": _on_blocks(finding.message, kit),
+                "on_blocks": _on_blocks(finding.on_blocks, kit),
             }
             for finding in result.findings
         ],
