@@ -135,8 +135,8 @@ def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> 
 def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|BEEP(0.2, 440);\nS;\n")
-    touch(page, "beep")  # which shows nothing: the robot is not seen
-    page.wait_for_timeout(200)
+    touch(page, "beep")  # which stays at the program
+    page.locator("html[data-peek]").wait_for(state="attached")
     assert page.locator("html[data-half=program]").count() == 1
     if way == "keys":
         page.keyboard.press("Shift+Enter")
@@ -145,6 +145,38 @@ def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) ->
         page.locator(".blocklyMenuItem", has_text="Try this block alone").click()
     page.locator("html[data-half=robot]").wait_for(state="attached")
     assert [each.split()[0] for each in did(page) if "BEEP" in each] == ["BEEP"]
+
+
+def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages) -> None:
+    """The robot goes on where it is; no block moves, and what is below is touched through it."""
+    page = pages.open(viewport={"width": 390, "height": 844})
+    start(page, "SI|F(1, 60);\n")
+    before = box_of(block(page, "forward"))
+    poses = []
+    for _ in range(3):
+        touch(page, "forward")
+        page.locator("html[data-peek]").wait_for(state="attached")
+        assert page.locator("#arena").is_visible()
+        assert page.locator("#side button:visible, #side select:visible").count() == 0
+        assert box_of(block(page, "forward")) == before
+        box = page.locator("#side").bounding_box()
+        assert box is not None
+        assert page.evaluate(
+            "([x, y]) => document.elementFromPoint(x, y).closest('#blocks') !== null",
+            [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2],
+        )
+        in_phase(page, "running")
+        in_phase(page, "ended")
+        poses.append(page.locator("#where").text_content())
+    assert len(set(poses)) == 3
+    page.locator("html:not([data-peek])").wait_for(state="attached")
+    assert not page.locator("#arena").is_visible()
+    page.click("#other")
+    page.click("#side_real")
+    page.click("#other")
+    touch(page, "forward")
+    page.evaluate(SETTLED)
+    assert page.locator("html[data-peek]").count() == 0
 
 
 def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:

@@ -242,13 +242,13 @@ export class SimulatorPanel {
   /**
    * Runs a part of the program alone; resolves when it is over. A run of the whole program goes on.
    * @param {string} programText
-   * @param {boolean} isAsked whoever only touched a block wants the virtual robot to be seen already
+   * @param {boolean} isAsked whoever only touched a block stays at the program
    * @param {() => void} showArena has it seen
    */
   async tryAlone(programText, isAsked, showArena) {
-    const isSeen = element('arena', HTMLCanvasElement).checkVisibility();
-    if ((this.#isDriving && !this.#isAlone) || this.#isWaiting || !(isSeen || isAsked)) return;
-    if (!isSeen) showArena();
+    const isPeek = !isAsked && this.#stage.canPeek, isSeen = !this.#stage.canPeek && element('arena', HTMLCanvasElement).checkVisibility();
+    if ((this.#isDriving && !this.#isAlone) || this.#isWaiting || !(isSeen || isAsked || isPeek)) return;
+    if (!isSeen && !isPeek) showArena();
     const startNumber = ++this.#startCount;
     const request = { do: 'check', robot: pageState.robotName.value, language: pageState.language.value };
     const checkResult = /** @type {CheckResult} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
@@ -258,8 +258,10 @@ export class SimulatorPanel {
       pageState.note.set(text('alone_wrong', { why: mistake ? sayOnBlocks(mistake).message : '' })); // it is a block that is tried alone
       return;
     }
+    const endPeek = isPeek ? this.#stage.peek() : () => {};
     await this.#start(false, null, 0, null, { text: programText, checked: checkResult });
     if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
+    endPeek();
   }
 
   /** @param {number} hertz of a tone that somebody chooses */

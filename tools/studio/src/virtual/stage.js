@@ -16,6 +16,7 @@ const CAMERA_PATHS = { // of a button
 };
 const FULL_PATH = 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5';
 const TYPING_SELECTOR = 'input, textarea, select, [contenteditable=true], dialog';
+const PEEK_MS = 1500; // for which a phone shows where the robot has come to
 const REST_MS = 200; // after which a mouse rests
 const { documentElement: root } = document;
 
@@ -24,6 +25,7 @@ export class Stage {
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
   #chosenCamera = '';
   #restTimer = 0;
+  #peekCount = 0;
   #isScreenFilled = false; // the browser has filled the screen, too
   #cameraPath = makeSvg('path', { fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linejoin': 'round' });
   #cameraButton = makeButton('', () => this.#turnCamera(), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' }, this.#cameraPath));
@@ -96,6 +98,23 @@ export class Stage {
     this.#show();
   }
 
+  /** Whether a phone shows the program, beside which a virtual robot can be seen. */
+  get canPeek() {
+    return 'phone' in root.dataset && root.dataset['half'] === 'program' && root.dataset['side'] !== 'side_real';
+  }
+
+  /** Shows the robot in a corner of the program. @returns {() => void} what ends that, a moment later */
+  peek() {
+    const peekNumber = ++this.#peekCount;
+    root.dataset['peek'] = '';
+    this.#show();
+    return () => setTimeout(() => {
+      if (peekNumber !== this.#peekCount) return; // another block is tried
+      delete root.dataset['peek'];
+      this.#show();
+    }, PEEK_MS);
+  }
+
   /** What stood there before a run of another robot or world is seen whole, as somebody first sees it. */
   showWhole() {
     this.#shrink();
@@ -142,7 +161,7 @@ export class Stage {
 
   /** @returns {Camera} */
   get #currentCamera() {
-    return this.#chosenCamera || (this.isFull || 'big' in root.dataset ? 'near' : 'whole');
+    return this.#chosenCamera || (this.isFull || 'big' in root.dataset || 'peek' in root.dataset ? 'near' : 'whole');
   }
 
   #show() {
