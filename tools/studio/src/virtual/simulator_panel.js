@@ -360,7 +360,7 @@ export class SimulatorPanel {
   #lookBack() {
     if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#arena.showBubble('', 0);
-    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.showsUntilSeen);
+    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shown);
     this.#show();
   }
 
@@ -372,7 +372,7 @@ export class SimulatorPanel {
       this.#drawTrack(this.#newestRun);
     }
     this.#timeLine.leave();
-    this.#keepShownValues(this.#shownValues, this.#timeLine.showsUntilSeen);
+    this.#keepShownValues(this.#shownValues, this.#timeLine.shown);
     this.#show();
   }
 
@@ -573,9 +573,9 @@ export class SimulatorPanel {
   }
 
   #show() {
-    const { phase } = this.#simulator, state = this.#shownState;
+    const { phase } = this.#simulator;
+    this.#arena.draw(this.#shownState); // first: writing on a canvas has the browser compute the style that changes made stale
     this.#showReadings();
-    this.#arena.draw(state);
     document.documentElement.dataset['phase'] = phase;
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();
