@@ -386,8 +386,11 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     ana.types("80", "95")
     ana.sends()
     luz.types("B(1", "B(7")  # not sent yet
+    [seen] = school.teaches("class")["groups"]
+    before = school.teaches("class_text", group=seen["key"])
     for _ in range(2):
         school.crashes()
+        assert school.teaches("class_text", group=seen["key"]) == before
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
