@@ -772,9 +772,11 @@ class Usage:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        token_indexes = (
-            range(len(tokens)) if word in VERSION_OF_WORD else _words_as_names(tokens, word, is_def)
-        )
+        partners = {end if word == head else head for head, end in BLOCK_ENDS.items()
+                    if word in (head, end)}  # fmt: skip
+        has_block = any(token.text in partners for token in tokens)
+        is_older = word in VERSION_OF_WORD and not has_block  # the program than the word
+        token_indexes = range(len(tokens)) if is_older else _words_as_names(tokens, word, is_def)
         return [
             tokens[k].span for k in token_indexes
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
