@@ -22,7 +22,7 @@ from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import BAUDS, PortFacts, diagnose_line
-from tiniscript.doctor.robot import WireRobot
+from tiniscript.doctor.robot import WireRobot, hello_values
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     LINK_FAULTS,
@@ -188,6 +188,19 @@ def test_a_robot_that_restarts_by_itself_or_by_its_watchdog() -> None:
     end = Firmware()
     end.restarts_ms, end.resets = 700, "WATCHDOG"
     assert "hung" in causes(end)
+
+
+@pytest.mark.parametrize("restarts_ms", [1500, 4000, 9000])
+def test_each_restart_counts_once(restarts_ms: int) -> None:
+    end = Firmware()
+    robot = WireRobot(SimulatedWire(end), 4711, KIT)
+    end.restarts_ms, end.resets = restarts_ms, "POWER"
+    hello = robot.hello()
+    first = hello_values(hello)
+    assert hello is not None and first is not None
+    (finding,) = examine(robot, hello, Expectations(KIT, "tinibot", NAMES.get), 20_000)
+    last = end.hello["nonce"]
+    assert isinstance(last, int) and finding.values["count"] == str(last - first.nonce)
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])

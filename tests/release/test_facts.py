@@ -140,10 +140,14 @@ def test_an_address_has_one_place() -> None:
     assert facts.with_address(once, URL) == once
 
 
+@pytest.mark.parametrize("is_tagged", [False, True])
 def test_an_address_is_kept_where_it_is_another_one(
-    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_tagged: bool
 ) -> None:
+    """What is ready to be released still is."""
     monkeypatch.setattr(release, "ROOT", clone)
+    if is_tagged:
+        release.tag(clone, VERSION)
     for url, commits in ((URL, 1), ("https://example.org/other", 2)):
         scratch = tmp_path / str(commits)
         scratch.mkdir()
@@ -152,6 +156,7 @@ def test_an_address_is_kept_where_it_is_another_one(
                               capture_output=True, check=True)  # fmt: skip
         assert len(kept.stdout.splitlines()) == commits
         assert made.address == url
+        assert list(facts.complaints(made.root)) == []
 
 
 def test_this_repository_agrees_with_itself() -> None:
