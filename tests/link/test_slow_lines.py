@@ -222,7 +222,7 @@ def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> No
     is_large=st.booleans(),
     rate=st.integers(100, 11_520),
     late_ms=st.integers(0, 500),
-    lost=st.floats(0, 0.01),
+    lost=st.floats(0, 0.008),  # more than that may take all tries of a long frame
     code_bytes=st.integers(250, 380),
     seed=st.integers(0, 1000),
 )
