@@ -38,7 +38,7 @@ def trace(text: str) -> Iterator[str]:
         if not any(each.is_mistake for each in diagnostics):
             break
         wrong_text = WrongText(
-            Source(text_left), diagnostics, lambda each: analyze(each, kit).diagnostics, kit
+            Source(text_left), diagnostics, lambda text: analyze(text, kit).diagnostics, kit
         )
         findings = ((reader, reader(wrong_text)) for reader in READERS)
         reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
@@ -109,8 +109,8 @@ def _tokens_text(tokens: Iterable[Lexeme]) -> str:
 
 
 def _told_text(diagnostic: Diagnostic) -> str:
-    found = diagnostic.values.get("found", "")
-    return f"{diagnostic.code.number} {found}".strip()
+    value = diagnostic.values.get("found", "")
+    return f"{diagnostic.code.number} {value}".strip()
 
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:

@@ -146,11 +146,11 @@ def test_the_link_of_an_example_conforms(
     program = elf(made, "Link", "uno", shared(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
-        done = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
-        assert done.code == 0, done.out + done.err
-        done = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
+        result = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
+        assert result.code == 0, result.out + result.err
+        result = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
                        "--no-save")  # fmt: skip
-        assert "1 + 1 2" in done.out, done.out + done.err
+        assert "1 + 1 2" in result.out, result.out + result.err
 
 
 def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ WRITERS = [
 ]
 
 
-@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda each: str(each))
+@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda value: str(value))
 def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
@@ -49,8 +49,8 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     assert target.read_bytes() == made
     for content in FOREIGN:
         target.write_bytes(content)
-        for lang, said in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
-            tsc(*words, target, "--lang", lang).gives(2, said, option)
+        for lang, expected in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
+            tsc(*words, target, "--lang", lang).gives(2, expected, option)
         assert target.read_bytes() == content
 
 
@@ -123,9 +123,9 @@ def test_nobody_else_reads_the_programs_in_the_cache(
     maps.chmod(0o755)  # of an older tsc
     (tmp_path / "p.ts").write_text("SI|S // mine")
     assert inside("compile", tmp_path / "p.ts").code == 0
-    (kept,) = maps.iterdir()
-    assert "mine" in kept.read_text()
-    assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, kept)] == [0o700, 0o600]
+    (file,) = maps.iterdir()
+    assert "mine" in file.read_text()
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, file)] == [0o700, 0o600]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")

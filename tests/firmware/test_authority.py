@@ -155,7 +155,7 @@ def test_no_challenge_is_a_tag() -> None:
         challenges.append(answer[3:])
     first, second = challenges
     times = range(table.robot.now_ms - 100, table.robot.now_ms + 100)
-    texts = [first + nonce + (each & 0xFFFF).to_bytes(2, "little") for each in times]
+    texts = [first + nonce + (time & 0xFFFF).to_bytes(2, "little") for time in times]
     assert [siphash(key.key, text + b"C") for text in texts].count(second) == 1
     assert second not in [siphash(key.key, text) for text in texts]
 

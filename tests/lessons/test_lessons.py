@@ -88,15 +88,15 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     number = int(folder.name[:2])
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
-    found = blocks(page)
-    assert found[0].kind == "title"
-    assert found[0].rows[0][0] == f"{number}. {lesson.title(language)}"
-    assert sum(block.kind in ("title", "heading") for block in found) == HEADINGS
-    steps = [block for block in found if block.kind == "steps"]
+    page_blocks = blocks(page)
+    assert page_blocks[0].kind == "title"
+    assert page_blocks[0].rows[0][0] == f"{number}. {lesson.title(language)}"
+    assert sum(block.kind in ("title", "heading") for block in page_blocks) == HEADINGS
+    steps = [block for block in page_blocks if block.kind == "steps"]
     assert [
         block.first_number + k for block in steps for k in range(len(block.rows))
     ] == list(range(1, sum(len(block.rows) for block in steps) + 1))  # fmt: skip
-    for block in found:
+    for block in page_blocks:
         if block.kind == "table":  # an empty cell is a place to write: the sheet draws it
             assert {len(row) for row in block.rows} == {len(block.rows[0])}
     assert f"tsc lesson check {number} " in page
@@ -135,8 +135,8 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
     ]
     assert programs or who == catalogue.TEACHER
     for program in programs:
-        found = compile_source(program.encode(), robot, "page.ts", is_strict=True)
-        assert found.is_right, (program, found.diagnostics)
+        compilation = compile_source(program.encode(), robot, "page.ts", is_strict=True)
+        assert compilation.is_right, (program, compilation.diagnostics)
 
 
 @each

@@ -157,7 +157,7 @@ def check(seed: int) -> str:
     want = second(random.Random(seed), session, other.robot)
     assert did.what == want.what, f"seed {seed}\n{did.what}\nnot\n{want.what}"
     late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
-    assert all(abs(each) < LATER_MS for each in late), f"seed {seed} {late}"
+    assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"
     return "it runs" if "DoneEvent" in str(want) else "it stands"
 
 
@@ -243,8 +243,8 @@ def is_lost(wire: Wire) -> bool:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
 def test_a_session_is_as_a_fresh_one_whatever_it_has_seen(part: int) -> None:
-    found = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
-    assert found["it runs"] > 0, found
+    counts = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
+    assert counts["it runs"] > 0, counts
 
 
 if __name__ == "__main__":

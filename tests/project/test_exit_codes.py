@@ -194,11 +194,11 @@ class Stage:
 
     def clones(self, scratch: Path, *_: object) -> list[Clone]:
         self.step("git")
-        found = []
+        made_clones = []
         for number in (1, 2):
             (scratch / str(number)).mkdir()
-            found.append(Clone(scratch, scratch / str(number), "1", "", 0, number, False))
-        return found
+            made_clones.append(Clone(scratch, scratch / str(number), "1", "", 0, number, False))
+        return made_clones
 
     def make(self, name: str, clone: Clone) -> list[Path]:
         self.step(f"{name} {clone.seed}")

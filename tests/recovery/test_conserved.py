@@ -32,18 +32,18 @@ PLACES = (
 
 def units() -> list[tuple[str, str, float]]:
     """Return one word for each unit of the lexicons, which it is, and how much one is."""
-    found = {}
+    unit_of = {}
     for language in languages():
         for row in read_language_file(language, "lexicon.txt").split("\n"):
             if row.startswith("unit ") and row.split()[1] in ("s", "cm", "°", "%", "Hz"):
                 _, unit, scale = row.partition("|")[0].split()
-                found[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
-    return [(word, *its) for its, word in found.items()]
+                unit_of[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
+    return [(word, *its) for its, word in unit_of.items()]
 
 
 def numbers(text: str) -> list[tuple[float, str]]:
     """Return the numbers of a program with their signs, and the unit of each by its place."""
-    found = []
+    pairs = []
     for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
         before, after = text[: match.start()], text[match.end() :]
         own = next((unit for pattern, unit in PLACES if pattern.search(before)), None)
@@ -51,15 +51,15 @@ def numbers(text: str) -> list[tuple[float, str]]:
             way = re.match(r"(?i) ?(CM|DEG)\b", after)
             own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
         is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", before) is not None
-        found.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
-    return found
+        pairs.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
+    return pairs
 
 
 def is_kept(written: str, value: float, unit: str, made: str) -> bool:
     """Whether a program has a number with its sign and unit, or still as it was written."""
     return written in made or any(
-        abs(each - value) < 0.001 and (not own or not unit or own == unit)
-        for each, own in numbers(made)
+        abs(number - value) < 0.001 and (not own or not unit or own == unit)
+        for number, own in numbers(made)
     )
 
 
@@ -75,16 +75,16 @@ WRITTEN = [
 
 def variants(text: str) -> list[tuple[str, str, float, str]]:
     """Return a program with another sign or a unit at each of its numbers, and that number."""
-    found = []
+    texts = []
     for match in NUMBER.finditer(text):
         value = float(match[0])
         start, end = match.span()
         if text[:start].rstrip()[-1:] not in ("-", "+"):
-            found.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
+            texts.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
         for written, unit, scale in units():
             new = f"{text[:end]} {written}{text[end:]}"
-            found.append((new, f"{match[0]} {written}", value * scale, unit))
-    return found
+            texts.append((new, f"{match[0]} {written}", value * scale, unit))
+    return texts
 
 
 @pytest.mark.sampled("text", keep=15)

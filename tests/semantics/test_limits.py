@@ -66,9 +66,11 @@ def test_what_just_fits_and_what_does_not(
     assert fitting.is_right and fitting.image, [
         diagnostic.code.number for diagnostic in fitting.diagnostics
     ]
-    found = check_text(made(limit + 1), KIT)
-    assert {diagnostic.code for diagnostic in found.diagnostics if diagnostic.is_mistake} == {code}
-    assert found.diagnostics[0].values.get("limit", str(limit)) == str(limit)
+    compilation = check_text(made(limit + 1), KIT)
+    assert {diagnostic.code for diagnostic in compilation.diagnostics if diagnostic.is_mistake} == {
+        code
+    }
+    assert compilation.diagnostics[0].values.get("limit", str(limit)) == str(limit)
 
 
 def test_the_second_value_of_an_argument_lies_above_the_first() -> None:

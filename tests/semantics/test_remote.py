@@ -60,12 +60,12 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
     assert len(texts) > 300
 
     def images() -> list[tuple[bytes, bytes]]:
-        found = []
+        image_pairs = []
         for old in texts:
             made = compile_text(old.text, robots.load(old.robot).kit)
             plain = b"" if made.program is None else plain_code(made.program).code
-            found.append((made.image, plain if made.is_right else b""))
-        return found
+            image_pairs.append((made.image, plain if made.is_right else b""))
+        return image_pairs
 
     now = images()
     assert sum(map(bool, now)) > 300
@@ -126,8 +126,8 @@ def test_the_check_of_a_profile_says_that_it_has_no_room(
     path = tmp_path / "my.toml"
     profile = text.replace("[[kit.sensors]]", f"{own}[[kit.sensors]]", 1)
     path.write_text("\n".join([profile, *wired]), encoding="utf-8")
-    done = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
-    assert done.code == 0 and ("more than 8 sensors" in done.err) == is_told, done
+    result = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
+    assert result.code == 0 and ("more than 8 sensors" in result.err) == is_told, result
     header = (tmp_path / "own.h").read_text(encoding="utf-8")
     (hashes,) = re.findall(r"(?s)kDeviceHashes\[\].*?\};", header)
     count = hashes.count("0x")
@@ -263,10 +263,10 @@ def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
 
 def test_a_run_takes_their_readings(tsc: Tsc) -> None:
     text = "WHILE(NOT KEY_UP);SHOW(PAD_X);W(0.1);END_WHILE"
-    done = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
+    result = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
     want = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
-    assert done.out.split("\n")[:-1] == [
-        *(f"0 {each}" for each in want), "100 READ KEY_UP TRUE", "100 DONE",
+    assert result.out.split("\n")[:-1] == [
+        *(f"0 {row}" for row in want), "100 READ KEY_UP TRUE", "100 DONE",
     ]  # fmt: skip
     tsc("run", "-e", text, "--sensor", "PAD_X=101").gives(2, "-100 to 100")
     tsc("run", "-e", text, "--sensor", "KEY_UPP=TRUE").gives(2, "KEY_UP")
@@ -286,9 +286,9 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
     of = ("-e", text, "--robot", robot)
     for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
-        done = tsc(*sends, *of)
-        assert done.code == 1 and "TS319" in done.err + done.out
-        assert "line 2:" in done.err + done.out
+        result = tsc(*sends, *of)
+        assert result.code == 1 and "TS319" in result.err + result.out
+        assert "line 2:" in result.err + result.out
     for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
         assert tsc(*verb, *of).code == 0
     profile = robots.load(robot)

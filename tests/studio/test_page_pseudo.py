@@ -68,8 +68,8 @@ PLAIN = """() => {
 
 
 def _answer(route: Route) -> None:
-    said = route.fetch().json()
-    route.fulfill(body=json.dumps(pseudo(said)), content_type="application/json")
+    answer = route.fetch().json()
+    route.fulfill(body=json.dumps(pseudo(answer)), content_type="application/json")
 
 
 @pytest.mark.sampled(of="longer texts")

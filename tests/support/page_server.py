@@ -32,10 +32,10 @@ def ask(
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
     """Ask the server at `own`, a host and its port. A header that is None is left out."""
-    kept = {name: value for name, value in (headers or {}).items() if value is not None}
+    given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
     connection = HTTPConnection(own, timeout=HANGS_S)
     try:
-        connection.request(method, path, body, kept)
+        connection.request(method, path, body, given_headers)
         response = connection.getresponse()
         return response, response.read()
     finally:

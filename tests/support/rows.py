@@ -24,8 +24,8 @@ def go_through(
         except Exception as why:  # of any kind: the other rows are to be seen, too
             wrong[name(row)] = why
     if wrong:
-        said = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
-        raise AssertionError("\n\n".join(said)) from next(iter(wrong.values()))
+        failures = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
+        raise AssertionError("\n\n".join(failures)) from next(iter(wrong.values()))
 
 
 def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:

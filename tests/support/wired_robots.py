@@ -77,7 +77,7 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
         status_led=13,
     )
     names = list(kit.names)
-    labels = {each: {"robot": label, **dict.fromkeys(names, label)} for each in LANGUAGES}
+    labels = {language: {"robot": label, **dict.fromkeys(names, label)} for language in LANGUAGES}
     body = tinibot.body._replace(places={"D0": Place(0, 0, 0, "light")})
     return Robot("many", kit, board, body, labels)
 
