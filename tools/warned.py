@@ -46,7 +46,7 @@ def main(arguments: Iterable[str] | None = None) -> int:
     if not programs:
         sys.exit(f"{folder} has no programs (*.ts).")
     counts = Counter(number for program in programs for number in warnings_in(program))
-    numbers = [each.number for each in codes.CODES.values() if not each.is_mistake]
+    numbers = [code.number for code in codes.CODES.values() if not code.is_mistake]
     for number in sorted(numbers, key=lambda number: (counts[number], number)):
         print(f"{number} {counts[number]} of {len(programs)}")
     return 0

@@ -252,15 +252,15 @@ def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
     words = ("upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save")
     terminal = Terminal(*words, size=(100, 24), types=False)
-    seen = set()
+    states_shown = set()
     while terminal.take():
         text = "\n".join(terminal.lines())
         if text.count("running   SHOW 7") == 4:
-            seen.add("values")
+            states_shown.add("values")
         if text.count("running") == 4:
-            seen.add("running")
+            states_shown.add("running")
     assert terminal.end() == 0
-    assert seen == {"values", "running"}
+    assert states_shown == {"values", "running"}
     rows = list(filter(None, terminal.lines()))
     assert "Done: 4 of 4." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4

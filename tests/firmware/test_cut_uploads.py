@@ -59,7 +59,7 @@ def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
     return b""
 
 
-def is_over_at(memory: bytes, kind: str, count: int) -> bool:
+def cut_at(memory: bytes, kind: str, count: int) -> bool:
     """Break an upload off after so many bytes; return whether it was over before."""
     robot, session = HostFirmware(KIT, memory), computer()
     robot.wait(200)
@@ -94,7 +94,7 @@ def break_off(kind: str, first: int, stride: int) -> int:
     """Break uploads off at each so many bytes; return how many."""
     memory = holding(OLD)[0].memory()
     count = 0
-    while not is_over_at(memory, kind, first + count * stride):
+    while not cut_at(memory, kind, first + count * stride):
         count += 1
     return count
 

@@ -88,9 +88,9 @@ def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[se
     ends: Ends = [(None, owner)]
     assert ended(robot, ends, owner.join(network)) == "OK"
     talk(robot, ends, 2)
-    seen = {state(robot, owner)[1] for _ in range(20)}
+    states_seen = {state(robot, owner)[1] for _ in range(20)}
     asked = radios(robot)
-    return seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
+    return states_seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
 
 
 @pytest.mark.sampled("second")

@@ -215,7 +215,7 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     first, second = Bytes(asks), Bytes(asks)
     ends: Ends = [(None, first), (LowEnergy(rebooted), second)]
     talk(rebooted, ends, 60)
-    frames = [decode_frame(each.heard.strip(b"\0")) for each in (first, second)]
+    frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""

@@ -515,8 +515,8 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("before", BEFORE)
 def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
-    seen = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
-    assert sum(seen) > 20 and min(seen) > 0, seen
+    counts = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
+    assert sum(counts) > 20 and min(counts) > 0, counts
 
 
 def check_all(seed: int) -> None:

@@ -26,7 +26,7 @@ OTHER_SEEDS = range(101, 103)  # of worlds that the command does not try by itse
 BY_HEART = "by heart"  # in the label of a wrong answer
 HEADINGS = 5  # of a pupil's page: need, steps, task, check, and the title
 
-each = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
+each_lesson = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
 in_both = pytest.mark.parametrize("language", LANGUAGES)
 
 
@@ -65,7 +65,7 @@ def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None
         assert sentence(findings[0], language) == answer.sentence_by_language[language]
 
 
-@each
+@each_lesson
 def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
     right, wrong = catalogue.answers(folder)
     assert len(right) >= 2
@@ -76,13 +76,13 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
         assert any(BY_HEART in answer.label_by_language["en"] for answer in wrong)
 
 
-@each
+@each_lesson
 def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
     lesson = catalogue.load(folder)
     assert (lesson.world_count > 1) == bool(lesson.variations or lesson.is_mirrored)
 
 
-@each
+@each_lesson
 @in_both
 def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     number = int(folder.name[:2])
@@ -105,7 +105,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     assert str(sum(int(row[0]) for row in table.rows[1:])) == MINUTES
 
 
-@each
+@each_lesson
 @in_both
 def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     """Dashes are what moves and nothing else, and a blank is wide enough to write in."""
@@ -122,7 +122,7 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     assert match and f'<path d="M{match[1]} 0V' in made
 
 
-@each
+@each_lesson
 @in_both
 @pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
 def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
@@ -139,7 +139,7 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
         assert compilation.is_right, (program, compilation.diagnostics)
 
 
-@each
+@each_lesson
 def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
     for who in (catalogue.PUPIL, catalogue.TEACHER):
         kinds = [
@@ -152,7 +152,7 @@ def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
 RUN = {lang: page_texts(lang)["run"] for lang in LANGUAGES}
 
 
-@each
+@each_lesson
 def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
     counts = [
         len(re.findall(rf"\b{word}\b", catalogue.page(folder, catalogue.PUPIL, lang)))
@@ -161,7 +161,7 @@ def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
     assert len(set(counts)) == 1
 
 
-@each
+@each_lesson
 def test_no_page_tells_the_answer(folder: Path) -> None:
     """A program on a pupil's page is an example: it does not solve the task."""
     lesson = catalogue.load(folder)

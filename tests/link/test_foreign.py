@@ -43,7 +43,7 @@ OURS = our_bytes()
 
 def test_there_are_a_robot_s_bytes_to_look_at() -> None:
     assert len(OURS) > 100
-    assert sum(each.startswith(b"// ") for each in OURS) > 20
+    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OURS) > 20
 
 
 # -- each board ---------------------------------------------------------------------------------

@@ -202,7 +202,7 @@ def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
     wire.session.tells_starts = wire.session.tells_places = True
     assert wire.robot.until(wire.session, wire.session.live(image_of("F(60, 50)").code)) == OK
     wire.robot.talk(wire.session, 500)
-    assert is_lost(wire)
+    assert lose(wire)
     if fate in STOPS:
         STOPS[fate](wire.robot, wire.session)
     elif fate == "a reset":
@@ -224,13 +224,13 @@ def test_who_is_found_again_tells_where_its_program_is() -> None:
     for _ in range(2):
         wire.robot.talk(wire.session, 1500)
         places.append([event for event in wire.session.events() if isinstance(event, PlaceEvent)])
-        assert is_lost(wire)
+        assert lose(wire)
         assert wire.robot.until(wire.session, wire.session.hello()) == OK
     assert places[0] == places[1] != []
 
 
-def is_lost(wire: Wire) -> bool:
-    """Let nobody hear the other until the session has told that."""
+def lose(wire: Wire) -> bool:
+    """Let nobody hear the other; return whether the session tells that and nothing else."""
     wire.session.events()
     events: list[Event] = []
     for _ in range(800):

@@ -272,8 +272,8 @@ class Author(ValueAuthor):
         self.variables |= kinds
         for _ in range(self.rng.randint(0, 4)):
             self.statement()
-        for each in names:
-            del self.variables[each]
+        for value_name in names:
+            del self.variables[value_name]
         self.defs[name] = (self.deepest, self.called)
         self.deepest, self.called, self.in_def = deepest, called, False
         self.say(self.rng.choice(("END_DEF", "ENDDEF")))

@@ -62,8 +62,8 @@ def tokens_of(text: str) -> list[Token]:
         if word in FIXED:
             names, meaning = FIXED[word]
             values, at = _given(text, at, len(names)) if names else ([], at)
-            for each in tokens_of(meaning)[:-1]:
-                given = dict(zip(names, values, strict=True)).get(each.text, [each])
+            for token in tokens_of(meaning)[:-1]:
+                given = dict(zip(names, values, strict=True)).get(token.text, [token])
                 tokens += (one._replace(line=line) for one in given)
         elif kind != "space" and not (kind == "newline" and depth > 0):
             tokens.append(Token(kind, word, line))

@@ -56,7 +56,7 @@ def tables(monkeypatch: pytest.MonkeyPatch) -> list[ModuleType]:
     """Add CHEEP to each of the tables; return the modules that have them."""
     op = OP._replace(since=NEXT_MINOR)
     assert opcodes.BY_CODE[op.code] is None
-    by_code = [op if code == op.code else each for code, each in enumerate(opcodes.BY_CODE)]
+    by_code = [op if code == op.code else other for code, other in enumerate(opcodes.BY_CODE)]
     act = oracle.ACTS["BEEP"]._replace(waits=False)
     monkeypatch.setitem(words.WORDS, CHEEP.text, CHEEP)
     monkeypatch.setattr(opcodes, "BY_CODE", by_code)

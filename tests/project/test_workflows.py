@@ -131,5 +131,5 @@ def test_the_rehearsal_knows_its_options(capsys: pytest.CaptureFixture[str]) -> 
     options = [word for word in words if word.startswith("--")]
     options += re.findall(r"'(--[a-z-]+)'", (FOLDER / "release.yml").read_text(encoding="utf-8"))
     assert len(options) == 2
-    for each in options:
-        assert each in known
+    for option in options:
+        assert option in known

@@ -131,7 +131,7 @@ def chosen(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) ->
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """
     kept, uncovered = set(before), set().union(*branches)
-    heap = [(-len(each), k not in kept, k) for k, each in enumerate(branches)]
+    heap = [(-len(branch_set), k not in kept, k) for k, branch_set in enumerate(branches)]
     heapq.heapify(heap)
     taken = []
     while uncovered:

@@ -64,7 +64,7 @@ def is_kept(written: str, value: float, unit: str, made: str) -> bool:
 
 
 ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewrites.token_rows()]
-EXAMPLES = [each.example[0] for each in ROWS]
+EXAMPLES = [row.example[0] for row in ROWS]
 WRITTEN = [
     *("{}({}, 60)".replace("{}", word, 1) for word in "FBLR"),
     *("W({})", "SHOW({})", "X = {}\nSHOW(X)", "X = {}\nW(X)", "X = {}\nF(X, 60)\nR(X, 60)"),

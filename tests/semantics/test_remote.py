@@ -80,7 +80,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 @pytest.mark.parametrize("name", robots.names())
 def test_they_come_after_the_sensors_of_each_robot(name: str) -> None:
     kit = robots.load(name).kit
-    made = compile_text("; ".join(f"SHOW({each})" for each in NAMES), kit)
+    made = compile_text("; ".join(f"SHOW({name})" for name in NAMES), kit)
     assert made.is_right and made.verdict is not None
     first = len(kit.sensors)
     uses = dict.fromkeys(made.verdict.uses)

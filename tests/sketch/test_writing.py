@@ -191,8 +191,8 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
     assert "segundos.milesimas == PARA_SIEMPRE.milesimas" in code
     notes = " ".join(re.findall(r"// (.*)", sketch_text))
     assert not set(re.findall(r"\w+", notes)) & {"low", "high", "first", "last"}
-    local = {all_said("es", "sketch")[f"local/{each}"] for each in LOCALS}
-    names = {translated_name(each, "es") for each in IDENTIFIERS}
+    local = {all_said("es", "sketch")[f"local/{key}"] for key in LOCALS}
+    names = {translated_name(identifier, "es") for identifier in IDENTIFIERS}
     assert len(local) == len(LOCALS) and not (local | names) & RESERVED - {"leer"}
     assert local & names == {"valor"}
 

@@ -190,11 +190,11 @@ def test_blocks_keep_the_robot() -> None:
 def test_the_page_knows_every_robot_and_its_words() -> None:
     known = description()
     assert [robot["name"] for robot in known["robots"]] == robots.names()
-    for each in known["robots"]:
-        kit = robots.load(each["name"]).kit
-        names = [device["text"] for device in each["devices"]]
+    for robot_row in known["robots"]:
+        kit = robots.load(robot_row["name"]).kit
+        names = [device["text"] for device in robot_row["devices"]]
         assert names == list(kit.names)
-        assert set(each["labels"]) == set(LANGUAGES)
+        assert set(robot_row["labels"]) == set(LANGUAGES)
     words = {word["text"] for word in known["words"]}
     assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}
     assert known["worlds"][0]["name"] == "obstacles"

@@ -266,7 +266,7 @@ class History:
             row["port"] for row in state["robots"]
         ]
         works = [
-            sorted(map(str, each.teaches("class_work")["pupils"])) for each in (after, self.room)
+            sorted(map(str, room.teaches("class_work")["pupils"])) for room in (after, self.room)
         ]
         assert works[0] == works[1]
         whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
@@ -301,7 +301,7 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         assert anew["code"] != code and all(robot.has_ended for robot in driven if robot)
         fresh = Room(0).teaches("class")
         settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
-        ports = [{**each, "pupil": "", "left_s": 0} for each in before["robots"]]
+        ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]
         named = {robot["port"]: robot["name"] for robot in anew["robots"]}
         assert anew == fresh | settings | {
             "robots": [{**port, "name": named[port["port"]]} for port in ports]

@@ -110,7 +110,9 @@ def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
             (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
         pupils = [shapes(calls, "fill", "#20242a") for calls in (drawn[0], ahead, left)]
-        still, to_front, to_left = ([row for row in each if len(row) == 5] for each in pupils)
+        still, to_front, to_left = (
+            [row for row in drawn_shapes if len(row) == 5] for drawn_shapes in pupils
+        )
         assert [a[0] > b[0] for a, b in zip(to_front, still, strict=True)].count(True) == 2
         assert [a[1] > b[1] for a, b in zip(to_left, still, strict=True)].count(True) == 2
         (own,) = drawings_of((name, None, {**STANDING_STILL, "colours": ["#123456", "#654321"]}))

@@ -79,7 +79,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
-        least = next(each for each in LEVELS if needed <= kinds[each] | {"set"})
+        least = next(level for level in LEVELS if needed <= kinds[level] | {"set"})
         level = max(level, least, key=LEVELS.index)
         assert page.input_value("#level") == level, number
     page.select_option("#level", "few")

@@ -33,11 +33,11 @@ class Page:
 
     def go(self, milliseconds: int, *asked: dict[str, Any], is_away: bool = False) -> None:
         """Let time go on. A page that is away asks for nothing."""
-        for each in range(milliseconds):
+        for ms in range(milliseconds):
             now_ms = self.robot.now_ms + 1
             sent = b""
             if not is_away:
-                answer = self.page.go(self._back, now_ms, list(asked) if each == 0 else [])
+                answer = self.page.go(self._back, now_ms, list(asked) if ms == 0 else [])
                 sent, self._back = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)

@@ -149,9 +149,9 @@ class World:
 
     def _count_unseen(self, before: Tree, page: str, since: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
-        for each in self.all_taken[-1].operations:
-            if isinstance(each, Replace) and each.id in before:
-                by = before[each.id].mark(each.fields[0][0])
+        for operation in self.all_taken[-1].operations:
+            if isinstance(operation, Replace) and operation.id in before:
+                by = before[operation.id].mark(operation.fields[0][0])
                 self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
                     taken.uid == by and taken.number > since for taken in self.all_taken[-50:]
                 )  # fmt: skip
@@ -273,14 +273,14 @@ def _whole(text: str) -> str:
 
 
 def _walk(body: Sequence[Instruction]) -> Iterator[tuple[Instruction, str]]:
-    for each in body:
-        if isinstance(each, If):
-            yield each, BLOCK
-            for arm in each.arms:
+    for instruction in body:
+        if isinstance(instruction, If):
+            yield instruction, BLOCK
+            for arm in instruction.arms:
                 yield from _walk(arm.body)
-            yield from _walk(each.else_body)
-        elif isinstance(each, Loop | While | Def | Task):
-            yield each, BLOCK
-            yield from _walk(each.body)
+            yield from _walk(instruction.else_body)
+        elif isinstance(instruction, Loop | While | Def | Task):
+            yield instruction, BLOCK
+            yield from _walk(instruction.body)
         else:
-            yield each, INSTRUCTION
+            yield instruction, INSTRUCTION

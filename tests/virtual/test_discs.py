@@ -65,7 +65,7 @@ def wheel(robot: VirtualRobot, number: int) -> Wheel:
     return robot.wheels.wheels[number]
 
 
-def is_still(robot: VirtualRobot) -> bool:
+def stands_for_a_while(robot: VirtualRobot) -> bool:
     before = robot.pose
     robot.step(robot.now_ms + 300)
     return math.dist(before[:2], robot.pose[:2]) < 0.01
@@ -128,7 +128,7 @@ def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
     assert "MOTORS 0 0" in " ".join(trace(robot.take_events()))
     talk.wait(500)
     ahead = displacement(robot)[0]
-    assert 4 < ahead < 20 and is_still(robot)
+    assert 4 < ahead < 20 and stands_for_a_while(robot)
 
 
 @pytest.mark.parametrize("after_ms", [0, 5, 60, 700, 2400, 2500, 2560, 2620, 2700])
@@ -147,14 +147,14 @@ def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
     for _ in range(30):
         assert not any(wheel(robot, number).wanted_speed for number in (0, 1))
         talk.wait(20)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 def test_a_lost_link_ends_it() -> None:
     robot, talk = started_robot("F(200 CM, 20)")
     talk.wait(300)
     robot.step(robot.now_ms + 1200)
-    assert robot.fault == "LINK_LOST" and is_still(robot)
+    assert robot.fault == "LINK_LOST" and stands_for_a_while(robot)
 
 
 def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
@@ -299,7 +299,7 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     assert op.control_role == "until" if op else code[at] == ESCAPE, "the GO, or the UNTIL"
     assert (op is not None) == ("UNTIL" in text)
     talk.wait(300)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
@@ -334,7 +334,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     talk.wait(600)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number]
     talk.wait(300)
-    assert is_still(robot)
+    assert stands_for_a_while(robot)
 
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
@@ -442,7 +442,7 @@ def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
             hold(wheel(robot, number), held)
             talk.wait(450)
         talk.wait(3000)
-        assert is_still(robot) and robot.is_running
+        assert stands_for_a_while(robot) and robot.is_running
         before = robot.pose
         talk.wait(7000)
         assert robot.fault == "" and not robot.is_running

@@ -44,7 +44,7 @@ def program() -> bytes:
     versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR}
     hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
     reply = robot_in(floor()).step(500, hello)
-    epochs = {each.epoch for each in map(decode_frame, reply.split(b"\0")) if each is not None}
+    epochs = {frame.epoch for frame in map(decode_frame, reply.split(b"\0")) if frame is not None}
     code = unpack(compile_text("SI|F(5,80)", kit).image).code
     return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
 
@@ -105,7 +105,7 @@ def test_a_first_line_has_an_end() -> None:
 def until_let_go(simulator: Simulator, client: socket.socket) -> None:
     """Wait until it is hung up on without a word."""
 
-    def is_let_go() -> bool:
+    def try_to_send() -> bool:
         reply = b"?"
         with contextlib.suppress(BlockingIOError, ConnectionError):
             reply = client.recv(1000)
@@ -117,7 +117,7 @@ def until_let_go(simulator: Simulator, client: socket.socket) -> None:
                 return True
         return reply == b""
 
-    until(simulator, is_let_go)
+    until(simulator, try_to_send)
 
 
 def _has_moved(simulator: Simulator) -> bool:
@@ -185,7 +185,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
     [client] = crowd(simulator, 1)
     is_said, most, heard = False, 0, bytearray()
 
-    def is_answered() -> bool:
+    def ask_and_look() -> bool:
         nonlocal is_said, most
         most = max(most, len(simulator.transports._callers))
         with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
@@ -193,7 +193,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
                 is_said = client.send(PING) > 0
         return is_said and b"\0" in received(client, heard)
 
-    until(simulator, is_answered)
+    until(simulator, ask_and_look)
     assert MOST_CALLERS / 2 < most <= MOST_CALLERS
     for connection in (client, *idle):
         connection.close()

@@ -164,7 +164,7 @@ class Matching:
         if kind == "open":
             if self.is_made_up():
                 return False
-            if not self.is_end_of_do():
+            if not self.end_do():
                 if self.is_when():
                     self.edit_item(1, "WHEN")
                     self.item = self.item._replace(word="WHEN")
@@ -205,8 +205,8 @@ class Matching:
             ended_word == "WHEN" or (line != self.k and ended_word != "IF")
         )
 
-    def is_end_of_do(self) -> bool:
-        """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
+    def end_do(self) -> bool:
+        """End the block of a DO where a WHILE does; return whether it did."""
         item = self.item
         if item.word != "WHILE" or not self.open_blocks or not self.open_blocks[-1].asks_at_end:
             return False
