@@ -41,12 +41,12 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
 ) -> None:
     target = working_folder / "there"
     assert tsc(*words, target).code == 0  # nothing is there
-    made = target.read_bytes()
-    assert made and not is_foreign(target)
+    bytes_before = target.read_bytes()
+    assert bytes_before and not is_foreign(target)
     assert tsc(*words, target).code == 0  # its own
     target.write_bytes(b"")
     assert tsc(*words, target).code == 0  # nothing to lose
-    assert target.read_bytes() == made
+    assert target.read_bytes() == bytes_before
     for content in FOREIGN:
         target.write_bytes(content)
         for lang, expected in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
@@ -61,10 +61,10 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
     (folder / "ana.ts").write_text(PROGRAM)
     words = ("check", folder, "--lang", lang, "--csv", table)
     assert tsc(*words).code == 0
-    made = table.read_bytes()
-    table.write_bytes(made.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
-    assert tsc(*words).code == 0 and table.read_bytes() == made
-    marked = made.replace(b"\n", b";18\n")
+    bytes_before = table.read_bytes()
+    table.write_bytes(bytes_before.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
+    assert tsc(*words).code == 0 and table.read_bytes() == bytes_before
+    marked = bytes_before.replace(b"\n", b";18\n")
     table.write_bytes(marked)
     tsc(*words).gives(2, "--csv")
     assert table.read_bytes() == marked

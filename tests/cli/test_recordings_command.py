@@ -281,12 +281,12 @@ def recorded(
     file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
     """Record these events of a robot; return what the file has then."""
-    made = Recorder(str(file), HEAD, began_s=began_s)
+    recorder = Recorder(str(file), HEAD, began_s=began_s)
     for event in events:
-        made.add_event(7, *event)
+        recorder.add_event(7, *event)
     if end:
-        made.end_recording(end)
-    made.close()
+        recorder.end_recording(end)
+    recorder.close()
     return decode(file.read_bytes()).rows
 
 
@@ -357,9 +357,9 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
 
     def printer(*given: object) -> EventPrinter:
         now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
-        return made(*given)  # type: ignore[arg-type]
+        return make_printer(*given)  # type: ignore[arg-type]
 
-    made = event_printer.printer_of
+    make_printer = event_printer.printer_of
     monkeypatch.setattr(upload, "printer_of", printer)
     monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])

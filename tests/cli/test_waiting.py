@@ -78,8 +78,8 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
         return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
-    made = ReadyFile("tinibot", "uno", "1", Path("x"))
-    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").outcome == avrdude.DONE
+    ready_file = ReadyFile("tinibot", "uno", "1", Path("x"))
+    assert firmware._write_firmware([], UNO, "/dev/x", ready_file, "en").outcome == avrdude.DONE
 
 
 SILENT_VERBS = [

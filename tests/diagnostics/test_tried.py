@@ -51,10 +51,10 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
 )
 def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
     robot = robot_of(program.encode(), TINIBOT)
-    made = repair_program(
+    repaired = repair_program(
         program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
     )
-    assert made.text == wanted and not made.diagnostics_left
+    assert repaired.text == wanted and not repaired.diagnostics_left
 
 
 @each_row(
@@ -126,10 +126,10 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
     ],
 )
 def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
-    made = repair_program(
+    repaired = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
-    assert (made.text, made.diagnostics_left) == (wanted, [])
+    assert (repaired.text, repaired.diagnostics_left) == (wanted, [])
 
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:

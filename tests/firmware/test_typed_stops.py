@@ -447,8 +447,8 @@ if __name__ == "__main__":
     drawn = random.Random(given.seed)
     with tempfile.TemporaryDirectory() as folder:
         for rate in BAUDS:
-            made = build(rate, Path(folder))
+            simulator = build(rate, Path(folder))
             for first in range(0, given.count // 2, 500):
                 some = min(500, given.count // 2 - first)
-                slowest = stop_after_random_bytes(made, rate, drawn, some)
+                slowest = stop_after_random_bytes(simulator, rate, drawn, some)
                 print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

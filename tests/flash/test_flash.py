@@ -285,12 +285,12 @@ def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:
     """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
-    made = firmware_files.build(robots.load("tinibot"), tmp_path)
-    assert made.name.startswith("tinibot-uno-")
+    path = firmware_files.build(robots.load("tinibot"), tmp_path)
+    assert path.name.startswith("tinibot-uno-")
     halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
     assert halting.name.startswith("tinibot_breakpoints-uno-")
     one, other = (file.read_text().split() for file in (
-        made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
+        path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
     assert one == other
 
 

@@ -180,13 +180,13 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str
 ) -> None:
     """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
-    made: list[bytes] = []
+    builds: list[bytes] = []
     held: list[int] = []
     for name in (new, old):
         log = pio(project, "run", "-e", name).gives(0).out
         held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
-        made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
-    assert made[0] == made[1]
+        builds.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
+    assert builds[0] == builds[1]
     assert "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new}\n")[2]
     assert held == [30_720] * 2
 

@@ -108,9 +108,9 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
 
 def seeds(name: str) -> Iterator[bytes]:
     """Yield inputs as `vm_arduino/extras/fuzz` reads them."""
-    made = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds,
+    seed_makers = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds,
             "mqtt": mqtt_seeds}  # fmt: skip
-    yield from made[name.removeprefix("large_")]()
+    yield from seed_makers[name.removeprefix("large_")]()
 
 
 def machine_seeds() -> Iterator[bytes]:

@@ -111,15 +111,15 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     """Dashes are what moves and nothing else, and a blank is wide enough to write in."""
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
-    made = sheet(page, lesson, False, language)
+    sheet_text = sheet(page, lesson, False, language)
     dashed = len(
         {(variation.place.part, variation.place.number) for variation in lesson.variations}
     )
-    assert made.count("stroke-dasharray") == dashed
-    assert (text("lessons", "sheet/moves", language) in made) is (dashed > 0)
-    assert "__" not in made and made.count('class="blank"') == page.count("____")
-    match = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", made)
-    assert match and f'<path d="M{match[1]} 0V' in made
+    assert sheet_text.count("stroke-dasharray") == dashed
+    assert (text("lessons", "sheet/moves", language) in sheet_text) is (dashed > 0)
+    assert "__" not in sheet_text and sheet_text.count('class="blank"') == page.count("____")
+    match = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", sheet_text)
+    assert match and f'<path d="M{match[1]} 0V' in sheet_text
 
 
 @each_lesson

@@ -148,12 +148,12 @@ def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.Monkey
     """The next one has the same code. Its own events nobody has looked at before that."""
     robot, line = connected(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):
-        made = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
-        assert made.image
-        program = checksum(made.image)
+        compilation = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
+        assert compilation.image
+        program = checksum(compilation.image)
         line.program = program
-        robot.upload(made.source.text, save=False)
-        at = rows(made.code)[-1].offset
+        robot.upload(compilation.source.text, save=False)
+        at = rows(compilation.code)[-1].offset
         late: list[Event] = [
             ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
         ]  # fmt: skip

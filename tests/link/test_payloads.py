@@ -34,8 +34,8 @@ def value(field: Field) -> int | bytes:
 @pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda value: str(value.name))
 def test_a_reply_has_the_fields_of_the_table_in_their_order(message: Message) -> None:
     values = {field.name: value(field) for field in message.reply}
-    made = make_payload(REPLIES[message.name], values)
-    assert list(made._asdict().items()) == list(values.items())
+    reply = make_payload(REPLIES[message.name], values)
+    assert list(reply._asdict().items()) == list(values.items())
 
 
 def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
@@ -44,9 +44,9 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
         if message.name == "SHOW":
             assert ShowEvent._fields == (*(field.name for field in message.reply), "name")
             continue
-        made = event_of(message.name, {field.name: value(field) for field in message.reply})
-        assert isinstance(made, EVENTS[message.name]) and made.name == message.name
-        assert list(event_fields(made)) == [field.name for field in message.reply]
+        event = event_of(message.name, {field.name: value(field) for field in message.reply})
+        assert isinstance(event, EVENTS[message.name]) and event.name == message.name
+        assert list(event_fields(event)) == [field.name for field in message.reply]
 
 
 OTHERS: tuple[Event, ...] = (

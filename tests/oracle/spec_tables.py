@@ -106,13 +106,15 @@ def instructions() -> dict[int, Instruction]:
     kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
     table = {}
     for code, ((name, *operands), (takes, leaves)) in written.items():
-        made = tuple(Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands))
+        op_operands = tuple(
+            Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands)
+        )
         short = re.fullmatch(r"(.+)_(\d+)", name)
         stem = short[1] if short else name.removesuffix("_FAR")
         implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
         role = role_of[name]
         bytes_ = 2 if code > 0xFF else 1
-        table[code] = Instruction(name, stem, made, implied, takes, leaves, role, bytes_)
+        table[code] = Instruction(name, stem, op_operands, implied, takes, leaves, role, bytes_)
     return table
 
 

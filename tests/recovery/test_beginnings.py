@@ -157,10 +157,10 @@ def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
         text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
-        made = apply_edits(text, edits_of(check(text)[0]) or [])
-        made = repair_program(made, check).text
-        assert compile(made).code == compile(f"{right}\n{loop}").code, text
-        assert made.startswith(f"{begun}|"), text
+        repaired = apply_edits(text, edits_of(check(text)[0]) or [])
+        repaired = repair_program(repaired, check).text
+        assert compile(repaired).code == compile(f"{right}\n{loop}").code, text
+        assert repaired.startswith(f"{begun}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])

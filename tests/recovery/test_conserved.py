@@ -55,11 +55,11 @@ def numbers(text: str) -> list[tuple[float, str]]:
     return pairs
 
 
-def is_kept(written: str, value: float, unit: str, made: str) -> bool:
+def is_kept(written: str, value: float, unit: str, repaired: str) -> bool:
     """Whether a program has a number with its sign and unit, or still as it was written."""
-    return written in made or any(
+    return written in repaired or any(
         abs(number - value) < 0.001 and (not own or not unit or own == unit)
-        for number, own in numbers(made)
+        for number, own in numbers(repaired)
     )
 
 
@@ -91,8 +91,8 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
     for wrong, written, value, unit in variants(text):
-        made = repair_program(wrong, check).text
-        assert is_kept(written, value, unit, made), (wrong, made)
+        repaired = repair_program(wrong, check).text
+        assert is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.sampled("text", keep=15)
@@ -107,9 +107,9 @@ def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> 
         ]
         is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
         for diagnostic in shown if unit and not is_part else ():
-            made = apply_edits(wrong, edits_of(diagnostic) or [])
+            repaired = apply_edits(wrong, edits_of(diagnostic) or [])
             lost = diagnostic.values.get("lost", "")
-            assert written in lost or is_kept(written, value, unit, made), (wrong, made)
+            assert written in lost or is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.sampled("part")
@@ -123,9 +123,9 @@ def loses_nothing(text: str) -> None:
         for word, unit, scale in units():
             written = f"{sign}{number}{space}{word}"
             wrong = text.replace("{}", written)
-            made = repair_program(wrong, check).text
+            repaired = repair_program(wrong, check).text
             value = float(number) * scale * (-1 if sign else 1)
-            assert is_kept(written, value, unit, made), (wrong, made)
+            assert is_kept(written, value, unit, repaired), (wrong, repaired)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_what_a_repair_loses_or_does_more(
 
 
 @pytest.mark.parametrize(
-    ("wrong", "made"),
+    ("wrong", "repaired"),
     [
         ("T = 500 ms;W(T)", "T = 0.5;W(T)"),
         ("F(5, 60) UNTIL(TIME > 500 ms)", "F(5, 60) UNTIL(TIME > 0.5)"),
@@ -183,8 +183,8 @@ def test_what_a_repair_loses_or_does_more(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, made: str) -> None:
-    assert repair_program(wrong, check).text == made
+def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, repaired: str) -> None:
+    assert repair_program(wrong, check).text == repaired
 
 
 @pytest.mark.parametrize(
@@ -230,8 +230,8 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:
         for text in ("F(2, 80) {}", "F(2, 80){}", "F(2, 80); {}", "S\n{}", "SI|F(2, 80)\n  {} "):
-            made = repair_program(text.format(sign), check).text
-            assert sign in made or made.rstrip().endswith(word), (sign, text, made)
+            repaired = repair_program(text.format(sign), check).text
+            assert sign in repaired or repaired.rstrip().endswith(word), (sign, text, repaired)
 
 
 def test_what_one_line_would_lose_costs_the_others_nothing() -> None:

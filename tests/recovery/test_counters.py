@@ -57,10 +57,10 @@ def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
     ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
 )  # fmt: skip
 def test_what_counts_otherwise_is_left(text: str) -> None:
-    made = [
+    fixes = [
         diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")
     ]
-    assert not any("+ 1" in line for line in made)
+    assert not any("+ 1" in line for line in fixes)
 
 
 STEPS = {

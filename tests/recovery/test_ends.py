@@ -91,5 +91,5 @@ def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
         == "Where does the block end? Write ;ENDIF after one of these: W(1), F(1, 60)"
     )
     (diagnostic,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
-    made = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(diagnostic) or [])
-    assert made == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"
+    repaired = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(diagnostic) or [])
+    assert repaired == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

@@ -99,10 +99,10 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     changed = []
     for values, form, between in product(pairs, FORMS, BETWEEN):
         wrong = form.format(word, between.join(values))
-        made = repair_program(wrong, check).text
-        numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", made)]
-        if made != wrong and numbers != [float(value) for value in values]:
-            changed.append((wrong, made))
+        repaired = repair_program(wrong, check).text
+        numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired)]
+        if repaired != wrong and numbers != [float(value) for value in values]:
+            changed.append((wrong, repaired))
     assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
 
 

@@ -164,9 +164,9 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     wrong = program.format(word)
     (diagnostic,) = check(wrong)
     assert diagnostic.code.number == "TS105"
-    made = apply_edits(wrong, edits_of(diagnostic) or [])
-    assert made == program.format(f"{word}_1")
-    assert not [diagnostic for diagnostic in check(made) if diagnostic.is_mistake]
+    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired == program.format(f"{word}_1")
+    assert not [diagnostic for diagnostic in check(repaired) if diagnostic.is_mistake]
 
 
 UNKNOWN = ("I", "FOO", "HACER", "XX")

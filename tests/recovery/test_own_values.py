@@ -61,8 +61,8 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
     (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
     shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
     assert message(diagnostic, Source(wrong), "en").fix == shown
-    made = apply_edits(wrong, edits_of(diagnostic) or [])
-    assert made == wrong.replace(f"M({left}, {right}, {time})", shown)
+    repaired = apply_edits(wrong, edits_of(diagnostic) or [])
+    assert repaired == wrong.replace(f"M({left}, {right}, {time})", shown)
     assert repair_program(wrong, check).text == wrong  # it may run on, too
 
 

@@ -112,8 +112,8 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
     text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
     name, edits = renamed(text)
-    made = apply_edits(text, edits)
-    assert made == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
+    renamed_text = apply_edits(text, edits)
+    assert renamed_text == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
 
 
 @pytest.mark.parametrize("word", sorted(WORDS))
@@ -132,9 +132,9 @@ def test_no_word_becomes_the_name_of_a_def(word: str) -> None:
 @each_row("word", [word for word in RENAMED if word != "TIME"])
 def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
     text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
-    made = apply_edits(text, renamed(text)[1])
-    assert made.split("\n")[4] == "S"
-    assert not [diagnostic for diagnostic in check(made) if diagnostic.is_mistake]
+    renamed_text = apply_edits(text, renamed(text)[1])
+    assert renamed_text.split("\n")[4] == "S"
+    assert not [diagnostic for diagnostic in check(renamed_text) if diagnostic.is_mistake]
 
 
 @each_row("word", sorted({*words("unsensed")}))

@@ -38,13 +38,13 @@ ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewr
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrites.SignRow) -> None:
     wrong, right = row.example
-    made = []
+    readings = []
     for kit in KITS:
         candidate = Recovery(wrong, kit, partial(mistakes, kit)).best_candidate()
-        made.append(candidate and candidate.text)
-        if made[-1] == right:
+        readings.append(candidate and candidate.text)
+        if readings[-1] == right:
             return
-    assert made == [right]
+    assert readings == [right]
 
 
 def meant(text: str) -> Candidate | None:

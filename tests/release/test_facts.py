@@ -152,11 +152,11 @@ def test_an_address_is_kept_where_it_is_another_one(
     for url, commits in ((URL, 1), ("https://example.org/other", 2)):
         scratch = tmp_path / str(commits)
         scratch.mkdir()
-        made, _ = release._clones(scratch, url, whole_stick=False)
-        log = subprocess.run(["git", "-C", made.root, "log", "--format=%s"], text=True,
+        shared_clone, _ = release._clones(scratch, url, whole_stick=False)
+        log = subprocess.run(["git", "-C", shared_clone.root, "log", "--format=%s"], text=True,
                               capture_output=True, check=True)  # fmt: skip
         assert len(log.stdout.splitlines()) == commits
-        assert made.address == url
+        assert shared_clone.address == url
 
 
 def test_this_repository_agrees_with_itself() -> None:

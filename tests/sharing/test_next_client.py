@@ -163,8 +163,8 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 def upload(text: str, is_detached: bool = False) -> Json:
     image = image_of(text)
     given = image._asdict() | {"isa": bytes(image.isa)}
-    made = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
-    return {**made, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
+    answer = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
+    return {**answer, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
 
 
 def drawn(rng: random.Random) -> str:

@@ -202,11 +202,11 @@ def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
 def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     import pty
 
-    made = pty.openpty
+    open_pty = pty.openpty
 
     def open_to_a_group() -> tuple[int, int]:
         """As most systems make it."""
-        ours, theirs = made()
+        ours, theirs = open_pty()
         os.fchmod(theirs, 0o620)
         return ours, theirs
 

@@ -271,10 +271,10 @@ def test_a_program_that_does_nothing(text: str) -> None:
 
 
 def check_seed(seed: int) -> str:
-    made = example(seed, ROBOT_WIDE)
-    if made is None:
+    drawn_example = example(seed, ROBOT_WIDE)
+    if drawn_example is None:
         return "no example"
-    check(made, ROBOT_WIDE, "es" if seed % 2 else "en")
+    check(drawn_example, ROBOT_WIDE, "es" if seed % 2 else "en")
     return "agrees"
 
 

@@ -138,7 +138,7 @@ def test_a_long_comment_is_broken_where_the_line_ends(block: str) -> None:
 def test_names_are_like_those_of_cpp() -> None:
     names = Names("en")
     asked = ("MY_SPEED", "X", "OLD__D_", "OLD_D", "DELAY", "FORWARD", "I", "I2", "FIRST1", "NUMBER")
-    made = [
+    names_in_cpp = [
         "mySpeed",
         "x",
         "oldD",
@@ -150,7 +150,7 @@ def test_names_are_like_those_of_cpp() -> None:
         "myFirst1",
         "number",
     ]
-    assert [names.name_of(word) for word in asked] == made
+    assert [names.name_of(word) for word in asked] == names_in_cpp
     assert (
         Names("en").name_of("COUNTED") == "myCounted" and Names("es").name_of("VALOR") == "miValor"
     )
@@ -238,9 +238,9 @@ def test_no_line_is_too_long_and_no_gap_stays_open(
     text = sketch(path.read_text(encoding="utf-8"), language, example_robot(path))
     assert "$" not in text
     assert max(map(len, text.splitlines())) <= 110
-    made = tmp_path / "a.ino"
-    made.write_text(text, encoding="utf-8")
-    assert not is_foreign(made)
+    sketch_file = tmp_path / "a.ino"
+    sketch_file.write_text(text, encoding="utf-8")
+    assert not is_foreign(sketch_file)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -47,17 +47,17 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
     """A `tsc studio` that holds the robots of its pages."""
-    with studio.hosted() as made:
-        yield made
+    with studio.hosted() as server:
+        yield server
 
 
 @pytest.fixture
 def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pages]:
     """Pages of that server, on which nothing goes wrong."""
-    made = studio.Pages(browser, server.address, entrance=server.entrance)
-    yield made
-    made.close()
-    assert not made.wrong
+    opened_pages = studio.Pages(browser, server.address, entrance=server.entrance)
+    yield opened_pages
+    opened_pages.close()
+    assert not opened_pages.wrong
 
 
 @pytest.fixture(scope="package")

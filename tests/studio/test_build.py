@@ -190,14 +190,16 @@ def test_the_same_sources_give_the_same_page(
     """One of them is made again, the other one is taken as it is."""
 
     def packs(call: list[str], *words: str) -> str:
-        return brings("*.zip", Path(words[-1])) if words[0] == "pack.mjs" else made(call, *words)
+        return (
+            brings("*.zip", Path(words[-1])) if words[0] == "pack.mjs" else run_before(call, *words)
+        )
 
     def brings(pattern: str, target: Path) -> str:
         for path in set(page.glob(pattern)) - {page / "service_worker.js"}:
             shutil.copy(path, target)
         return ""
 
-    made = studio.run
+    run_before = studio.run
     if part == "modules":
         monkeypatch.setattr(studio, "run", packs)
     else:

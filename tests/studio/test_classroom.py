@@ -592,8 +592,8 @@ def kept_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def keeper(kept_at: Path) -> Iterator[Keeper]:
-    with closing(Keeper()) as made:
-        yield made
+    with closing(Keeper()) as started_keeper:
+        yield started_keeper
 
 
 def goes_on(room: Room, keeper: Keeper) -> int:

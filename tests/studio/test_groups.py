@@ -597,10 +597,10 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         elif does == "next":
             school.now_s += chance.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
-        made = school.made
-        for pupil in made._pupil_by_token.values():
-            mates = made._mates(pupil)
-            turns = [turn for turn in map(made._turn, mates) if turn is not None]
+        classroom = school.made
+        for pupil in classroom._pupil_by_token.values():
+            mates = classroom._mates(pupil)
+            turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
             waiting = [mate for mate in mates if mate.queue_number is not None]
             assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
 

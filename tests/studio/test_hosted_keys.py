@@ -33,8 +33,8 @@ class Hand(AskingPage):
     def says(self, **request: object) -> int:
         self.number += 1
         number = max((item["number"] for item in self.news), default=0)
-        made = {"id": self.number, "seen": number, **request}
-        self.asks("beat", made)
+        full_request = {"id": self.number, "seen": number, **request}
+        self.asks("beat", full_request)
         return self.number
 
     def holds(self, y: int) -> int:
@@ -90,9 +90,9 @@ class Class:
 
 @pytest.fixture
 def lesson(two: list[PtyRobot]) -> Iterator[Class]:
-    made = Class([robot.port for robot in two])
-    yield made
-    made.hosting.close()
+    classroom = Class([robot.port for robot in two])
+    yield classroom
+    classroom.hosting.close()
 
 
 def test_a_pupil_drives_the_own_robot_and_no_other(lesson: Class, two: list[PtyRobot]) -> None:
@@ -156,11 +156,11 @@ def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot
 def hand(two: list[PtyRobot]) -> Iterator[Hand]:
     """A page that is connected to the first of the two."""
     hosting = Hosting()
-    made = Hand(hosting.answer, two[0].port)
+    new_hand = Hand(hosting.answer, two[0].port)
     try:
-        assert made.asks("connect") == {}
-        made.beats_until(lambda event: "connected" in event, "it is met")
-        yield made
+        assert new_hand.asks("connect") == {}
+        new_hand.beats_until(lambda event: "connected" in event, "it is met")
+        yield new_hand
     finally:
         hosting.close()
 

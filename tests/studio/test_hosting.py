@@ -72,9 +72,9 @@ class Page:
 
 @pytest.fixture
 def hosting() -> Iterator[Hosting]:
-    made = Hosting()
-    yield made
-    made.close()
+    new_hosting = Hosting()
+    yield new_hosting
+    new_hosting.close()
 
 
 @pytest.fixture

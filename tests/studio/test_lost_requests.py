@@ -122,8 +122,8 @@ class TornPage:
     def press_run(self) -> None:
         if self.is_there:
             self._number += 1
-            made = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
-            self._asked.append(made)
+            request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
+            self._asked.append(request)
 
     def _send(self, do: str, **more: object) -> None:
         request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
@@ -273,16 +273,16 @@ def asker(
     monkeypatch.setattr(classroom, "REQUEST_RATE", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
-        made = AskingPage(hosting.answer, robot.port)
+        page = AskingPage(hosting.answer, robot.port)
     else:
         room = Classroom(hosting, [robot.port])
         join = {"do": "join", "code": room.code, "name": "Ana"}
         token = room.answer("", "192.0.2.9", join)["token"]
         room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
-        made = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
-    assert made.asks("connect") == {}
-    made.beats_until(lambda item: "connected" in item, "it is met")
-    yield made
+        page = AskingPage(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
+    assert page.asks("connect") == {}
+    page.beats_until(lambda item: "connected" in item, "it is met")
+    yield page
     hosting.close()
 
 

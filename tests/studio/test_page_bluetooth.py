@@ -94,9 +94,9 @@ class Radio:
     def _gatt(self, asked: Any) -> None:
         if asked["type"] == "discovery" and not self._made:
             self._made = True
-            made = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
+            service = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
             for uuid, properties in self._characteristics():
-                characteristic = self._ask("addCharacteristic", serviceId=made["serviceId"],
+                characteristic = self._ask("addCharacteristic", serviceId=service["serviceId"],
                                   characteristicUuid=uuid, properties=properties)  # fmt: skip
                 if "notify" in properties:
                     self._ask("addDescriptor", characteristicId=characteristic["characteristicId"],

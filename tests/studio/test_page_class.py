@@ -78,16 +78,18 @@ HELD = "() => held.length === 1"
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture(scope="module")
 def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
     """A class that many tests share: Python takes a while to start in each page of it."""
-    with studio.taught([robot.port]) as made:
-        made.room.teach({"do": "class_places", "places": 9})  # left ones keep theirs for 5 s
-        yield made
+    with studio.taught([robot.port]) as taught_class:
+        taught_class.room.teach(
+            {"do": "class_places", "places": 9}
+        )  # left ones keep theirs for 5 s
+        yield taught_class
 
 
 @pytest.fixture(scope="module")

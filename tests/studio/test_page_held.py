@@ -35,8 +35,8 @@ def server(browser: Browser) -> Iterator[serving.Server]:
         serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
         FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
-    with studio.served(page) as made:
-        yield made
+    with studio.served(page) as server:
+        yield server
 
 
 @pytest.fixture
@@ -183,8 +183,8 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
             data = data.replace(b"comes 0s 3s", b"comes 0s .5s")
         if data != file.data:
             page[name] = serving.File(data, file.content_type)
-    with studio.served(page) as made:
-        yield made
+    with studio.served(page) as server:
+        yield server
 
 
 @pytest.fixture

@@ -87,14 +87,14 @@ def does(page: Page, what: str) -> None:
 
 def senses(page: Page, robot: PtyRobot, *values: int) -> None:
     """Let the robot sense so much, and wait until the gauges say so."""
-    robot.ask(lambda made: made.sense(*(1000 * value for value in values)))
+    robot.ask(lambda robot: robot.sense(*(1000 * value for value in values)))
     for row, value in enumerate(values):
         gauge = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
         gauge.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
 
 
-def sense(distance: int, made: HostFirmware) -> None:
-    made.sense(3000, 4000, 1000 * distance)
+def sense(distance: int, robot: HostFirmware) -> None:
+    robot.sense(3000, 4000, 1000 * distance)
 
 
 def watch(page: Page) -> None:

@@ -49,8 +49,8 @@ NOTES_WHEN = """(part) => { const root = document.querySelector('#editor').shado
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with class_of_many() as made:
-        yield made
+    with class_of_many() as taught_class:
+        yield taught_class
 
 
 @pytest.fixture(scope="module")

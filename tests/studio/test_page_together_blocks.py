@@ -39,8 +39,8 @@ ROWS = [row.strip() for row in PROGRAM.splitlines()]
 
 @pytest.fixture(scope="module")
 def taught(browser: Browser) -> Iterator[Class]:
-    with class_of_many() as made:
-        yield made
+    with class_of_many() as taught_class:
+        yield taught_class
 
 
 @pytest.fixture(scope="module")
@@ -315,12 +315,12 @@ def main() -> None:
     """Let pupils make so many changes in four browsers: 200, say."""
     count = int(sys.argv[1])
     with (
-        class_of_many() as made,
+        class_of_many() as taught_class,
         studio.driver() as playwright,
         studio.browser(playwright) as browser,
     ):
-        opened_pages = Pages(browser, made.server.address)
-        members = (*group_of(opened_pages, made), *others_of(opened_pages, made))
+        opened_pages = Pages(browser, taught_class.server.address)
+        members = (*group_of(opened_pages, taught_class), *others_of(opened_pages, taught_class))
         for k in range(count // 20):
             race(members, 20, k)
             print(f"{20 * (k + 1)} changes: text, blocks and image are one", flush=True)

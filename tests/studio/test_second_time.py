@@ -268,14 +268,14 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch.setattr(opening, "remember", lambda *_: None)
     monkeypatch.setattr(HeldClient, "all_left", Event())
     monkeypatch.setattr(HeldClient, "was_held", None)
-    made = hosted_robot.HostedRobot("p", "tinibot", "en")
-    until(lambda: made.name != "", "it is met")
+    robot = hosted_robot.HostedRobot("p", "tinibot", "en")
+    until(lambda: robot.name != "", "it is met")
     for lets_go in leaves:
-        made.leave(is_letting_go=bool(lets_go))
+        robot.leave(is_letting_go=bool(lets_go))
     HeldClient.all_left.set()
-    made.join(HANGS_S)
+    robot.join(HANGS_S)
     assert HeldClient.was_held == (not any(leaves))
-    assert made.has_ended and not made.is_parting
+    assert robot.has_ended and not robot.is_parting
 
 
 # -- many requests on one connection
@@ -295,8 +295,8 @@ def answered(request: Json) -> Json:
 
 @pytest.fixture
 def server() -> Iterator[serving.Server]:
-    with serves(serving.Server(PAGE, 0, answered)) as made:
-        yield made
+    with serves(serving.Server(PAGE, 0, answered)) as server:
+        yield server
 
 
 @pytest.fixture

@@ -32,8 +32,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def server(folder: Path) -> Iterator[serving.Server]:
-    with serves(serving.Server(serving.files(folder), 0)) as made:
-        yield made
+    with serves(serving.Server(serving.files(folder), 0)) as server:
+        yield server
 
 
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 @contextmanager
 def class_of_many() -> Iterator[Class]:
     """A class without a robot, with room for all at one address."""
-    with studio.taught([]) as made:
-        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
-        yield made
+    with studio.taught([]) as taught_class:
+        taught_class.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        yield taught_class
 
 
 def wait_for_status(page: Page, text: str) -> None:

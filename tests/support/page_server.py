@@ -16,14 +16,14 @@ Served = TypeVar("Served", bound=BaseServer)
 
 
 @contextmanager
-def serves(made: Served) -> Iterator[Served]:
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
+def serves(served: Served) -> Iterator[Served]:
+    thread = Thread(target=served.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     try:
-        yield made
+        yield served
     finally:
-        made.shutdown()
-        made.server_close()
+        served.shutdown()
+        served.server_close()
         thread.join()
 
 

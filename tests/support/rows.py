@@ -38,7 +38,7 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     sets = [pytest.ParameterSet.extract_from(row, force_tuple=len(wanted) == 1) for row in rows]
     assert sets, "no rows"
 
-    def made(test: Test) -> Test:
+    def parametrize(test: Test) -> Test:
         @functools.wraps(test)
         def whole(**given: Any) -> None:
             def one(row: Any) -> None:
@@ -52,4 +52,4 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
         whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
         return whole
 
-    return made
+    return parametrize

@@ -125,8 +125,8 @@ def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> Non
 
 
 def test_operands_to_7_are_part_of_the_code() -> None:
-    made = plain_of("; ".join(f"V{k} = 0" for k in range(9))).code
-    assert made == b"".join(bytes((0xB0, 0xA0 + k)) for k in range(8)) + b"\xb0\x30\x08"
+    code = plain_of("; ".join(f"V{k} = 0" for k in range(9))).code
+    assert code == b"".join(bytes((0xB0, 0xA0 + k)) for k in range(8)) + b"\xb0\x30\x08"
 
 
 def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:

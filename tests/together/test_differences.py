@@ -64,9 +64,9 @@ CASES = [
 PROGRAMS = 150
 
 
-def described(made: list[Operation]) -> str:
+def described(operations: list[Operation]) -> str:
     rows = []
-    for operation in made:
+    for operation in operations:
         size = (
             len(operation.nodes)
             if isinstance(operation, Insert)
@@ -80,10 +80,10 @@ def described(made: list[Operation]) -> str:
 def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str, stay: int) -> None:
     numbers, new_numbers = count(1), count(1)
     old = parse_tree(before, lambda: f"o.{next(numbers)}")
-    made = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
-    new = apply_change(old, Change("n:1", tuple(made))).tree
+    operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
+    new = apply_change(old, Change("n:1", tuple(operations))).tree
     assert new.shape() == parse_tree(after).shape()
-    assert wanted in ("*", described(made))
+    assert wanted in ("*", described(operations))
     assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
 
 
@@ -147,13 +147,13 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
             new = parse_tree("\n".join(after))
         except Unparsed:
             continue
-        made = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
-        assert [operation_of(data_of(operation)) for operation in made] == made
-        outcome = apply_change(old, Change("n:1", tuple(made)))
+        operations = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        assert [operation_of(data_of(operation)) for operation in operations] == operations
+        outcome = apply_change(old, Change("n:1", tuple(operations)))
         assert outcome.tree.shape() == new.shape()
         assert text_of(outcome.tree) == text_of(new)
         restored = apply_change(outcome.tree, Change("n:2", outcome.inverse)).tree
         assert text_of(restored) == text_of(old)
         assert restored.subtree_ids() == old.subtree_ids()
-        tried.update(type(operation).__name__ for operation in made or [Delete(())])
+        tried.update(type(operation).__name__ for operation in operations or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

@@ -112,22 +112,24 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
 
 @pytest.mark.long
 def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
-    made, refused = _counts([lesson(seed, 3) for seed in range(3)])
-    assert made > 300
-    assert refused <= MOST_REFUSED * made, f"{refused} of {made}"
+    change_count, refused = _counts([lesson(seed, 3) for seed in range(3)])
+    assert change_count > 300
+    assert refused <= MOST_REFUSED * change_count, f"{refused} of {change_count}"
 
 
 def _counts(worlds: list[World]) -> tuple[int, int]:
-    made = sum(pupil.page.change_count for world in worlds for pupil in world.pupils.values())
-    return made, sum(sum(world.why.values()) for world in worlds)
+    change_count = sum(
+        pupil.page.change_count for world in worlds for pupil in world.pupils.values()
+    )
+    return change_count, sum(sum(world.why.values()) for world in worlds)
 
 
 def _tell(worlds: list[World]) -> None:
-    made, refused = _counts(worlds)
+    change_count, refused = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
     why = sum((world.why for world in worlds), Counter[str]())
     happened = sum((world.counts for world in worlds), Counter[str]())
-    print(f"{made} changes, refused {refused} ({100 * refused / made:.2f} %) {dict(why)}, "
+    print(f"{change_count} changes, refused {refused} ({100 * refused / change_count:.2f} %) {dict(why)}, "
           f"values replaced that their page had not seen: {unseen}")  # fmt: skip
     print(dict(happened))
 

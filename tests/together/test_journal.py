@@ -113,13 +113,13 @@ def test_a_crash_at_any_moment_of_a_disk_that_fills_up_costs_nothing_that_was_ke
         assert resumed is not None and resumed.number >= kept_number
 
     def on_disk(call: Callable[..., Any]) -> Callable[..., Any]:
-        def made(*arguments: Any, **more: Any) -> Any:
+        def write_before(*arguments: Any, **more: Any) -> Any:
             look()
             if is_full:
                 raise OSError(errno.ENOSPC, "full")
             return call(*arguments, **more)
 
-        return made
+        return write_before
 
     monkeypatch.setattr(os, "write", on_disk(os.write))
     monkeypatch.setattr(journals, "replace", on_disk(files.replace))

@@ -57,9 +57,9 @@ def numbers(state: int) -> Iterator[int]:
 
 
 def operations(seed: int, blocks: int) -> list[Operation]:
-    made = numbers(seed)
+    numbers_made = numbers(seed)
     names = islice(cycle(OPERATIONS), BLOCK * blocks)
-    return [Operation(name, next(made), second(name, next(made))) for name in names]
+    return [Operation(name, next(numbers_made), second(name, next(numbers_made))) for name in names]
 
 
 def second(name: str, b: int) -> int:
