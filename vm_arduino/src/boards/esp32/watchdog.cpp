@@ -144,13 +144,13 @@ void watchdog_feed() {
   esp_task_wdt_reset();
 }
 
-bool watchdog_has_stalled() {
+bool watchdog_take_stall() {
   if (!read(has_stalled)) return false;
   write_to(&has_stalled, false);
   return true;
 }
 
-bool watchdog_has_hung(Place* place) {
+bool watchdog_take_hang(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
   *place = last.place;
