@@ -37,7 +37,9 @@ FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanit
 # As Python's machine does; a chip counts jumps back and calls.
 COUNTS_INSTRUCTIONS = "-Dtiniscript_counts_instructions"
 
-FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
+LINE_MARKER_FOLDER = re.compile(
+    rb'^(# \d+ ")[^"\n]*/', re.M
+)  # of a line that says where the next are from
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
 USER = os.getuid() if hasattr(os, "getuid") else None
 if USER == 0:
@@ -372,7 +374,7 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
     text = _compiled(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
     kept_flags = [flag for flag in flags if not flag.startswith(("-D", "-isystem"))]
     key = hashlib.sha256(repr((_version(compiler), kept_flags)).encode())
-    key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
+    key.update(LINE_MARKER_FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
     return builds / f"same-{key.hexdigest()[:16]}.o"
 
 

@@ -970,8 +970,8 @@ def _lost_questions(statement: _Statement, repaired: _Statement) -> Iterator[str
     lost_senses = _count_senses(statement) - (repaired.note_words - statement.note_words)
     new_senses = _count_senses(repaired)
     turner_counts = (
-        {word: each.sure_word_counts[word] for word in _QUESTION_TURNERS}
-        for each in (statement, repaired)
+        {word: counted.sure_word_counts[word] for word in _QUESTION_TURNERS}
+        for counted in (statement, repaired)
     )
     negations = (statement.negations, repaired.negations)
     may_turn = (

@@ -218,7 +218,7 @@ class Tree:
     def snapshot(self) -> Json:
         return {
             "tree": self.subtree(ROOT).data(),
-            "gone": {id: list(each) for id, each in self.former_place_by_id.items()},
+            "gone": {id: list(place) for id, place in self.former_place_by_id.items()},
         }
 
     @classmethod
