@@ -30,7 +30,7 @@ WHOLE_LINE_READERS = (
 
 
 def trace(text: str) -> Iterator[str]:
-    """Give lines on who reads a text, round by round, and on what is told of it."""
+    """Give lines on who reads a text, round by round, and on what is said about it."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     text_left = text
     for _ in range(MOST_ROUNDS):

@@ -123,7 +123,7 @@ def suspended(command: Command) -> Command:
     return command
 
 
-# Who waits for bytes is told of them, and reads them a while later: others may have them by then.
+# Who waits for bytes hears of them, and reads them a while later: others may have them by then.
 TOLD = """
 import select, sys, time
 from tiniscript.cli import main

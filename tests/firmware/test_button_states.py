@@ -46,7 +46,7 @@ FOR_EVER = "held for ever"
 
 @lru_cache
 def letters() -> dict[str, list[tuple[int, str]]]:
-    """Return what the button tells of each press: the millisecond, and P, H or R."""
+    """Return what the button says about each press: the millisecond, and P, H or R."""
     event_rows = button_events([(100, 0, edges) for edges, _ in PRESSES.values()])
     rows = {}
     for name, row in zip(PRESSES, event_rows, strict=True):

@@ -50,7 +50,7 @@ ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 }
 LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
-# What is told of the program in memory, which none has saved.
+# What is said about the program in memory, which none has saved.
 OF_MEMORY = ("program", "length", "slot", "saved")
 MAKES: list[Make | None] = [None, *TRANSPORTS]  # None: the cable
 NETWORK = 3  # which has several places

@@ -264,7 +264,7 @@ def after(tale: Story, scene: Scene) -> Scene:
     return scene
 
 
-# What is still told of the first: its end, or that it was not saved, or a block that was open.
+# What is still said about the first: its end, or that it was not saved, or a block that was open.
 OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
 
 

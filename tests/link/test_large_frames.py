@@ -188,7 +188,7 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after
     ("lost", "unanswered", "count"),
     [
         ((), (), 7),
-        ((), (2, 3), 7),  # the next answer tells of them
+        ((), (2, 3), 7),  # the next answer reports them
         ((), (7,), 8),
         ((2,), (), 10),  # what followed it is sent again
         ((7,), (), 8),

@@ -534,7 +534,7 @@ AT_REST: dict[str, int | bytes] = {
 
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
-    """A heartbeat's reply may tell of it in the same moment as its event."""
+    """A heartbeat's reply may report it in the same moment as its event."""
     session, at = over()
     frames = [answer(session.poll(at), AT_REST),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip

@@ -168,7 +168,7 @@ def test_the_generator_fails_where_any_file_is_stale(
 
 
 class Stage:
-    """A release of two parts, of whose steps the one that `fails` does."""
+    """A release of two parts, in which the step named by `fails` fails."""
 
     def __init__(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str) -> None:
         self.fails, self.steps = fails, list[str]()

@@ -28,7 +28,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
 
 pytestmark = pytest.mark.skipif(
-    sys.platform != "linux", reason="only Linux tells of a process what it has"
+    sys.platform != "linux", reason="only Linux says what a process has"
 )
 
 TESTED = 400  # connections of a test

@@ -34,7 +34,7 @@ from tiniscript.link.sharing.server import Server
 
 STEP_MS = 20
 MARK, MARKED = "BEEP(0.001, 31);", "BEEP 31 1"
-# What tells of the robot, its runs and the clock, not of the client.
+# What is about the robot, its runs and the clock, not about the client.
 STRIPPED = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program|length'
                       r'|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
 Json = dict[str, Any]

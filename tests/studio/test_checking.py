@@ -1,4 +1,4 @@
-"""What the page is told of a program: the same as the command says."""
+"""What the page is told about a program: the same as the command says."""
 
 from __future__ import annotations
 

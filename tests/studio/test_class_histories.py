@@ -1,6 +1,6 @@
 """A class is as the law says it is, whatever has happened in it before.
 
-Pupils come, tell of their work, want robots, fall silent, come back and are removed; robots are
+Pupils come, report their work, want robots, fall silent, come back and are removed; robots are
 given and taken, meet nobody, or end; the teacher gives work and begins anew. After each step: all
 that was told is there, a crash loses none of what is kept, and who is next is whose turn it is. A
 class that was begun anew is as one that was just made.

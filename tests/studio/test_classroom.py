@@ -431,7 +431,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
     assert "given" not in room.checks_in(eve, took=right)  # it is not hers to say so
     assert texts_of(room) == ["F(1, 50)"]
-    # The page has it: so it is her work from then on, even before she tells of it.
+    # The page has it: so it is her work from then on, even before she reports it.
     assert "given" not in room.checks_in(ana, took=right)
     assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)

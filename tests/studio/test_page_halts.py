@@ -64,7 +64,7 @@ def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
 
 
 def is_halted(page: Page) -> bool:
-    """Wait for the next halt, and what is told of it; return False where the program has ended."""
+    """Wait for the next halt, and what is said about it; False where the program has ended."""
     halt = page.locator("html[data-halt=read]")
     halt.or_(page.locator("html[data-halt=none]")).wait_for(state="attached")
     return halt.count() == 1

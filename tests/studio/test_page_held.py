@@ -195,7 +195,7 @@ def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
     opened_pages.close()
 
 
-# Keeps all that is told of the virtual robot, however soon something else is.
+# Keeps all that is said about the virtual robot, however soon something else is.
 TOLD = """window.told = [];
 new MutationObserver(() => {
   const said = document.querySelector('#doing')?.textContent;

@@ -44,7 +44,7 @@ def page(only_page: tuple[Pages, Page]) -> Any:
 
 
 def state_of(page: Page) -> BlocksState:
-    page.evaluate(SETTLED)  # Blockly tells of a change a moment later
+    page.evaluate(SETTLED)  # Blockly reports a change a moment later
     text = text_of(page)
     return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
 

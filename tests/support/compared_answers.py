@@ -29,7 +29,7 @@ def without_counts(values: Any, *but: str) -> object:
 
 
 def first_difference(actual: Sequence[object], wanted: Sequence[object]) -> str:
-    """Return what two have in common, and what only the first one has then."""
+    """Return the beginning that both have in common, and how each goes on after it."""
     alike = 0
     while actual[alike : alike + 1] == wanted[alike : alike + 1]:
         alike += 1

@@ -56,7 +56,7 @@ MBOT_VERSION = b"\xff\x55\x01\x04\x0906.01.009\r\n"
 
 
 class Recording(NamedTuple):
-    """What a board has sent, and the row of `link/foreign.py` and the line that are told of it."""
+    """What a board has sent, and which row of `link/foreign.py` and which line are told."""
 
     name: str
     data: bytes

@@ -129,7 +129,8 @@ def _tell(worlds: list[World]) -> None:
     unseen = sum(world.replaced_unseen for world in worlds)
     why = sum((world.why for world in worlds), Counter[str]())
     happened = sum((world.counts for world in worlds), Counter[str]())
-    print(f"{change_count} changes, refused {refused} ({100 * refused / change_count:.2f} %) {dict(why)}, "
+    percent = 100 * refused / change_count
+    print(f"{change_count} changes, refused {refused} ({percent:.2f} %) {dict(why)}, "
           f"values replaced that their page had not seen: {unseen}")  # fmt: skip
     print(dict(happened))
 

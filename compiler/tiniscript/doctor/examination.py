@@ -68,8 +68,8 @@ class Expectations(NamedTuple):
     has_key: Callable[[int], bool] = lambda robot: False
     doubt_of: Callable[[str, HelloReply], str] = lambda port, hello: ""
     port: str = ""
-    on_facts: Callable[[Mapping[str, str]], None] = lambda told: None
-    on_answers: Callable[[RobotAnswers], None] = lambda heard: None
+    on_facts: Callable[[Mapping[str, str]], None] = lambda facts: None
+    on_answers: Callable[[RobotAnswers], None] = lambda answers: None
     ping_count: int = PING_COUNT
 
 
@@ -138,7 +138,7 @@ def examine(
 
 
 def _report_fields(hello: HelloReply, expectations: Expectations) -> dict[str, str]:
-    """Return what a report tells of a robot: not whose it is."""
+    """Return what a report says about a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
         "kit": expectations.name_of_kit(hello.kit) or f"{hello.kit:04x}",

@@ -557,7 +557,7 @@ class Session(Requester):
         self._advance(None, now_ms)
 
     def _go_on(self, interrupted: InterruptedExchange) -> None:
-        """Go on with an exchange, of whose request nothing was sent."""
+        """Go on with an exchange whose request has not been sent yet, not even in part."""
         self._pending, self._transmission = interrupted
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
         self._transmission.renew(self._epoch, self._next_number(seal is not None))

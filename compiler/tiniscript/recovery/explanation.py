@@ -120,7 +120,7 @@ class UnendedBlock:
 
 @dataclass
 class Explanation:
-    """What is told of a line: its code, and what it is `details`.
+    """What is said about a line: its code, and what it is `details`.
 
     Where more of its block changes, that becomes `block_text`, and ends with `end_word`.
 
@@ -171,7 +171,7 @@ def explain_candidate(program: str, candidate: Candidate) -> list[Explanation]:
 
 @dataclass
 class _ExplainedBlock:
-    """A block that is open: what is told of its beginning, which is in change `first_change`.
+    """A block that is open: what is said about its beginning, which is in change `first_change`.
 
     `first_words` is the first word of each line of its last arm.
     """
@@ -387,7 +387,7 @@ class _Explainer:
         last_line: tuple[int, int],
         new_tokens: Sequence[Lexeme],
     ) -> Explanation | None:
-        """Make an edit part of what is told of the beginning of its block, None where too long."""
+        """Make an edit part of what is said about its block's beginning, None where too long."""
         explanation = block.explanation if block else None
         if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None

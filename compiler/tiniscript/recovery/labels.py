@@ -43,7 +43,7 @@ def label_spans(text: str) -> tuple[Span, ...]:
 
 
 def label_diagnostics(source: Source) -> list[Diagnostic]:
-    """Return what is told of the labels of a text: each is taken out."""
+    """Return what is said about the labels of a text: each is taken out."""
     return [
         Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(label_text)),
                    {"found": label_text}, None, Repair((Edit(span, ""),), True))

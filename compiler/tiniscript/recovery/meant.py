@@ -1,4 +1,4 @@
-"""What people are told of a text by what is meant with it: typed values and edits."""
+"""What people are told about a text, from what is meant by it: typed values and edits."""
 
 from __future__ import annotations
 

@@ -248,7 +248,7 @@ class _Text:
 
 
 def _usage_diagnostic(usage: Usage) -> Diagnostic | None:
-    """Return what the first row that holds tells of a place, None where there is none."""
+    """Return what the first row that holds says about a place, None where there is none."""
     return next((usage.diagnostic_of(row, gaps) for row, gaps in matching_rows(usage)), None)
 
 
@@ -1389,7 +1389,7 @@ _SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "dots": lambda it, _: it.dots_values(), "unended": lambda it, _: it.unended_values(),
     "instead": lambda it, _: foreign_word_hints(it.token_texts[0]), "in_words": Usage.worded_values,
     "in_brackets": Usage.bracketed_values, "one_number": Usage.number_values,
-    "in_dark": lambda it, word: said if (said := it.bracketed_values(word)).get("question") else {},
+    "in_dark": lambda it, word: values if (values := it.bracketed_values(word)).get("question") else {},
 }  # fmt: skip
 GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "said": _gap_of(lambda it: it.source[it.instruction_span]),
