@@ -154,7 +154,7 @@ def events_of(program: str, robot_name: str = "tinibot") -> list[Event | Ending]
 
 
 def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.MonkeyPatch) -> int:
-    """Watch these events with a clock that only sleeping moves; return how often it is drawn."""
+    """Watch these events with a clock that only sleeping moves; return the number of drawings."""
     clock = SimpleNamespace(now_s=100.0)
     clock.monotonic = lambda: clock.now_s
     clock.sleep = lambda seconds: setattr(clock, "now_s", clock.now_s + seconds)

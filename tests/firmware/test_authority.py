@@ -184,8 +184,8 @@ def test_forged_and_reordered_frames_drive_nothing(frames: int = 3000) -> None:
 
 
 def forged(frames: int, seed: int) -> int:
-    """Send recorded, forged and reordered frames to a robot with an owner; return how often one of
-    them had it drive, start or change. A stop in between is always obeyed.
+    """Send recorded, forged and reordered frames to a robot with an owner; return how many of them
+    had it drive, start or change. A stop in between is always obeyed.
     """
     chance = random.Random(seed)
     table, keys = Owned(), Keys()

@@ -386,7 +386,7 @@ def test_a_when_halts_once_until_it_has_gone_through() -> None:
 
 
 def visits(image: Image, place: int) -> int:
-    """Return how often the machine in Python begins the instruction at a place."""
+    """Return how many times the machine in Python begins the instruction at a place."""
     machine = Machine(image.code, TracedRobot(KIT, lambda sensor: 0), len(KIT.readings))
     count = now_ms = 0
     while True:

@@ -31,7 +31,7 @@ class StrictBroker:
     def __init__(self, granted: bytes = b"\0\0", early: bytes = b"") -> None:
         self.granted, self.early = granted, early
         self.published: list[bytes] = []  # what was published
-        self.asked = 0  # how often somebody has subscribed
+        self.asked = 0  # how many times somebody has subscribed
         self.listener = socket.create_server(("127.0.0.1", 0))
         threading.Thread(target=self._serve, daemon=True).start()
 

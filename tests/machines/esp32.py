@@ -144,7 +144,7 @@ class Esp32Robot(HostFirmware):
         return turns, ns / 1000
 
     def rests(self) -> int:
-        """Return how often the main loop has left its turn to the idle task."""
+        """Return how many times the main loop has left its turn to the idle task."""
         return int.from_bytes(self.ask(b"M", b"")[8:12], "little")
 
     def erase(self, milliseconds: int) -> None:

@@ -64,7 +64,7 @@ class Run:
     late: Callable[[int, int], int]  # how much later the call comes: see `trace`
     begin_ms: int = 0
     is_slow: Callable[[int, int], bool] = always_ready
-    waited: int = 0  # how often
+    waited: int = 0  # how many times
     lines: list[str] = field(default_factory=list)
     taken: dict[int, int] = field(default_factory=dict)
     passed: int = 0  # since the start; what `now` is without wrapping around

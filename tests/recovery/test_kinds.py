@@ -1,4 +1,4 @@
-"""Kinds of mistakes, and what is told of each: on one line and on several, in other words."""
+"""Kinds of mistakes, and what is said about each: on one line and on several, in other words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rows of suggestions: what is told of words behind an instruction, and what is read then."""
+"""The rows of suggestions: what is said about words after an instruction, and what is read."""
 
 from __future__ import annotations
 

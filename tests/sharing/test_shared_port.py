@@ -33,7 +33,7 @@ PATIENT = (
 
 
 def hellos(pty_robot: PtyRobot) -> int:
-    """Return how often a session was begun: as often as the port was opened."""
+    """Return how many times a session was begun: as often as the port was opened."""
     frames = map(decode_frame, pty_robot.heard.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 

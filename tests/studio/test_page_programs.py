@@ -296,7 +296,7 @@ def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, bu
 
 
 def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
-    """Save the picture of the blocks; return its size, and how often it has each colour."""
+    """Save the picture of the blocks; return its size, and how many times it has each colour."""
     unfold(page)
     with page.expect_download() as download:
         page.click("#share_picture")

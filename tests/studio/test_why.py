@@ -22,7 +22,7 @@ ONE, TWO = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
 
 
 def explanations(*cases: tuple[str, str]) -> list[Any]:
-    """Return what is told of programs, each at the first instruction with a text."""
+    """Return what is said about programs, each at the first instruction with a text."""
     rows = []
     for text, wanted in cases:
         program = check(text.encode(), "tinibot", "en")

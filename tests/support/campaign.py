@@ -21,7 +21,7 @@ def wanted(count: int, seed: int, *flags: str) -> Namespace:
 
 
 def each_seed(check: Callable[[int], object], given: Namespace) -> None:
-    """Run a check with each seed; print how often each thing came of it, or a seed that fails.
+    """Run a check with each seed; print how many times each thing came of it, or a seed that fails.
 
     `check` returns what came of it, or None where that is always the same.
     """

@@ -97,7 +97,7 @@ def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str
 
 
 def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
-    """Compare random codes, and run what is accepted; return how often each thing happened."""
+    """Compare random codes, and run what is accepted; return how many times each thing happened."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % 2]
     counts: Counter[str] = Counter()

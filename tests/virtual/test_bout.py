@@ -301,7 +301,9 @@ def test_who_is_pushed_out_and_who_falls() -> None:
     flag = "[[flags]]\nx_cm = 0\ny_cm = 100\nreach_cm = 10\n"  # beyond the edge
     assert ended("B(9, 80)", text + flag)["taken"] == 0
     both = ended("B(2, 80);F(20, 80)", text, 25_000)
-    assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), "it counts no more"
+    assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), (
+        "it no longer counts"
+    )
 
 
 def test_the_example_pushes_the_rival_of_the_world_out() -> None:

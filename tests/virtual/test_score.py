@@ -66,7 +66,7 @@ def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
     assert counted(crashed, "B(1, 80);F(4, 80)") == (2, 2)
     late = TWO.replace("seconds = 6", "seconds = 4") + wall
     assert counted(late, "B(1, 80);W(3);F(4, 80)") == (2, 1)
-    # What happens after the last flag counts no more.
+    # What happens after the last flag no longer counts.
     assert counted(TWO, "F(9, 80)", 12_000) == (2, 3)
 
 

@@ -59,7 +59,7 @@ class Expectations(NamedTuple):
     `has_key` says whether this computer has a key of the robot with this id. `doubt_of` returns the
     cause why what answers on `port` may be another robot than that of a key, or nothing. `on_facts`
     gets what a robot has told of itself, whatever is wrong with it, and `on_answers` the answers.
-    `ping_count`: how often it is asked whether it hears.
+    `ping_count`: how many times it is asked whether it hears.
     """
 
     kit: int | None

@@ -714,7 +714,7 @@ class _Statement:
     # -- branches --------------------------------------------------------------------------------
 
     def count_calls(self, name: str) -> int:
-        """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
+        """Return how many times a DEF is called: after DEF, or an end, its name is no call."""
         count = 0
         for k, (previous, token) in enumerate(pairwise([_END, *self.tokens])):
             count += token.text == name and not (

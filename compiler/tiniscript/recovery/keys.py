@@ -190,7 +190,7 @@ class _Instruction:
     # -- what says a key --------------------------------------------------------------------------
 
     def _find_key(self, k: int) -> _Key | None:
-        """Return the key that pieces from one on say: its side goes before it or behind it."""
+        """Return the key that pieces from one on say: its side goes before it or after it."""
         if (
             self._word_at(k).isalpha()
             and self._word_at(k + 1) == "."

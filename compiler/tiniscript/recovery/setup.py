@@ -100,7 +100,7 @@ def setup_diagnostic(text: str) -> Diagnostic | None:
 
 
 def _frame_diagnostic(source: Source) -> Diagnostic | None:
-    """Return what is told of `void setup() { … }`, in which a sketch has its beginning.
+    """Return what is said about `void setup() { … }`, in which a sketch has its beginning.
 
     What is in its brackets begins the program; `void loop()` after it is a loop.
     """
@@ -208,7 +208,7 @@ def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
 
 
 def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return what is told of variables that are set above `SI|`, with a type before them.
+    """Return what is said about variables that are set above `SI|`, with a type before them.
 
     `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
     """

@@ -42,7 +42,7 @@ bool is_fed;  // since the timer's task has looked
 bool is_hanging;
 bool has_stalled;
 
-uint8_t missed;  // the timer's: how often it has looked since
+uint8_t missed;  // the timer's: how many times it has looked since
 
 template <class Value>
 Value read(const Value& from) {
