@@ -40,7 +40,7 @@ LINES = 8  # of each, at which a commit kills; a run of --whole at all
 
 
 class Kept(NamedTuple):
-    """`add` keeps a number, beside those before unless it `is_alone`; `all` finds them."""
+    """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them."""
 
     add: Callable[[int], object]
     all: Callable[[], list[int]]

@@ -159,7 +159,7 @@ def test_a_bar_is_not_full_before_all_is_done(
 
 
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is not said to be something else, nor to be silent while it waits for its button."""
+    """Nobody says that it is something else, or that it is silent while it waits for its button."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     for late_ms in (990, 1300):  # who is silent for 3 s is lost
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:

@@ -54,8 +54,8 @@ class Hand:
     def __init__(self, session: Session, robot: HostFirmware) -> None:
         self.session, self.robot = session, robot
         self.held = NOTHING_PRESSED
-        self.loses: Callable[[], bool] = lambda: False  # the line, a packet
-        self.words: list[tuple[int, RemoteState]] = []  # that were sent
+        self.loses: Callable[[], bool] = lambda: False  # whether the line loses a packet
+        self.words: list[tuple[int, RemoteState]] = []  # sent, each with its number
         self.outcomes: list[int] = []
         self._requests = [session.press()]
         self._said_ms = 0

@@ -109,6 +109,6 @@ def run_piece(goal: Goal, last_result: Result | None, commit: str) -> Result:
 
 
 if __name__ == "__main__":
-    # A shell has Ctrl-C ignored by what runs in its background, and so by each command under test.
+    # What a shell runs in its background ignores Ctrl-C, and so would each command under test.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())
