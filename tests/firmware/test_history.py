@@ -156,12 +156,12 @@ class Scene:
         self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=ring)
         return self.session
 
-    def note(self, what: str, begun_ms: int, said: bytes = b"") -> None:
+    def note(self, what: str, begun_ms: int, data: bytes = b"") -> None:
         """Note what a step has brought; times count from its beginning."""
         self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
         rows = (line.split(" ", 1) for line in self.robot.did)
-        self.observed.append((what, [(int(ms) - begun_ms, done) for ms, done in rows]))
-        lines = re.findall(rb"// [^\r\n]*\r\n", said)
+        self.observed.append((what, [(int(ms) - begun_ms, event) for ms, event in rows]))
+        lines = re.findall(rb"// [^\r\n]*\r\n", data)
         lines = [line for line in lines if line != NO_ZERO]  # it comes late
         self.observed += [line for line in lines if self.is_saved or line != LOST]
         heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
@@ -187,9 +187,9 @@ class Scene:
 
     def say(self, data: bytes, wait_ms: int) -> None:
         begun_ms = self.robot.now_ms
-        said = self.robot.latched_while(max(1, len(data)), data, is_spread=True)[0]
-        said += self.robot.wait(wait_ms)
-        self.note(f"says {data!r}", begun_ms, said)
+        reply = self.robot.latched_while(max(1, len(data)), data, is_spread=True)[0]
+        reply += self.robot.wait(wait_ms)
+        self.note(f"says {data!r}", begun_ms, reply)
 
     def press(self, milliseconds: int) -> None:
         begun_ms = self.robot.now_ms
@@ -493,15 +493,15 @@ def check(seed: int, kind: str, before: str) -> int:
     how = drawn_stop(rng, before)
     twin = Scene(KINDS[kind], memory, write_ms, clock(rng), deepcopy(scene.rings))
     drawn_alike = rng.random()
-    found = []
-    for each in (scene, twin):
-        stopped(each, how)
-        found.append(all_seen(each, how, random.Random(drawn_alike)))
+    states_of_both = []
+    for one_scene in (scene, twin):
+        stopped(one_scene, how)
+        states_of_both.append(all_seen(one_scene, how, random.Random(drawn_alike)))
     # Where a cut program is still being saved, a request is asked again until that is over.
-    assert are_alike(found[0], found[1], AGAIN_MS if how.is_cut else 0), (
-        f"{history}\n{how}\n{first_difference(*found)}"
+    assert are_alike(states_of_both[0], states_of_both[1], AGAIN_MS if how.is_cut else 0), (
+        f"{history}\n{how}\n{first_difference(*states_of_both)}"
     )
-    return len(found[0])
+    return len(states_of_both[0])
 
 
 def are_alike(one: object, other: object, apart_ms: int) -> bool:
@@ -523,8 +523,8 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("before", BEFORE)
 def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
-    seen = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
-    assert sum(seen) > 20 and min(seen) > 0, seen
+    counts = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
+    assert sum(counts) > 20 and min(counts) > 0, counts
 
 
 def check_all(seed: int) -> None:

@@ -190,7 +190,7 @@ class Groups:
             if member is None:
                 pupils = group.pupils
                 if token != TEACHER and len(pupils) >= MOST_MEMBERS:
-                    silent_member = min(pupils, key=lambda each: each.heard_s)
+                    silent_member = min(pupils, key=lambda pupil: pupil.heard_s)
                     if now_s - silent_member.heard_s <= GONE_S:
                         return {"failure": "group_full"}
                     del group.member_by_token[silent_member.token]

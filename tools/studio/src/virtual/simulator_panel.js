@@ -1,4 +1,4 @@
-// The part of the page with the virtual robot: its buttons, its picture and what is told of it.
+// The part of the page with the virtual robot: its buttons, its picture and what is said about it.
 
 import { Arena } from './arena.js';
 import { sayOnBlocks } from '../blocks/said.js';
