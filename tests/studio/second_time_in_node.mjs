@@ -166,6 +166,7 @@ const PARTS = {
       const has = { text: '', place: -1, isUp: false };
       const wanted = { place: -1, isUp: false };
       let turns = 0;
+      let joins = 0;
       let over = '';
       let late = 0; // asked after the class was over
       let isCalm = false; // nothing is lost
@@ -174,7 +175,11 @@ const PARTS = {
       const told = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
       room = {
         async asked(by, request) {
-          if (request.do === 'join') return answers({ token });
+          if (request.do === 'join') {
+            joins += 1;
+            await later(20);
+            return answers({ token });
+          }
           if (by !== token) { // a look of the class before
             await later(1);
             return { ok: false, status: 403 };
@@ -201,8 +206,10 @@ const PARTS = {
         writes: () => { work.text = `F(${chance.below(1000)})`; },
         nothing: () => {},
       };
-      join.dispatchEvent(new Event('submit', { cancelable: true }));
-      await settles();
+      for (let k = chance.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
+      await passes(30);
+      if (joins > 1) throw new Error(`who presses twice is ${joins} pupils`);
+      if (hand.hidden) throw new Error('in a class nobody can ask for help');
       if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
       for (let k = 1 + chance.below(4); k > 0; k -= 1) {
@@ -213,6 +220,7 @@ const PARTS = {
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
+      if (!isGood && ![hand, ask, quit, connect].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
       if (!isGood) return { ends: [ends], seen: [] };
       presses.writes();
       await passes(2);

@@ -251,7 +251,15 @@ const ACTS = {
     else chooses('lesson', chance.of(['1', '2']));
     return way.id || way.textContent;
   },
-  robot: (chance) => isSeen(at('robot')) && chooses('robot', chance.of(['tinibot', 'liner'])),
+  robot(chance) {
+    if (!isSeen(at('robot'))) return false;
+    chooses('robot', chance.of(['tinibot', 'liner']));
+    return 'robot';
+  },
+  retypes(chance, tab) { // while a program that names its robot gets another one
+    if (!ACTS.robot(chance)) return false;
+    return ACTS.types(chance, tab) === false ? 'robot' : 'types';
+  },
   world: (chance) => isSeen(at('world')) && chooses('world', chance.of(WORLDS)),
   speed: (chance) => isSeen(at('speed')) && chooses('speed', chance.of(['0.1', '1', '4'])),
   level: (chance) => isSeen(at('level')) && chooses('level', chance.of(['few', 'usual', 'all'])),
@@ -407,10 +415,10 @@ function seenIn({ seen }) {
   ]));
 }
 
-const MOSTLY = ['presses', 'presses', 'drives', 'types', 'builds', 'presses', 'learns', 'robot'];
-function acts(chance, tab) {
+const MOSTLY = ['presses', 'presses', 'drives', 'types', 'builds', 'presses', 'learns', 'retypes'];
+function acts(chance, tab, names = chance() < 0.7 ? MOSTLY : Object.keys(ACTS)) {
   for (;;) {
-    const name = chance() < 0.7 ? chance.of(MOSTLY) : chance.of(Object.keys(ACTS));
+    const name = chance.of(names);
     const check = expects(tab);
     const found = ACTS[name](chance, tab);
     if (found === false) continue;
@@ -439,6 +447,9 @@ async function playsSeed(seed) {
     checksRest(tab);
     tab.isComing = false;
     tab.python.late = late;
+    acts(chance, tab, ['retypes', 'waits']);
+    await passes(1000);
+    checkStays(tab);
   }
   tab.python.late = () => 5;
   await passes(3000);
